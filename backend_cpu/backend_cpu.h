@@ -1,0 +1,9 @@
+/* The CPU backend: a pthread pool that runs the kernels as C and asks Embree for rays. */
+#ifndef TWINLIGHT_BACKEND_CPU_H
+#define TWINLIGHT_BACKEND_CPU_H
+
+#include "backend.h"
+
+const BackendInterface *backend_cpu(void);
+
+#endif

@@ -1,0 +1,95 @@
+/* What the host asks of a backend: memory, kernels and rays, given as a list of steps recorded once.
+ *
+ * A pass runs the list over items first_item ... first_item + item_count - 1. A step touches only its own item's
+ * fields, so a backend may run step by step over all items (OpenCL) or the whole list chunk by chunk (CPU); both give
+ * the same bits. At the end of the list every item's splats (SPLATS_PER_ITEM slots) are added to the film by
+ * film_add_splats, in any order: the film is integer. */
+#ifndef TWINLIGHT_BACKEND_H
+#define TWINLIGHT_BACKEND_H
+
+#include "error.h"
+#include "scene_types.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Buffers that kernels name. The first four hold the scene; the others hold `words` 32-bit words per item. */
+typedef enum BufferId {
+    BUFFER_FRAME,
+    BUFFER_GEOMETRY,
+    BUFFER_TABLES,
+    BUFFER_TEXELS,
+    BUFFER_PATHS, /* path_state.h */
+    BUFFER_RAYS, /* ray_state.h: closest-hit rays */
+    BUFFER_HITS,
+    BUFFER_SHADOWS, /* shadow rays and their visibility */
+    BUFFER_SPLATS, /* what goes to the film */
+    BUFFER_DIAGNOSTICS, /* counters, per thread or device; summed by the host */
+    BUFFER_COUNT
+} BufferId;
+
+typedef enum StepKind { STEP_KERNEL, STEP_TRACE_CLOSEST, STEP_TRACE_SHADOW } StepKind;
+
+/* kernel: index into the kernel list (shared/kernel_list.h). */
+typedef struct Step {
+    StepKind kind;
+    unsigned kernel;
+} Step;
+
+typedef struct StepList {
+    const Step *steps;
+    size_t count;
+    uint words_per_item[BUFFER_COUNT]; /* of the per-item buffers used; 0 otherwise */
+} StepList;
+
+/* Borrowed views of the packed scene. */
+typedef struct BackendScene {
+    const FrameParams *frame;
+    const uint *geometry;
+    size_t geometry_words;
+    const uint *tables;
+    size_t tables_words;
+    const uint *texels;
+    size_t texel_words;
+    size_t primitive_count;
+    size_t object_count;
+    size_t instance_count;
+} BackendScene;
+
+typedef struct BackendOptions {
+    int threads; /* 0: one per processor */
+} BackendOptions;
+
+/* Rays and time since the backend was opened. */
+typedef struct BackendStatistics {
+    uint64_t closest_rays;
+    uint64_t shadow_rays;
+    double ray_seconds; /* in ray queries, summed over threads; 0 unless profiling */
+    double build_seconds; /* acceleration structure */
+    size_t bytes; /* device or backend memory now */
+    int threads;
+    char device[256]; /* in words */
+} BackendStatistics;
+
+/* Receives one finished chunk's splat buffer: `count` items at `stride`, fields of splat_state.h. Called from many
+ * threads at once. */
+typedef void (*SplatSink)(void *context, const uint *splats, uint count, uint stride);
+
+typedef struct Backend Backend;
+
+typedef struct BackendInterface {
+    const char *name;
+    /* Builds the acceleration structure and worker threads or queues. NULL on failure. */
+    Backend *(*open)(const BackendScene *scene, const BackendOptions *options, Error *error);
+    void (*close)(Backend *backend);
+    /* Runs the list over the pass that `frame` describes and returns when every splat has reached the sink. When
+     * *stop becomes non-zero no new chunk is begun; the items done are still delivered. `items_done` (may be NULL)
+     * gets how many items were delivered. */
+    bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+                const volatile int *stop, uint64_t *items_done, Error *error);
+    /* Sums the diagnostics counters (diagnostics.h) into counters[DIAGNOSTIC_COUNT]. */
+    void (*diagnostics)(Backend *backend, uint64_t *counters);
+    void (*statistics)(Backend *backend, BackendStatistics *statistics);
+} BackendInterface;
+
+#endif

@@ -1,0 +1,68 @@
+#include "error.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void place_print(char *out, size_t size, SourcePlace place)
+{
+    if (!place.file)
+        out[0] = '\0';
+    else if (place.line <= 0)
+        snprintf(out, size, "%s: ", place.file);
+    else if (place.column <= 0)
+        snprintf(out, size, "%s:%d: ", place.file, place.line);
+    else
+        snprintf(out, size, "%s:%d:%d: ", place.file, place.line, place.column);
+}
+
+static bool error_fill(Error *error, SourcePlace place, const char *format, va_list arguments)
+{
+    char where[512];
+    place_print(where, sizeof where, place);
+    int used = snprintf(error->message, sizeof error->message, "%serror: ", where);
+    if (used >= 0 && (size_t)used < sizeof error->message)
+        vsnprintf(error->message + used, sizeof error->message - (size_t)used, format, arguments);
+    error->fix[0] = '\0';
+    return false;
+}
+
+bool error_set(Error *error, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    error_fill(error, (SourcePlace){0}, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_at(Error *error, SourcePlace place, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    error_fill(error, place, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_fix(Error *error, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->fix, sizeof error->fix, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool error_memory(Error *error, unsigned long long bytes, const char *what)
+{
+    error_set(error, "out of memory: %llu bytes for %s", bytes, what);
+    return error_fix(error, "use a smaller scene, fewer threads, or a machine with more memory");
+}
+
+bool error_errno(Error *error, const char *verb, const char *path)
+{
+    int number = errno;
+    return error_set(error, "cannot %s %s: %s", verb, path, strerror(number));
+}

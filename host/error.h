@@ -1,0 +1,35 @@
+/* What went wrong, where, and what to do about it. Every function that can fail for a reason outside the program
+ * returns false (or NULL) and fills the caller's Error; only main prints one and exits. */
+#ifndef TWINLIGHT_ERROR_H
+#define TWINLIGHT_ERROR_H
+
+#include <stdbool.h>
+
+/* A place in a text file. `file` is borrowed and may be NULL; line and column count from 1, 0 when unknown. */
+typedef struct SourcePlace {
+    const char *file;
+    int line;
+    int column;
+} SourcePlace;
+
+typedef struct Error {
+    char message[768]; /* "room.pbrt:12:7: error: unknown material "glas"", empty when nothing failed */
+    char fix[512]; /* "use diffuse, conductor, dielectric ...", may be empty */
+} Error;
+
+/* Fills `error` with "error: MESSAGE" without a place. Returns false, so that callers can `return error_set(...)`. */
+bool error_set(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The same behind "file:line:column: ". */
+bool error_at(Error *error, SourcePlace place, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Adds what to do. Returns false. */
+bool error_fix(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* "out of memory (N bytes for WHAT)". Returns false. */
+bool error_memory(Error *error, unsigned long long bytes, const char *what);
+
+/* "error: cannot VERB PATH: strerror(errno)". Returns false. */
+bool error_errno(Error *error, const char *verb, const char *path);
+
+#endif

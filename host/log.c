@@ -1,0 +1,76 @@
+#include "log.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
+static LogLevel log_level = LOG_INFO;
+static unsigned long log_warnings;
+static void (*log_sink)(const char *line, void *context);
+static void *log_sink_context;
+
+static const char *const LEVEL_NAMES[] = {"warning", "info", "debug"};
+
+void log_level_set(LogLevel level)
+{
+    pthread_mutex_lock(&log_mutex);
+    log_level = level;
+    pthread_mutex_unlock(&log_mutex);
+}
+
+void log_sink_set(void (*sink)(const char *line, void *context), void *context)
+{
+    pthread_mutex_lock(&log_mutex);
+    log_sink = sink;
+    log_sink_context = context;
+    pthread_mutex_unlock(&log_mutex);
+}
+
+unsigned long log_warning_count(void)
+{
+    pthread_mutex_lock(&log_mutex);
+    unsigned long count = log_warnings;
+    pthread_mutex_unlock(&log_mutex);
+    return count;
+}
+
+static void log_write(LogLevel level, const char *where, const char *text)
+{
+    char line[2048];
+    snprintf(line, sizeof line, "%s%s: %s", where, LEVEL_NAMES[level], text);
+    pthread_mutex_lock(&log_mutex);
+    if (level == LOG_WARNING)
+        ++log_warnings;
+    if (level <= log_level) {
+        if (log_sink)
+            log_sink(line, log_sink_context);
+        else
+            fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
+    }
+    pthread_mutex_unlock(&log_mutex);
+}
+
+void log_message(LogLevel level, const char *format, ...)
+{
+    char text[1536];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    log_write(level, "", text);
+}
+
+void log_message_at(LogLevel level, SourcePlace place, const char *format, ...)
+{
+    char text[1536];
+    char where[512] = "";
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (place.file)
+        snprintf(where, sizeof where, "%s:%d:%d: ", place.file, place.line, place.column);
+    log_write(level, where, text);
+}

@@ -1,0 +1,28 @@
+/* Messages to the user on standard error. Thread-safe; a progress line that is on the terminal is cleared first. */
+#ifndef TWINLIGHT_LOG_H
+#define TWINLIGHT_LOG_H
+
+#include "error.h"
+
+typedef enum LogLevel {
+    LOG_WARNING, /* the picture may not be what the scene asks for */
+    LOG_INFO, /* something was understood in a way worth knowing */
+    LOG_DEBUG
+} LogLevel;
+
+/* Messages above `level` are dropped. Default LOG_INFO. */
+void log_level_set(LogLevel level);
+
+/* "warning: ...", "info: ...", "debug: ..." */
+void log_message(LogLevel level, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* "file:line:column: warning: ..." */
+void log_message_at(LogLevel level, SourcePlace place, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Number of warnings so far. */
+unsigned long log_warning_count(void);
+
+/* Redirects the text of every message to `sink` (NULL: standard error), for tests. */
+void log_sink_set(void (*sink)(const char *line, void *context), void *context);
+
+#endif

@@ -1,0 +1,85 @@
+/* The one place that knows which language is being compiled: C11 or OpenCL C 1.2.
+ *
+ * Every other file of shared/ is written as OpenCL C with three restrictions that make it C11 as well: own vector
+ * structs instead of float3, the names below instead of the language's mathematics, and no pointers, bool, size_t,
+ * enums or doubles in structs that cross between host and device. */
+#ifndef TWINLIGHT_PLATFORM_H
+#define TWINLIGHT_PLATFORM_H
+
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#define SHARED_FUNCTION inline static
+#define float_bits(x) as_uint(x)
+#define bits_float(x) as_float(x)
+#define float_sqrt(x) sqrt(x)
+#define float_abs(x) fabs(x)
+#define float_floor(x) floor(x)
+
+#else
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* OpenCL's names. */
+typedef unsigned char uchar;
+typedef uint32_t uint;
+typedef uint64_t ulong;
+
+#define __kernel static inline
+#define __global
+#define __constant static const
+#define SHARED_FUNCTION static inline __attribute__((unused))
+
+/* The item that a kernel works on. One copy per translation unit and thread; the thunks of kernel_list.h set it. */
+static _Thread_local uint platform_item __attribute__((unused));
+#define get_global_id(dimension) ((size_t)platform_item)
+
+SHARED_FUNCTION uint float_bits(float x)
+{
+    uint bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+SHARED_FUNCTION float bits_float(uint bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+#define float_sqrt(x) sqrtf(x)
+#define float_abs(x) fabsf(x)
+#define float_floor(x) floorf(x)
+
+#endif
+
+/* fmin and fmax leave open which of +0/-0 and which operand of a NaN pair they return; these do not: a NaN in `a`
+ * gives `b`. */
+#define float_min(a, b) ((a) < (b) ? (a) : (b))
+#define float_max(a, b) ((a) > (b) ? (a) : (b))
+#define float_clamp(x, low, high) float_min(float_max(x, low), high)
+
+#define FLOAT_MAX 3.402823466e+38f
+#define FLOAT_INFINITY bits_float(0x7f800000u)
+#define PI 3.14159265358979323846f
+#define INV_PI 0.31830988618379067154f
+#define INV_2PI 0.15915494309189533577f
+#define INV_4PI 0.07957747154594766788f
+#define PI_OVER_2 1.57079632679489661923f
+#define PI_OVER_4 0.78539816339744830961f
+
+/* "No such index" in every 32-bit index of the scene. */
+#define NONE 0xffffffffu
+
+SHARED_FUNCTION bool float_finite(float x)
+{
+    return (float_bits(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+#endif

@@ -1,0 +1,12 @@
+# Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
+SHARED_FILES = \
+	shared/path_types.h \
+	shared/platform.h \
+	shared/scene_types.h \
+	shared/scene_view.h \
+	shared/state.h \
+	shared/vec.h
+
+# Installed with the program: OpenCL builds its programs from them.
+shareddir = $(pkgdatadir)/shared
+dist_shared_DATA = $(SHARED_FILES)

@@ -1,0 +1,101 @@
+/* Access to structure-of-arrays state: field f of item t lives at f * stride + t ("transposed indexing" of the paper),
+ * so that neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
+#ifndef TWINLIGHT_STATE_H
+#define TWINLIGHT_STATE_H
+
+#include "path_types.h"
+
+SHARED_FUNCTION uint state_load(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return buffer[(size_t)field * stride + t];
+}
+
+SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field, uint t, uint value)
+{
+    buffer[(size_t)field * stride + t] = value;
+}
+
+SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return bits_float(buffer[(size_t)field * stride + t]);
+}
+
+SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint t, float value)
+{
+    buffer[(size_t)field * stride + t] = float_bits(value);
+}
+
+/* A Vec3 takes three fields from `field` on. */
+SHARED_FUNCTION Vec3 state_load_vec3(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return vec3(state_load_float(buffer, stride, field, t), state_load_float(buffer, stride, field + 1, t),
+                state_load_float(buffer, stride, field + 2, t));
+}
+
+SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint field, uint t, Vec3 value)
+{
+    state_store_float(buffer, stride, field, t, value.x);
+    state_store_float(buffer, stride, field + 1, t, value.y);
+    state_store_float(buffer, stride, field + 2, t, value.z);
+}
+
+/* Fields of BUFFER_RAYS and of the first part of BUFFER_SHADOWS. A ray with t_max <= 0 is not traced. */
+#define RAY_ORIGIN 0u
+#define RAY_DIRECTION 3u
+#define RAY_T_MAX 6u
+#define RAY_WORDS 7u
+
+/* BUFFER_SHADOWS: after the ray, 1 when something lies between. */
+#define SHADOW_OCCLUDED 7u
+#define SHADOW_WORDS 8u
+
+/* BUFFER_HITS */
+#define HIT_T 0u
+#define HIT_PRIMITIVE 1u
+#define HIT_INSTANCE 2u
+#define HIT_U 3u
+#define HIT_V 4u
+#define HIT_WORDS 5u
+
+/* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. */
+#define SPLAT_PIXEL 0u
+#define SPLAT_COLOR 1u
+#define SPLAT_WORDS 4u
+
+SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint t, Ray ray)
+{
+    state_store_vec3(rays, stride, RAY_ORIGIN, t, ray.o);
+    state_store_vec3(rays, stride, RAY_DIRECTION, t, ray.d);
+    state_store_float(rays, stride, RAY_T_MAX, t, ray.t_max);
+}
+
+SHARED_FUNCTION Ray ray_load(__global const uint *rays, uint stride, uint t)
+{
+    Ray ray;
+    ray.o = state_load_vec3(rays, stride, RAY_ORIGIN, t);
+    ray.d = state_load_vec3(rays, stride, RAY_DIRECTION, t);
+    ray.t_max = state_load_float(rays, stride, RAY_T_MAX, t);
+    return ray;
+}
+
+SHARED_FUNCTION void hit_store(__global uint *hits, uint stride, uint t, Hit hit)
+{
+    state_store_float(hits, stride, HIT_T, t, hit.t);
+    state_store(hits, stride, HIT_PRIMITIVE, t, hit.primitive);
+    state_store(hits, stride, HIT_INSTANCE, t, hit.instance);
+    state_store_float(hits, stride, HIT_U, t, hit.u);
+    state_store_float(hits, stride, HIT_V, t, hit.v);
+}
+
+SHARED_FUNCTION Hit hit_load(__global const uint *hits, uint stride, uint t)
+{
+    Hit hit;
+    hit.t = state_load_float(hits, stride, HIT_T, t);
+    hit.primitive = state_load(hits, stride, HIT_PRIMITIVE, t);
+    hit.instance = state_load(hits, stride, HIT_INSTANCE, t);
+    hit.u = state_load_float(hits, stride, HIT_U, t);
+    hit.v = state_load_float(hits, stride, HIT_V, t);
+    return hit;
+}
+
+#endif
