@@ -1,0 +1,40 @@
+/* The film: every contribution is rounded to a 64-bit fixed-point number, and integer sums do not depend on order, so
+ * the image is the same for any number of threads, devices or processes, after a resume, and after merging. */
+#ifndef TWINLIGHT_FILM_H
+#define TWINLIGHT_FILM_H
+
+#include "error.h"
+#include "platform.h"
+
+#include <stdatomic.h>
+
+typedef struct Film {
+    int width, height; /* of the whole film, pixels */
+    int crop[4]; /* x0 y0 x1 y1: the part that is kept */
+    int quantum_exponent; /* one unit of a sum is 2^quantum_exponent of radiance */
+    _Atomic int64_t *sums; /* 3 a pixel of the crop, row by row */
+    _Atomic uint32_t *counts; /* samples of every pixel of the crop */
+    _Atomic uint64_t saturated; /* contributions that did not fit and were clamped */
+    _Atomic uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
+} Film;
+
+/* All sums zero. The quantum is 2^-30 until film_quantum_set. */
+bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
+void film_destroy(Film *film);
+
+/* Chooses the quantum as a power of two 26 octaves under `mean`, the scene's mean radiance (0 or not finite: 2^-30).
+ * Only while the film is empty. */
+void film_quantum_set(Film *film, double mean);
+
+/* Adds `count` items of a splat buffer (state.h: SPLAT_PIXEL, SPLAT_COLOR at field * stride + item) and one sample to
+ * each pixel named. Pixels outside the crop and NONE are skipped. Any number of threads may call it at once. */
+void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
+
+/* Adds the sums and counts of `from`, a film of the same size, crop and quantum; fails, naming the difference,
+ * otherwise. */
+bool film_merge(Film *film, const Film *from, Error *error);
+
+/* rgb[3 * crop pixels] = scale * sum / count; zero where nothing was sampled. */
+void film_resolve(const Film *film, float scale, float *rgb);
+
+#endif
