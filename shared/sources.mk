@@ -6,8 +6,18 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/platform.h \
 	shared/pt.cl \
+	shared/bsdf.h \
+	shared/bsdf_coated.h \
+	shared/bsdf_conductor.h \
+	shared/bsdf_dielectric.h \
+	shared/bsdf_diffuse.h \
+	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_thin_dielectric.h \
+	shared/coat.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/fresnel.h \
+	shared/microfacet.h \
 	shared/path_types.h \
 	shared/platform.h \
 	shared/rng.h \
