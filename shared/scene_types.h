@@ -313,7 +313,8 @@ typedef struct FrameParams {
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
     uint item_count;
-    uint sample_index; /* of the pass: which sample of every pixel */
+    uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
+    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;
     float ray_epsilon_scale; /* largest coordinate, for the inflation of primitive bounds */
