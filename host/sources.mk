@@ -2,8 +2,11 @@ noinst_LTLIBRARIES += libtwinlight_host.la
 libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/camera_setup.c host/camera_setup.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
+	host/filter_setup.c host/filter_setup.h \
+	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c

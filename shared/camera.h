@@ -28,7 +28,7 @@ SHARED_FUNCTION Vec2 camera_lens(__global const Camera *camera, Vec2 u_lens)
 {
     Vec2 lens = vec2(0.0f, 0.0f);
     if (camera->lens_radius > 0.0f) {
-        lens = warp_disk(u_lens);
+        lens = warp_disk_concentric(u_lens);
         lens.x *= camera->lens_radius;
         lens.y *= camera->lens_radius;
     }

@@ -180,30 +180,33 @@ SHARED_FUNCTION float sphere_light_versine(float sin2)
     return sin2 / (1.0f + float_sqrt(1.0f - sin2));
 }
 
-/* Uniform over the directions to a whole sphere, from outside. The point is found from angles at its centre rather
- * than along the ray, so that it lies on the sphere however small that is: with theta the angle at `ref`, s = sin(theta)
- * / sin(theta_max) is the sine of the angle between ray and normal, and the angle at the centre is asin(s) - theta. */
+/* Uniform over the directions to a whole sphere, from outside; u goes through the disk, as in warp_cone. The point is
+ * found from angles at the sphere's centre rather than along the ray, so that it lies on the sphere however small that
+ * is: with theta the angle at `ref` between axis and ray, the sine of the angle between ray and normal is s =
+ * sin(theta) / sin(theta_max), and the angle at the centre is asin(s) - theta. Sines are kept divided by the radius r
+ * in the disk, which is zero on the axis. */
 SHARED_FUNCTION AreaPoint sphere_light_sample_cone(const SceneView *scene, Primitive primitive, float sin2, Vec3 ref,
                                                    Vec2 u)
 {
     __global const Quadric *quadric = scene->quadrics + primitive.a;
+    float r;
+    Vec2 d = warp_disk_polar(u, &r);
+    float cos_max = float_sqrt(1.0f - sin2);
     float versine_max = sphere_light_versine(sin2);
-    float versine = u.x * versine_max;
+    float versine = r * r * versine_max;
     float cos_theta = 1.0f - versine;
-    float sin_theta = float_sqrt(versine * (2.0f - versine));
-    float s2 = float_min(u.x * (2.0f - versine) / (1.0f + float_sqrt(1.0f - sin2)), 1.0f);
-    float s = float_sqrt(s2), c = float_sqrt(1.0f - s2);
+    float sin_theta = float_sqrt(versine_max * (2.0f - versine));
+    float s = float_sqrt((2.0f - versine) / (1.0f + cos_max));
+    float c = float_sqrt(float_max(1.0f - r * r * s * s, 0.0f));
     float sin_alpha = s * cos_theta - c * sin_theta;
-    float cos_alpha = c * cos_theta + s * sin_theta;
-    float sin_phi, cos_phi;
-    float_sincos(u.y * (2.0f * PI), &sin_phi, &cos_phi);
+    float cos_alpha = c * cos_theta + r * r * s * sin_theta;
     Vec3 axis = vec3_normalize(vec3_sub(quadric->center, ref));
-    Vec3 n = frame_to_world(frame_from_normal(axis), vec3(sin_alpha * cos_phi, sin_alpha * sin_phi, -cos_alpha));
+    Vec3 n = frame_to_world(frame_from_normal(axis), vec3(sin_alpha * d.x, sin_alpha * d.y, -cos_alpha));
     uint flags = scene->shapes[primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
     AreaPoint point;
     point.p = vec3_mad(quadric->center, quadric->world_radius, n);
     point.ng = (flags & SHAPE_FLIP_NORMAL) != 0u ? vec3_negate(n) : n;
-    point.pdf = 1.0f / (2.0f * PI * versine_max);
+    point.pdf = warp_cone_pdf(versine_max);
     point.by_angle = 1u;
     return point;
 }
@@ -289,7 +292,7 @@ SHARED_FUNCTION float area_light_pdf_w(const SceneView *scene, uint light, Vec3 
         if (sin2 > 0.0f)
             return sphere_light_hidden(primitive, flags, hit->ng, wi)
                        ? 0.0f
-                       : 1.0f / (2.0f * PI * sphere_light_versine(sin2));
+                       : warp_cone_pdf(sphere_light_versine(sin2));
         pdf_a = quadric_light_pdf(quadric, sphere_object_area(quadric), hit->ng);
     } else if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK) {
         pdf_a = quadric_light_pdf(scene->quadrics + primitive.a, disk_object_area(scene->quadrics + primitive.a),

@@ -1,8 +1,15 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/camera.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/light.h \
+	shared/light_area.h \
+	shared/light_delta.h \
+	shared/light_infinite.h \
+	shared/mis.h \
 	shared/path_types.h \
+	shared/pixel_filter.h \
 	shared/platform.h \
 	shared/rng.h \
 	shared/scene_types.h \
