@@ -28,12 +28,19 @@ typedef enum BufferId {
     BUFFER_COUNT
 } BufferId;
 
-typedef enum StepKind { STEP_KERNEL, STEP_TRACE_CLOSEST, STEP_TRACE_SHADOW } StepKind;
+typedef enum StepKind {
+    STEP_KERNEL,
+    STEP_TRACE_CLOSEST,
+    STEP_TRACE_SHADOW,
+    /* When no item of the chunk has had a live ray in the latest STEP_TRACE_CLOSEST, go on at step `target`. A backend
+     * may ignore it: the kernels between do nothing to dead paths. */
+    STEP_SKIP_IF_IDLE
+} StepKind;
 
-/* kernel: index into the kernel list (shared/kernel_list.h). */
 typedef struct Step {
     StepKind kind;
-    unsigned kernel;
+    unsigned kernel; /* index into the kernel list (shared/kernel_list.h) */
+    unsigned target;
 } Step;
 
 typedef struct StepList {

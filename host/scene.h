@@ -75,10 +75,14 @@ typedef struct Scene {
     Array lookup; /* float */
     Array texels; /* uint */
 
+    Array shape_objects; /* uint: the object of every shape */
+    uint current_object;
+
     /* made by scene_finish */
     float bounds_min[3], bounds_max[3]; /* world space, everything */
     float largest_coordinate; /* of geometry and camera, absolute */
     uint features;
+    size_t primitive_count, triangle_count, vertex_count; /* geometry arrays are freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
     Array geometry_words; /* uint: the packed buffers */
     Array tables_words; /* uint */
@@ -122,7 +126,7 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
 bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error);
 bool scene_add_light(Scene *scene, const Light *light, Error *error);
 
-/* Surface area of one primitive in world space (double arithmetic). */
+/* Surface area of one primitive in world space (double arithmetic). Before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);
 
 /* Derives everything marked "made by scene_finish". Fails when the scene has no light or nothing to render, or when a

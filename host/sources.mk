@@ -3,8 +3,12 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/error.c host/error.h \
+	host/film.h \
+	host/integrator_pt.c \
 	host/log.c host/log.h \
-	host/scene.c host/scene.h
+	host/render.h \
+	host/scene.c host/scene.h \
+	host/scene_finish.c
 libtwinlight_host_la_LIBADD = $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight

@@ -53,7 +53,8 @@ typedef struct Primitive {
 #define PRIMITIVE_KIND_SHIFT 29
 
 /* Shape flags. */
-#define SHAPE_FLIP_NORMAL 0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
+#define SHAPE_FLIP_NORMAL                                                                                              \
+    0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
                                   negated. Quadrics and meshes without vertex normals; see surface.h for the others */
 #define SHAPE_REVERSE 0x2u /* ReverseOrientation alone */
 #define SHAPE_HAS_NORMALS 0x4u
@@ -311,7 +312,8 @@ typedef struct FrameParams {
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
     uint item_count;
-    uint sample_index; /* of the pass: which sample of every pixel */
+    uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
+    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;
     float ray_epsilon_scale; /* largest coordinate, for the inflation of primitive bounds */

@@ -1,0 +1,404 @@
+/* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables, buffers. */
+#include "scene.h"
+
+#include "camera_setup.h"
+#include "coat.h"
+#include "filter_setup.h"
+#include "light_setup.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- order of primitives ---------------------------------------------------------------------------------------- */
+
+/* Gives every object its range of primitives; `ends[s]` is where shape s ends now. */
+static void objects_place(Scene *scene, const uint *ends)
+{
+    Object *objects = scene->objects.data;
+    const uint *shape_objects = scene->shape_objects.data;
+    for (size_t o = 0; o < scene->objects.count; ++o)
+        objects[o].primitive_count = 0;
+    for (size_t s = 0; s < scene->shapes.count; ++s)
+        objects[shape_objects[s]].primitive_count += ends[s] - ARRAY_AT(&scene->shapes, Shape, s).first_primitive;
+    uint next = 0;
+    for (size_t o = 0; o < scene->objects.count; ++o) {
+        objects[o].first_primitive = next;
+        next += objects[o].primitive_count;
+    }
+}
+
+/* Copies the primitives shape by shape to `sorted`, behind those of the same object, and corrects what names them. */
+static void primitives_copy(Scene *scene, const uint *ends, uint *cursors, Primitive *sorted)
+{
+    const Primitive *old = scene->primitives.data;
+    const uint *shape_objects = scene->shape_objects.data;
+    for (size_t o = 0; o < scene->objects.count; ++o)
+        cursors[o] = ARRAY_AT(&scene->objects, Object, o).first_primitive;
+    for (size_t s = 0; s < scene->shapes.count; ++s) {
+        Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
+        uint to = cursors[shape_objects[s]], count = ends[s] - shape->first_primitive;
+        memcpy(sorted + to, old + shape->first_primitive, count * sizeof *sorted);
+        for (uint i = 0; shape->first_light != NONE && i < count; ++i)
+            ARRAY_AT(&scene->lights, Light, shape->first_light + i).primitive = to + i;
+        shape->first_primitive = to;
+        cursors[shape_objects[s]] += count;
+    }
+}
+
+/* Primitives of one object must be consecutive, but objects are defined in the middle of the world's own shapes. Moves
+ * whole shapes, keeping their order, and the lights along with them. */
+static bool primitives_group_by_object(Scene *scene, Error *error)
+{
+    size_t shape_count = scene->shapes.count, total = scene->primitives.count;
+    Primitive *sorted = malloc((total + 1) * sizeof *sorted);
+    uint *ends = malloc((shape_count + scene->objects.count + 1) * sizeof *ends);
+    if (!sorted || !ends) {
+        free(sorted);
+        free(ends);
+        return error_memory(error, total * sizeof *sorted, "primitives");
+    }
+    for (size_t s = 0; s < shape_count; ++s)
+        ends[s] = s + 1 < shape_count ? ARRAY_AT(&scene->shapes, Shape, s + 1).first_primitive : (uint)total;
+    objects_place(scene, ends);
+    primitives_copy(scene, ends, ends + shape_count, sorted);
+    if (total > 0)
+        memcpy(scene->primitives.data, sorted, total * sizeof *sorted);
+    free(sorted);
+    free(ends);
+    return true;
+}
+
+/* ---- bounds ----------------------------------------------------------------------------------------------------- */
+
+typedef struct Bounds {
+    float low[3], high[3];
+} Bounds;
+
+static Bounds bounds_empty(void)
+{
+    return (Bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void bounds_add(Bounds *bounds, Vec3 p)
+{
+    const float c[3] = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+        bounds->low[i] = fminf(bounds->low[i], c[i]);
+        bounds->high[i] = fmaxf(bounds->high[i], c[i]);
+    }
+}
+
+static void bounds_add_box(Bounds *bounds, const Bounds *box, const Affine *transform)
+{
+    for (int corner = 0; corner < 8; ++corner)
+        bounds_add(bounds, affine_point(*transform, vec3(corner & 1 ? box->high[0] : box->low[0],
+                                                         corner & 2 ? box->high[1] : box->low[1],
+                                                         corner & 4 ? box->high[2] : box->low[2])));
+}
+
+static void bounds_add_primitive(Bounds *bounds, const Scene *scene, const Primitive *p)
+{
+    const Vec3 *positions = scene->positions.data;
+    uint kind = p->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
+    if (kind == PRIMITIVE_TRIANGLE) {
+        bounds_add(bounds, positions[p->a]);
+        bounds_add(bounds, positions[p->b]);
+        bounds_add(bounds, positions[p->c]);
+    } else if (kind == PRIMITIVE_BILINEAR) {
+        for (int k = 0; k < 4; ++k)
+            bounds_add(bounds, positions[ARRAY_AT(&scene->patches, Patch, p->a).v[k]]);
+    } else {
+        const Quadric *q = &ARRAY_AT(&scene->quadrics, Quadric, p->a);
+        float low = kind == PRIMITIVE_DISK ? q->z_min : -q->radius;
+        float high = kind == PRIMITIVE_DISK ? q->z_min : q->radius;
+        Bounds box = {{-q->radius, -q->radius, low}, {q->radius, q->radius, high}};
+        bounds_add_box(bounds, &box, &q->world_from_object);
+    }
+}
+
+static Bounds bounds_of_object(const Scene *scene, const Object *object)
+{
+    Bounds bounds = bounds_empty();
+    for (uint i = 0; i < object->primitive_count; ++i)
+        bounds_add_primitive(&bounds, scene, &ARRAY_AT(&scene->primitives, Primitive, object->first_primitive + i));
+    return bounds;
+}
+
+static float bounds_largest(const Bounds *bounds)
+{
+    float largest = 0.0f;
+    for (int i = 0; i < 3; ++i)
+        if (bounds->low[i] <= bounds->high[i])
+            largest = fmaxf(largest, fmaxf(fabsf(bounds->low[i]), fabsf(bounds->high[i])));
+    return largest;
+}
+
+static bool scene_bounds(Scene *scene, Error *error)
+{
+    Bounds world = bounds_empty();
+    float largest = 0.0f;
+    Bounds *objects = malloc(scene->objects.count * sizeof *objects);
+    if (!objects)
+        return error_memory(error, scene->objects.count * sizeof *objects, "bounds");
+    for (size_t o = 0; o < scene->objects.count; ++o) {
+        objects[o] = bounds_of_object(scene, &ARRAY_AT(&scene->objects, Object, o));
+        largest = fmaxf(largest, bounds_largest(&objects[o]));
+    }
+    world = objects[0];
+    for (size_t i = 0; i < scene->instances.count; ++i) {
+        const Instance *instance = &ARRAY_AT(&scene->instances, Instance, i);
+        if (ARRAY_AT(&scene->objects, Object, instance->object).primitive_count > 0)
+            bounds_add_box(&world, &objects[instance->object], &instance->world_from_object);
+    }
+    free(objects);
+    if (!(world.low[0] <= world.high[0])) {
+        /* Nothing to hit: an environment alone is a scene all the same. */
+        world = (Bounds){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    }
+    const double *camera = scene->camera_settings.world_from_camera;
+    largest = fmaxf(largest, bounds_largest(&world));
+    for (int i = 0; i < 3; ++i)
+        largest = fmaxf(largest, fabsf((float)camera[4 * i + 3]));
+    memcpy(scene->bounds_min, world.low, sizeof world.low);
+    memcpy(scene->bounds_max, world.high, sizeof world.high);
+    scene->largest_coordinate = largest;
+    if (largest > 1e18f) {
+        error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
+        return error_fix(error, "scale the scene down, or remove the stray vertices");
+    }
+    double radius = 0.0, center[3];
+    for (int i = 0; i < 3; ++i) {
+        center[i] = 0.5 * ((double)world.low[i] + (double)world.high[i]);
+        radius += pow(0.5 * ((double)world.high[i] - (double)world.low[i]), 2.0);
+    }
+    scene->frame.world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
+    scene->frame.world_radius = (float)(sqrt(radius) * 1.0001);
+    scene->frame.ray_epsilon_scale = largest;
+    return true;
+}
+
+/* ---- features ---------------------------------------------------------------------------------------------------- */
+
+static const uint FEATURE_OF_MATERIAL[] = {
+    [MATERIAL_DIFFUSE] = FEATURE_DIFFUSE,
+    [MATERIAL_CONDUCTOR] = FEATURE_CONDUCTOR,
+    [MATERIAL_DIELECTRIC] = FEATURE_DIELECTRIC,
+    [MATERIAL_THIN_DIELECTRIC] = FEATURE_THIN_DIELECTRIC,
+    [MATERIAL_COATED_DIFFUSE] = FEATURE_COATED_DIFFUSE,
+    [MATERIAL_DIFFUSE_TRANSMISSION] = FEATURE_DIFFUSE_TRANSMISSION,
+    [MATERIAL_MIX] = FEATURE_MIX,
+};
+
+static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
+{
+    if (roughness->program != NONE)
+        return true;
+    float alpha = m->flags & MATERIAL_REMAP_ROUGHNESS ? sqrtf(roughness->value) : roughness->value;
+    return alpha >= 1e-3f;
+}
+
+static bool material_is_rough(const Material *m)
+{
+    return (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_COATED_DIFFUSE) &&
+           (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
+}
+
+static uint material_features(const Material *m)
+{
+    uint features = FEATURE_OF_MATERIAL[m->kind];
+    if (material_is_rough(m))
+        features |= FEATURE_ROUGH;
+    if (m->normal_map != NONE || m->displacement.program != NONE)
+        features |= FEATURE_BUMP | FEATURE_TEXTURE;
+    if (m->color0.program != NONE || m->color1.program != NONE || m->roughness_u.program != NONE ||
+        m->roughness_v.program != NONE || m->amount.program != NONE)
+        features |= FEATURE_TEXTURE;
+    return features;
+}
+
+static uint geometry_features(const Scene *scene)
+{
+    uint features = scene->instances.count > 0 ? FEATURE_INSTANCE : 0u;
+    for (size_t s = 0; s < scene->shapes.count; ++s) {
+        const Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
+        features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
+        features |= shape->flags & SHAPE_HAS_NORMALS ? FEATURE_NORMALS : 0u;
+    }
+    /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers. */
+    for (size_t i = 0; i < scene->primitives.count; ++i)
+        features |=
+            FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
+    return features;
+}
+
+static uint light_features(const Light *light)
+{
+    if (light->kind == LIGHT_AREA)
+        return FEATURE_AREA_LIGHT;
+    return light->kind >= LIGHT_INFINITE ? FEATURE_INFINITE_LIGHT : FEATURE_DELTA_LIGHT;
+}
+
+static uint scene_features(const Scene *scene)
+{
+    uint features = geometry_features(scene);
+    for (size_t i = 0; i < scene->materials.count; ++i)
+        features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        features |= light_features(&ARRAY_AT(&scene->lights, Light, i));
+    if (scene->camera_settings.lens_radius > 0.0f)
+        features |= FEATURE_LENS;
+    return features;
+}
+
+/* ---- tables of rough coats --------------------------------------------------------------------------------------- */
+
+static float material_alpha(const Material *m, const FloatParam *roughness)
+{
+    return m->flags & MATERIAL_REMAP_ROUGHNESS ? sqrtf(roughness->value) : roughness->value;
+}
+
+/* Materials of equal coat share a table. */
+static bool scene_coat_tables(Scene *scene, Error *error)
+{
+    for (size_t i = 0; i < scene->materials.count; ++i) {
+        Material *m = &ARRAY_AT(&scene->materials, Material, i);
+        m->coat_table = NONE;
+        if (m->kind != MATERIAL_COATED_DIFFUSE || !material_is_rough(m))
+            continue;
+        float alpha_x = material_alpha(m, &m->roughness_u), alpha_y = material_alpha(m, &m->roughness_v);
+        bool textured = m->roughness_u.program != NONE || m->roughness_v.program != NONE;
+        for (size_t j = 0; j < i && m->coat_table == NONE; ++j) {
+            const Material *other = &ARRAY_AT(&scene->materials, Material, j);
+            if (other->kind != MATERIAL_COATED_DIFFUSE || other->coat_table == NONE || other->eta != m->eta)
+                continue;
+            bool other_textured = other->roughness_u.program != NONE || other->roughness_v.program != NONE;
+            if (textured ? other_textured
+                         : !other_textured && material_alpha(other, &other->roughness_u) == alpha_x &&
+                               material_alpha(other, &other->roughness_v) == alpha_y)
+                m->coat_table = other->coat_table;
+        }
+        if (m->coat_table == NONE &&
+            !coat_table_build(alpha_x, alpha_y, m->eta, textured, &scene->lookup, &m->coat_table, error))
+            return false;
+    }
+    return true;
+}
+
+/* ---- packing ------------------------------------------------------------------------------------------------------ */
+
+/* Copies `array` behind the words already in `words`, from a multiple of four words on. */
+static bool words_append(Array *words, const Array *array, uint *first, Error *error)
+{
+    size_t bytes = array->count * array->element_size, start = (words->count + 3) / 4 * 4;
+    size_t count = start - words->count + bytes / 4;
+    if (start + bytes / 4 > 0xfffffff0u) {
+        error_set(error, "the scene needs more than 16 GiB in one buffer");
+        return error_fix(error, "use object instances or smaller textures");
+    }
+    uint *out = array_grow(words, count, error);
+    if (!out)
+        return false;
+    *first = (uint)start;
+    if (bytes > 0)
+        memcpy((uint *)words->data + start, array->data, bytes);
+    return true;
+}
+
+static bool scene_pack_tables(Scene *scene, Error *error)
+{
+    SceneLayout *layout = &scene->frame.layout;
+    Array *words = &scene->tables_words;
+    words->count = 0;
+    return words_append(words, &scene->materials, &layout->materials, error) &&
+           words_append(words, &scene->texture_ops, &layout->texture_ops, error) &&
+           words_append(words, &scene->images, &layout->images, error) &&
+           words_append(words, &scene->lights, &layout->lights, error) &&
+           words_append(words, &scene->light_alias, &layout->light_alias, error) &&
+           words_append(words, &scene->infinite_lights, &layout->infinite_lights, error) &&
+           words_append(words, &scene->distributions2d, &layout->distributions2d, error) &&
+           words_append(words, &scene->lookup, &layout->lookup, error);
+}
+
+/* The unpacked vertex and primitive arrays are freed on the way: a large scene is held once. */
+static bool scene_pack_geometry(Scene *scene, Error *error)
+{
+    SceneLayout *layout = &scene->frame.layout;
+    struct {
+        Array *array;
+        uint *first;
+    } parts[] = {{&scene->positions, &layout->positions},
+                 {&scene->normals, &layout->normals},
+                 {&scene->uvs, &layout->uvs},
+                 {&scene->primitives, &layout->primitives},
+                 {&scene->shapes, &layout->shapes},
+                 {&scene->patches, &layout->patches},
+                 {&scene->quadrics, &layout->quadrics},
+                 {&scene->objects, &layout->objects},
+                 {&scene->instances, &layout->instances}};
+    size_t total = 64;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i)
+        total += parts[i].array->count * parts[i].array->element_size / 4 + 4;
+    if (!array_reserve(&scene->geometry_words, total, error))
+        return false;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
+        if (!words_append(&scene->geometry_words, parts[i].array, parts[i].first, error))
+            return false;
+        if (i < 4)
+            array_destroy(parts[i].array);
+    }
+    return true;
+}
+
+/* ---- entry points ------------------------------------------------------------------------------------------------- */
+
+bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
+{
+    FrameParams *frame = &scene->frame;
+    if (width < 1 || height < 1 || (int64_t)width * height > INT32_MAX) {
+        error_set(error, "the film size %d x %d is not between 1 and 2^31 pixels", width, height);
+        return error_fix(error, "choose another --resolution");
+    }
+    if (crop[0] < 0 || crop[1] < 0 || crop[2] > width || crop[3] > height || crop[0] >= crop[2] || crop[1] >= crop[3]) {
+        error_set(error, "the crop %d,%d,%d,%d is empty or outside the film of %d x %d pixels", crop[0], crop[1],
+                  crop[2], crop[3], width, height);
+        return error_fix(error, "give x0,y0,x1,y1 with 0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", width, height);
+    }
+    scene->settings.width = width;
+    scene->settings.height = height;
+    memcpy(scene->settings.crop, crop, 4 * sizeof *crop);
+    frame->width = (uint)width;
+    frame->height = (uint)height;
+    frame->crop_x0 = (uint)crop[0];
+    frame->crop_y0 = (uint)crop[1];
+    frame->crop_x1 = (uint)crop[2];
+    frame->crop_y1 = (uint)crop[3];
+    return camera_setup(&scene->camera_settings, width, height, &frame->camera, error);
+}
+
+bool scene_finish(Scene *scene, Error *error)
+{
+    if (scene->objects.count == 0 && !array_grow(&scene->objects, 1, error))
+        return false;
+    if (!primitives_group_by_object(scene, error) || !scene_bounds(scene, error))
+        return false;
+    scene->features = scene->frame.features = scene_features(scene);
+    scene->primitive_count = scene->primitives.count;
+    scene->vertex_count = scene->positions.count;
+    if (!scene_coat_tables(scene, error) ||
+        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
+        !light_setup(scene, error))
+        return false;
+    scene->frame.light_count = (uint)scene->lights.count;
+    scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
+    scene->frame.instance_count = (uint)scene->instances.count;
+    scene->frame.pixel_stride = 1;
+    scene->frame.max_depth = (uint)scene->settings.max_depth;
+    return scene_pack_tables(scene, error) && scene_pack_geometry(scene, error) &&
+           scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
+}
+
+size_t scene_bytes(const Scene *scene)
+{
+    return 4 * (scene->geometry_words.count + scene->tables_words.count + scene->texels.count);
+}
