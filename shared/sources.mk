@@ -6,10 +6,14 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/platform.h \
 	shared/pt.cl \
+	shared/distribution.h \
+	shared/elementary.h \
+	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
-	shared/vec.h
+	shared/vec.h \
+	shared/warp.h
 
 # Installed with the program: OpenCL builds its programs from them.
 shareddir = $(pkgdatadir)/shared
