@@ -13,7 +13,8 @@ SHARED_FILES = \
 	shared/scene_view.h \
 	shared/state.h \
 	shared/vec.h \
-	shared/warp.h
+	shared/warp.h \
+	shared/texture.h
 
 # Installed with the program: OpenCL builds its programs from them.
 shareddir = $(pkgdatadir)/shared
