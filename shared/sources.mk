@@ -3,11 +3,21 @@ SHARED_FILES = \
 	shared/material.h \
 	shared/path_random.h \
 	shared/path_state.h \
+	shared/bsdf.h \
+	shared/bsdf_coated.h \
+	shared/bsdf_conductor.h \
+	shared/bsdf_dielectric.h \
+	shared/bsdf_diffuse.h \
+	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_thin_dielectric.h \
+	shared/coat.h \
+	shared/distribution.h \
+	shared/elementary.h \
+	shared/fresnel.h \
+	shared/microfacet.h \
 	shared/path_types.h \
 	shared/platform.h \
 	shared/pt.cl \
-	shared/distribution.h \
-	shared/elementary.h \
 	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
