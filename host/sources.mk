@@ -7,6 +7,9 @@ libtwinlight_host_la_SOURCES = \
 	host/error.c host/error.h \
 	host/film.h \
 	host/integrator_pt.c \
+	host/camera_setup.c host/camera_setup.h \
+	host/filter_setup.c host/filter_setup.h \
+	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
 	host/render.h \
 	host/scene.c host/scene.h \

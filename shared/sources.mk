@@ -15,7 +15,14 @@ SHARED_FILES = \
 	shared/elementary.h \
 	shared/fresnel.h \
 	shared/microfacet.h \
+	shared/camera.h \
+	shared/light.h \
+	shared/light_area.h \
+	shared/light_delta.h \
+	shared/light_infinite.h \
+	shared/mis.h \
 	shared/path_types.h \
+	shared/pixel_filter.h \
 	shared/platform.h \
 	shared/pt.cl \
 	shared/rng.h \
