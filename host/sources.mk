@@ -10,6 +10,11 @@ libtwinlight_host_la_SOURCES = \
 	host/camera_setup.c host/camera_setup.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
+	host/distribution.c host/distribution.h \
+	host/error.c host/error.h \
+	host/film.h \
+	host/integrator_pt.c \
+	host/camera_setup.c host/camera_setup.h \
 	host/filter_setup.c host/filter_setup.h \
 	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \

@@ -19,8 +19,6 @@ SHARED_FILES = \
 	shared/fresnel.h \
 	shared/microfacet.h \
 	shared/camera.h \
-	shared/distribution.h \
-	shared/elementary.h \
 	shared/light.h \
 	shared/light_area.h \
 	shared/light_delta.h \
@@ -29,12 +27,14 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/pt.cl \
 	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
 	shared/vec.h \
-	shared/warp.h
+	shared/warp.h \
+	shared/texture.h
 
 # Installed with the program: OpenCL builds its programs from them.
 shareddir = $(pkgdatadir)/shared
