@@ -5,6 +5,7 @@ SHARED_FILES = \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
+	shared/texture.h \
 	shared/vec.h
 
 # Installed with the program: OpenCL builds its programs from them.
