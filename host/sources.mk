@@ -3,7 +3,10 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/error.c host/error.h \
+	host/film.h \
+	host/integrator_pt.c \
 	host/log.c host/log.h \
+	host/render.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c
 # The command line.

@@ -1,7 +1,11 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/material.h \
+	shared/path_random.h \
+	shared/path_state.h \
 	shared/path_types.h \
 	shared/platform.h \
+	shared/pt.cl \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
