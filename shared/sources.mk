@@ -1,8 +1,18 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/bsdf.h \
+	shared/bsdf_coated.h \
+	shared/bsdf_conductor.h \
+	shared/bsdf_dielectric.h \
+	shared/bsdf_diffuse.h \
+	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_thin_dielectric.h \
+	shared/coat.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/fresnel.h \
 	shared/material.h \
+	shared/microfacet.h \
 	shared/path_random.h \
 	shared/path_state.h \
 	shared/path_types.h \
