@@ -2,11 +2,14 @@ noinst_LTLIBRARIES += libtwinlight_host.la
 libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/camera_setup.c host/camera_setup.h \
 	host/coat_table.c host/coat_table.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
 	host/film.h \
+	host/filter_setup.c host/filter_setup.h \
 	host/integrator_pt.c \
+	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
 	host/render.h \
 	host/scene.c host/scene.h \

@@ -7,15 +7,22 @@ SHARED_FILES = \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
 	shared/bsdf_thin_dielectric.h \
+	shared/camera.h \
 	shared/coat.h \
 	shared/distribution.h \
 	shared/elementary.h \
 	shared/fresnel.h \
+	shared/light.h \
+	shared/light_area.h \
+	shared/light_delta.h \
+	shared/light_infinite.h \
 	shared/material.h \
 	shared/microfacet.h \
+	shared/mis.h \
 	shared/path_random.h \
 	shared/path_state.h \
 	shared/path_types.h \
+	shared/pixel_filter.h \
 	shared/platform.h \
 	shared/pt.cl \
 	shared/rng.h \
