@@ -13,6 +13,7 @@ SHARED_FILES = \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
 	shared/bsdf_thin_dielectric.h \
+	shared/camera.h \
 	shared/coat.h \
 	shared/distribution.h \
 	shared/elementary.h \
@@ -24,6 +25,11 @@ SHARED_FILES = \
 	shared/light_delta.h \
 	shared/light_infinite.h \
 	shared/mis.h \
+	shared/material.h \
+	shared/microfacet.h \
+	shared/mis.h \
+	shared/path_random.h \
+	shared/path_state.h \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
@@ -32,9 +38,11 @@ SHARED_FILES = \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
+	shared/texture.h \
 	shared/vec.h \
 	shared/warp.h \
 	shared/texture.h
+	shared/warp.h
 
 # Installed with the program: OpenCL builds its programs from them.
 shareddir = $(pkgdatadir)/shared
