@@ -53,7 +53,8 @@ typedef struct Primitive {
 #define PRIMITIVE_KIND_SHIFT 29
 
 /* Shape flags. */
-#define SHAPE_FLIP_NORMAL 0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
+#define SHAPE_FLIP_NORMAL                                                                                              \
+    0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
                                   negated. Quadrics and meshes without vertex normals; see surface.h for the others */
 #define SHAPE_REVERSE 0x2u /* ReverseOrientation alone */
 #define SHAPE_HAS_NORMALS 0x4u

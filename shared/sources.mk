@@ -7,10 +7,14 @@ SHARED_FILES = \
 	shared/light_area.h \
 	shared/light_delta.h \
 	shared/light_infinite.h \
+	shared/material.h \
 	shared/mis.h \
+	shared/path_random.h \
+	shared/path_state.h \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/pt.cl \
 	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
