@@ -119,8 +119,9 @@ typedef struct Instance {
 #define TEXTURE_CONSTANT 1u /* push value */
 #define TEXTURE_IMAGE 2u /* push image `index` at the mapped (u,v), times `scale` (or 1 - it when `invert`) */
 #define TEXTURE_SCALE 3u /* b a -> a b */
-#define TEXTURE_MIX 4u /* amount a b -> (1 - amount) a + amount b */
+#define TEXTURE_MIX 4u /* amount a b -> (1 - amount) a + amount b; amount is the mean of its channels */
 #define TEXTURE_CHECKERBOARD 5u /* a b -> a on even squares, b on odd */
+#define TEXTURE_IMAGE_FLOAT 6u /* TEXTURE_IMAGE inside a float texture: grey, the mean of RGB, or the A of RGBA */
 
 #define WRAP_REPEAT 0u
 #define WRAP_BLACK 1u

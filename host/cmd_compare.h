@@ -1,0 +1,9 @@
+/* `twinlight compare`: figures of error between two pictures. */
+#ifndef TWINLIGHT_CMD_COMPARE_H
+#define TWINLIGHT_CMD_COMPARE_H
+
+/* argv[0] is the subcommand's name. Returns the exit status: 0; 1 when an image cannot be read or written or the sizes
+ * differ; 2 for wrong usage. */
+int cmd_compare(int argc, char **argv);
+
+#endif

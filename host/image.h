@@ -1,0 +1,39 @@
+/* Pictures read from files: PNG (8 and 16 bit), JPEG, TGA and Radiance HDR by stb_image, OpenEXR by OpenEXRCore, PFM by
+ * hand. */
+#ifndef TWINLIGHT_IMAGE_H
+#define TWINLIGHT_IMAGE_H
+
+#include "error.h"
+
+#include <stddef.h>
+
+/* No file with more pixels than this, or a side longer than this, is read. */
+#define IMAGE_PIXELS_MAX (1u << 28)
+#define IMAGE_SIDE_MAX 65536
+
+/* width x height pixels of 1 (grey), 3 (RGB) or 4 (RGBA) interleaved channels, row by row, row 0 on top. */
+typedef struct Image {
+    int width, height, channels;
+    bool is_float; /* data: float, else unsigned char (0 ... 255) */
+    bool srgb_encoded; /* PNG, JPEG and TGA; a 16-bit PNG is float in 0 ... 1 and still encoded */
+    void *data;
+} Image;
+
+/* Reads `path`; the kind of file is told by its content, TGA (which has no signature) by its ending. Of an EXR the
+ * first part's data window and the channels R G B [A] or Y [A] (or the only channel) are read. As in pbrt, the alpha of
+ * TGA and of grey PNG is dropped. Fails, naming the path, for what cannot be opened, is damaged, truncated, too large
+ * or of another kind. */
+bool image_read(const char *path, Image *image, Error *error);
+void image_destroy(Image *image);
+
+/* Element i of the data (pixel * channels + channel) as stored: byte / 255, or the float. */
+float image_value(const Image *image, size_t i);
+
+/* All pixels as linear RGB floats, 3 a pixel, in a new array that the caller frees: grey is repeated, alpha left out,
+ * sRGB decoded. */
+bool image_linear_rgb(const Image *image, float **rgb, Error *error);
+
+/* image_read for a file that is OpenEXR. */
+bool image_read_exr(const char *path, Image *image, Error *error);
+
+#endif
