@@ -2,6 +2,7 @@ noinst_LTLIBRARIES += libtwinlight_host.la
 libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
 	host/log.c host/log.h \
 	host/scene.c host/scene.h \
