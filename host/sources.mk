@@ -2,11 +2,33 @@ noinst_LTLIBRARIES += libtwinlight_host.la
 libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/camera_setup.c host/camera_setup.h \
+	host/coat_table.c host/coat_table.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
+	host/film.h \
+	host/filter_setup.c host/filter_setup.h \
+	host/integrator_pt.c \
+	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
+	host/render.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c
+# The command line.
+libtwinlight_host_la_SOURCES += \
+	host/cmd_info.c \
+	host/cmd_render.c \
+	host/command.h \
+	host/interrupt.c host/interrupt.h \
+	host/json.c host/json.h \
+	host/option_values.c host/option_values.h \
+	host/options.c host/options.h \
+	host/progress.c host/progress.h \
+	host/render_options.c host/render_options.h \
+	host/render_output.c host/render_output.h \
+	host/scene_summary.c host/scene_summary.h \
+	host/stats.c host/stats.h \
+	host/timing.c host/timing.h
 libtwinlight_host_la_LIBADD = $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight

@@ -1,15 +1,35 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/bsdf.h \
+	shared/bsdf_coated.h \
+	shared/bsdf_conductor.h \
+	shared/bsdf_dielectric.h \
+	shared/bsdf_diffuse.h \
+	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_thin_dielectric.h \
+	shared/camera.h \
+	shared/coat.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/fresnel.h \
+	shared/light.h \
+	shared/light_area.h \
+	shared/light_delta.h \
+	shared/light_infinite.h \
+	shared/material.h \
+	shared/microfacet.h \
+	shared/mis.h \
+	shared/path_random.h \
+	shared/path_state.h \
 	shared/path_types.h \
+	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/pt.cl \
 	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/state.h \
 	shared/texture.h \
-	shared/vec.h
 	shared/vec.h \
 	shared/warp.h
 

@@ -40,3 +40,14 @@ tests_test_light_LDADD = $(TEST_LIBS)
 tests_test_math_LDADD = $(TEST_LIBS)
 tests_test_render_LDADD = $(TEST_LIBS)
 tests_test_texture_LDADD = $(TEST_LIBS)
+
+# The command line: its parts, and the whole program.
+if HAVE_CHECK
+check_PROGRAMS += tests/test_options
+endif
+tests_test_options_SOURCES = tests/test_options.c tests/test_util.h
+tests_test_options_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+tests_test_options_LDADD = $(TEST_LIBS)
+
+dist_check_SCRIPTS += tests/test_cli.sh
+TESTS += tests/test_cli.sh
