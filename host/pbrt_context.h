@@ -1,0 +1,178 @@
+/* What the parts of the pbrt importer share while a file is read. */
+#ifndef TWINLIGHT_PBRT_CONTEXT_H
+#define TWINLIGHT_PBRT_CONTEXT_H
+
+#include "matrix.h"
+#include "name_table.h"
+#include "pbrt_import.h"
+#include "pbrt_params.h"
+
+#include <sys/types.h>
+
+/* Limits that keep hostile files from exhausting memory or stack; no scene met so far comes near them. */
+#define IMPORT_NESTING_MAX 65536 /* AttributeBegin and ObjectBegin */
+#define IMPORT_INCLUDE_MAX 64 /* Include and Import inside each other */
+#define IMPORT_FILES_MAX 65536 /* Include and Import in all */
+#define IMPORT_ATTRIBUTES_MAX 1024 /* Attribute directives in force at once */
+#define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
+#define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
+
+/* Instead of an index of a material. */
+#define MATERIAL_INTERFACE 0xfffffffeu /* no material: the shape is invisible */
+
+/* Targets of the Attribute directive. */
+enum { ATTRIBUTE_SHAPE, ATTRIBUTE_LIGHT, ATTRIBUTE_MATERIAL, ATTRIBUTE_MEDIUM, ATTRIBUTE_TEXTURE, ATTRIBUTE_COUNT };
+
+/* An AreaLightSource directive. */
+typedef struct AreaLightSource {
+    const char *kind;
+    SourcePlace place;
+    const ParamSet *params; /* its own */
+    const ParamSet *attributes; /* of Attribute "light" */
+} AreaLightSource;
+
+/* What AttributeBegin saves. Pointers lead into the importer's arena. */
+typedef struct GraphicsState {
+    Matrix ctm[2]; /* at the start and the end of the shutter's time */
+    unsigned active_transforms; /* bit i: ctm[i] takes part in transform directives */
+    bool reverse_orientation;
+    uint material; /* of the scene, MATERIAL_INTERFACE, or NONE: pbrt's default */
+    const char *material_name; /* of NamedMaterial, looked up when a shape uses it; NULL: `material` holds */
+    SourcePlace material_place;
+    const AreaLightSource *area_light;
+    const ParamSet *attributes[ATTRIBUTE_COUNT];
+} GraphicsState;
+
+typedef struct StateSave {
+    GraphicsState state;
+    SourcePlace place;
+    const char *opened_by; /* "AttributeBegin", ... */
+} StateSave;
+
+/* A named texture: a postfix program without its TEXTURE_END. */
+typedef struct ImportTexture {
+    TextureOp *ops;
+    uint count;
+    uint program; /* in the scene once used, else NONE */
+} ImportTexture;
+
+/* Radiance of an area light, or the power that gives it. */
+typedef struct AreaEmission {
+    float radiance[3]; /* at unit power when by_power */
+    bool by_power; /* radiance of each primitive is divided by pi area (2 pi area when two-sided) */
+    uint flags; /* LIGHT_TWO_SIDED */
+} AreaEmission;
+
+/* A shape of an object definition that emits light: it joins the world at every instance. */
+typedef struct EmissiveShape {
+    uint kind; /* PRIMITIVE_* */
+    MeshData mesh; /* copies in the arena, in the space of the definition */
+    Quadric quadric;
+    Matrix matrix; /* of a quadric */
+    Shape shape;
+    AreaEmission emission;
+    SourcePlace place;
+    struct EmissiveShape *next;
+} EmissiveShape;
+
+typedef struct ImportObject {
+    uint object; /* of the scene */
+    bool empty; /* nothing but emissive shapes */
+    EmissiveShape *emissive; /* in the order of the file */
+} ImportObject;
+
+/* A file being read, or the text that pbrt_import_text was given. */
+typedef struct SourceFile {
+    Lexer lexer;
+    char *text; /* owned; NULL for borrowed text */
+    dev_t device;
+    ino_t inode;
+    bool is_import; /* ends a scope of its own */
+    size_t nesting; /* open AttributeBegin when it began */
+} SourceFile;
+
+typedef struct PbrtImport {
+    Scene *scene;
+    ImportOptions options;
+    Error *error;
+    Arena arena; /* names, textures, area lights: until the import ends */
+    const char *directory;
+
+    /* tokens */
+    SourceFile files[IMPORT_INCLUDE_MAX];
+    int file_count;
+    unsigned files_opened;
+    Token pending; /* put back */
+    bool has_pending;
+    ParamBuffer params; /* of the current directive */
+    SourcePlace place; /* of the current directive */
+
+    /* graphics state */
+    GraphicsState state;
+    Array saved; /* StateSave */
+    bool in_world;
+    bool warned_transform_begin;
+    NameTable coordinate_systems; /* index into coordinate_matrices */
+    Array coordinate_matrices; /* Matrix[2] */
+    NameTable objects; /* index into object_definitions */
+    Array object_definitions; /* ImportObject */
+    int open_object; /* index into object_definitions, -1 outside */
+    size_t object_first_primitive;
+
+    /* named things */
+    NameTable materials; /* scene's material or MATERIAL_INTERFACE */
+    NameTable float_textures, spectrum_textures; /* index into textures */
+    Array textures; /* ImportTexture */
+    NameTable images; /* file and options: the scene's image */
+    uint default_material; /* NONE until used */
+
+    /* film and camera, until WorldBegin */
+    float iso;
+    float exposure_time; /* of the film, 0: the camera's shutter */
+    float shutter_open, shutter_close;
+    SourcePlace camera_place;
+} PbrtImport;
+
+/* What is not supported: an error that says what, or with --lenient a counted warning that states the substitute.
+ * Returns whether to go on. `fix` may be NULL. */
+bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix);
+
+/* "error: unknown KIND "name"" with the nearest of `known` or all of them as the fix. Returns false. */
+bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
+                    size_t count);
+
+/* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
+bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
+
+/* The same with its inverse; a singular transform is an error. */
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
+
+/* A file name of the scene as a path: as it is when absolute, else inside the scene's directory. NULL on no memory. */
+const char *import_path(PbrtImport *im, const char *name);
+
+/* Directives that take a name and parameters; the parameters are in im->params. */
+bool import_shape(PbrtImport *im, const char *kind);
+bool import_texture(PbrtImport *im, const char *name, SourcePlace name_place, const char *type, const char *kind);
+bool import_material(PbrtImport *im, const char *kind);
+bool import_named_material(PbrtImport *im, const char *name, SourcePlace name_place);
+bool import_light(PbrtImport *im, const char *kind);
+bool import_camera(PbrtImport *im, const char *kind);
+bool import_film(PbrtImport *im, const char *kind);
+bool import_filter(PbrtImport *im, const char *kind);
+bool import_integrator(PbrtImport *im, const char *kind);
+bool import_sampler(PbrtImport *im, const char *kind);
+bool import_accelerator(PbrtImport *im, const char *kind);
+bool import_option(PbrtImport *im, const char *name, const Token *value);
+
+/* Objects and instances. */
+bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_place);
+bool import_object_end(PbrtImport *im);
+bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_place);
+
+/* At WorldBegin: what depends on several directives before it. */
+bool import_settings_finish(PbrtImport *im);
+
+/* The list of the current directive: its parameters, then the attributes of `target` (-1: none). */
+void import_list(PbrtImport *im, ParamList *list, const char *owner, int target);
+
+#endif

@@ -1,0 +1,21 @@
+/* Reads pbrt-v4's text format into a Scene. man/twinlight-scene.5 says what of it is read. */
+#ifndef TWINLIGHT_PBRT_IMPORT_H
+#define TWINLIGHT_PBRT_IMPORT_H
+
+#include "scene.h"
+
+typedef struct ImportOptions {
+    bool lenient; /* what is not supported is replaced, with a warning that says by what, instead of refused */
+} ImportOptions;
+
+/* Reads the file `path`; names in it are relative to its folder. `scene` must come from scene_init; scene_finish is
+ * left to the caller. On an error `scene` holds some part of the file and is good for scene_destroy only; the message
+ * says file:line:column. */
+bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error);
+
+/* The same from memory. `name` stands for the file's name in messages; `directory` is where names in the text lead
+ * from. */
+bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
+                      const ImportOptions *options, Scene *scene, Error *error);
+
+#endif
