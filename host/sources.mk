@@ -14,6 +14,7 @@ libtwinlight_host_la_SOURCES = \
 	host/render.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c
+
 # The command line.
 libtwinlight_host_la_SOURCES += \
 	host/cmd_info.c \
