@@ -243,10 +243,6 @@ static void result_fill(const PassLoop *loop, RenderResult *result)
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
         result->diagnostics[result->diagnostic_count++] = counters[i];
     }
-    result->diagnostic_names[result->diagnostic_count] = "saturated";
-    result->diagnostics[result->diagnostic_count++] = atomic_load(&loop->film->saturated);
-    result->diagnostic_names[result->diagnostic_count] = "film_not_finite";
-    result->diagnostics[result->diagnostic_count++] = atomic_load(&loop->film->not_finite);
 }
 
 bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *backend, const RenderOptions *options,

@@ -191,27 +191,35 @@ SHARED_FUNCTION float float_log(float x)
     return (s * (half_square + r) + n * 1.42860677e-06f - half_square + f) + n * 0.693145752f;
 }
 
-/* log2(x) of a positive finite x as an unevaluated sum of two floats with a relative error of about 2^-29. */
+/* log2(x) of a positive finite x as an unevaluated sum of two floats with a relative error below 2^-33:
+ * (2 / ln 2) (s + s^3/3 + s^5/5 ...) with the first two terms in twice the precision. */
 SHARED_FUNCTION float float_log2_pair(float x, float *lower)
 {
     int e;
     float m = float_split(x, &e);
     float f = m - 1.0f;
     float d = m + 1.0f;
-    float d_lower = d > 2.0f ? 1.0f - (d - m) : m - (d - 1.0f);
+    float d_lower = m < 1.0f ? m - (d - 1.0f) : 1.0f - (d - m);
     float s = f / d;
     float product = s * d;
     float s_lower = (((f - product) - float_product_error(s, d, product)) - s * d_lower) / d;
     float z = s * s;
-    float tail = s_lower + s * z * (0.333333333f + z * (0.2f + z * (0.142857143f + z * 0.115f)));
-    float a = s * 2.88539004f; /* 2 / ln 2 */
-    float a_lower = float_product_error(s, 2.88539004f, a) + (s * 3.85192607e-08f + tail * 2.88539004f);
+    float z_lower = float_product_error(s, s, z) + 2.0f * s * s_lower;
+    float third = z * 0.333333343f;
+    float third_lower = float_product_error(z, 0.333333343f, third) + (z_lower * 0.333333343f - z * 9.93410776e-09f);
+    float cube = s * third;
+    float rest = s * z * z * (0.200000077f + z * (0.142811179f + z * 0.115241162f));
+    rest = rest + (float_product_error(s, third, cube) + s * third_lower + s_lower * third) + s_lower;
+    float sum = s + cube;
+    float sum_lower = ((s - sum) + cube) + rest;
+    float a = sum * 2.88539004f; /* 2 / ln 2 */
+    float a_lower = float_product_error(sum, 2.88539004f, a) + (sum * 3.85192607e-08f + sum_lower * 2.88539004f);
     float n = (float)e;
     float upper = n + a;
-    float rest = e == 0 ? a_lower : ((n - upper) + a) + a_lower;
-    float sum = upper + rest;
-    *lower = (upper - sum) + rest;
-    return sum;
+    float upper_lower = (e == 0 ? 0.0f : (n - upper) + a) + a_lower;
+    float result = upper + upper_lower;
+    *lower = (upper - result) + upper_lower;
+    return result;
 }
 
 /* x^y for x >= 0; NaN for x < 0 (-0 counts as 0). x^0 = 1^y = 1, even for a NaN; 0^y is 0 or infinity; otherwise a NaN
