@@ -4,6 +4,20 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/camera_setup.c host/camera_setup.h \
+	host/coat_table.c host/coat_table.h \
+	host/distribution.c host/distribution.h \
+	host/error.c host/error.h \
+	host/film.h \
+	host/filter_setup.c host/filter_setup.h \
+	host/integrator_pt.c \
+	host/light_setup.c host/light_setup.h \
+	host/log.c host/log.h \
+	host/render.h \
+	host/scene.c host/scene.h \
+	host/scene_finish.c
+
+# The command line.
+libtwinlight_host_la_SOURCES += \
 	host/cmd_compare.h \
 	host/cmd_info.c \
 	host/cmd_render.c \
