@@ -19,7 +19,6 @@ tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
 tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
 tests_test_render_SOURCES = tests/test_render.c tests/render_fixture.c tests/render_fixture.h tests/test_util.h
 tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
 	tests/test_math_alias.c \
@@ -29,7 +28,6 @@ tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h 
 	tests/test_math_rng.c \
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
-tests_test_render_SOURCES = tests/test_render.c tests/test_util.h
 tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
 
 tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
