@@ -115,7 +115,7 @@ SHARED_FUNCTION void float_sincos(float x, float *sine, float *cosine)
     float r, low;
     uint quadrant = angle_reduce(bits, &r, &low);
     float z = r * r;
-    float s = r + (r * z * (-0.166666642f + z * (0.00833274797f - z * 0.000195878296f)) + low);
+    float s = r + (r * z * (-0.166666672f + z * (0.00833333191f - z * (0.000198400856f - z * 2.72498505e-06f))) + low);
     float half_square = 0.5f * z;
     float c = 1.0f - half_square;
     c = c +
