@@ -9,6 +9,7 @@ check_PROGRAMS += \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
+	tests/test_platform_bits \
 	tests/test_render \
 	tests/test_texture
 TESTS += $(check_PROGRAMS)
@@ -29,6 +30,17 @@ tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h 
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
 tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
+
+tests_test_platform_bits_SOURCES = tests/test_platform_bits.c tests/test_math.h tests/test_util.h \
+	tests/opencl_probe.h tests/platform_layout.h tests/platform_probe.cl
+if HAVE_OPENCL
+tests_test_platform_bits_SOURCES += tests/opencl_probe.c
+else
+tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
+endif
+tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
+tests_test_platform_bits_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 
 tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 tests_test_film_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
