@@ -143,6 +143,7 @@ static const struct SamplingKind {
              {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
              {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
 #define KIND_COUNT 7
+#define TOTAL_CASES ((3 + 4 * (TEST_ALPHA_COUNT - 1)) * TEST_WO_COUNT)
 
 /* Samples follow pdf_w for every BSDF, roughness and direction: p > 1e-3 for all cases together (Sidak). The density
  * integrates to the share of samples that succeed, within 5 standard deviations plus the quadrature's error. */
@@ -152,26 +153,24 @@ START_TEST(test_samples_follow_density)
     test_scene_init(&scene);
     int cases = 0;
     double least = 1.0;
-    for (int k = _i; k <= _i; ++k) {
-        for (int a = KINDS[k].alphas > 1; a < KINDS[k].alphas; ++a) {
-            Bsdf bsdf = test_bsdf(&scene, KINDS[k].kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, KINDS[k].eta,
-                                  KINDS[k].color0, KINDS[k].color1);
-            for (int d = 0; d < TEST_WO_COUNT; ++d, ++cases) {
-                LobeCase lobe = lobe_make(&scene, bsdf, test_wo(d));
-                double integral, succeeded;
-                double p = lobe_p_value(&lobe, (uint64_t)(1000 * k + 10 * a + d), &integral, &succeeded);
-                double deviation = sqrt(succeeded * (1.0 - succeeded) / SAMPLES);
-                const double total_cases = 3 * TEST_WO_COUNT + 4 * (TEST_ALPHA_COUNT - 1) * TEST_WO_COUNT;
-                least = fmin(least, p);
-                ck_assert_msg(p > 1.0 - pow(1.0 - 1e-3, 1.0 / total_cases), "%s, alpha %g %g, direction %d: p = %g",
-                              KINDS[k].name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
-                ck_assert_msg(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
-                              "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
-                              KINDS[k].name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
-            }
+    const struct SamplingKind *kind = &KINDS[_i];
+    for (int a = kind->alphas > 1; a < kind->alphas; ++a) {
+        Bsdf bsdf = test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0,
+                              kind->color1);
+        for (int d = 0; d < TEST_WO_COUNT; ++d, ++cases) {
+            LobeCase lobe = lobe_make(&scene, bsdf, test_wo(d));
+            double integral, succeeded;
+            double p = lobe_p_value(&lobe, (uint64_t)(1000 * _i + 10 * a + d), &integral, &succeeded);
+            double deviation = sqrt(succeeded * (1.0 - succeeded) / SAMPLES);
+            least = fmin(least, p);
+            ck_assert_msg(p > 1.0 - pow(1.0 - 1e-3, 1.0 / TOTAL_CASES), "%s, alpha %g %g, direction %d: p = %g",
+                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
+            ck_assert_msg(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
+                          "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
+                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
         }
     }
-    printf("# %s: %d chi-square tests, least p = %.3g\n", KINDS[_i].name, cases, least);
+    printf("# %s: %d chi-square tests, least p = %.3g\n", kind->name, cases, least);
     test_scene_destroy(&scene);
 }
 END_TEST
