@@ -1,4 +1,4 @@
-/* Irradiance from every kind of light against its closed form. */
+/* Irradiance from every kind of light against its closed form, and what of an area light shines. */
 #include "light_fixture.h"
 #include "test_light.h"
 
@@ -137,8 +137,7 @@ START_TEST(test_delta_lights)
     ASSERT_IRRADIANCE(&f, 1, vec3(0, 0, 0), up, 3.0 / 4.0);
     /* Half-way between the cosines the falloff is one half; outside there is nothing. */
     double tangent = tan(acos((double)half));
-    ASSERT_IRRADIANCE(&f, 1, vec3((float)(2.0 * tangent), 0, 0), up,
-                      0.5 * 3.0 / 4.0 * pow((double)half, 3.0));
+    ASSERT_IRRADIANCE(&f, 1, vec3((float)(2.0 * tangent), 0, 0), up, 0.5 * 3.0 / 4.0 * pow((double)half, 3.0));
     ck_assert(!light_sample(&f.view, 1, vec3(2.0f, 0, 0), vec2(0.5f, 0.5f), &s));
     ck_assert(!light_sample(&f.view, 1, vec3(0, 0, 3.0f), vec2(0.5f, 0.5f), &s));
     ck_assert(!light_sample(&f.view, 0, vec3(0, 0, 2.0f), vec2(0.5f, 0.5f), &s));
@@ -158,6 +157,60 @@ START_TEST(test_spot_step)
 }
 END_TEST
 
+/* One-sided lights shine to the side of ng; vertex normals and ReverseOrientation turn it. */
+START_TEST(test_sides)
+{
+    static const float square[12] = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
+    static const float down[12] = {0, 0, -1, 0, 0, -1, 0, 0, -1, 0, 0, -1};
+    for (int vertices = 3; vertices <= 4; ++vertices)
+        for (int turned = 0; turned < 3; ++turned)
+            for (uint two_sided = 0; two_sided < 2; ++two_sided) {
+                LightFixture f;
+                fixture_init(&f);
+                fixture_add_polygon(&f, square, vertices, turned == 2 ? down : NULL,
+                                    turned == 1 ? SHAPE_FLIP_NORMAL : 0, two_sided ? LIGHT_TWO_SIDED : 0);
+                fixture_finish(&f);
+                LightSample s;
+                bool above = light_sample(&f.view, 0, vec3(0, 0, 2), fixture_random(1, 0), &s);
+                bool below = light_sample(&f.view, 0, vec3(0, 0, -2), fixture_random(1, 0), &s);
+                ck_assert_int_eq(above, turned == 0 || two_sided);
+                ck_assert_int_eq(below, turned != 0 || two_sided);
+                ck_assert(!light_sample(&f.view, 0, vec3(5, 0, 0), fixture_random(1, 0), &s));
+                Vec3 up = vec3(0, 0, 1);
+                ck_assert((light_emitted(&f.view, 0, up, up).x == 1.0f));
+                ck_assert((light_emitted(&f.view, 0, up, vec3_negate(up)).x == (two_sided ? 1.0f : 0.0f)));
+                fixture_destroy(&f);
+            }
+}
+END_TEST
+
+/* A light that is there with probability alpha sends alpha times its radiance; and what of a sphere's far side is seen
+ * through holes of the near one, the cone does not sample. */
+START_TEST(test_alpha)
+{
+    LightFixture f;
+    Error error = {0};
+    fixture_init(&f);
+    fixture_add_sphere(&f, 1.0f, 0.0, 0.0, 0.0, 2.0f, LIGHT_TWO_SIDED);
+    TextureOp *ops = array_grow(&f.scene.texture_ops, 2, &error);
+    ops[0].code = TEXTURE_CONSTANT;
+    ops[0].value = vec3_splat(0.25f);
+    ops[1].code = TEXTURE_END;
+    ARRAY_AT(&f.scene.shapes, Shape, 0).alpha = 0;
+    ARRAY_AT(&f.scene.primitives, Primitive, 0).shape_and_kind |= PRIMITIVE_ALPHA_BIT;
+    fixture_finish(&f);
+    f.view.features = ~0u;
+    LightSample s;
+    ck_assert(light_sample(&f.view, 0, vec3(0, 0, 3), fixture_random(1, 0), &s));
+    ck_assert(s.radiance.x == 0.5f && s.radiance.z == 0.5f);
+    Vec3 down = vec3(0, 0, -1);
+    Surface near = {.p = {0, 0, 1}, .ng = {0, 0, 1}}, far = {.p = {0, 0, -1}, .ng = {0, 0, -1}};
+    ck_assert((light_pdf_w(&f.view, 0, vec3(0, 0, 3), down, &near) > 0.0f));
+    ck_assert((light_pdf_w(&f.view, 0, vec3(0, 0, 3), down, &far) == 0.0f));
+    fixture_destroy(&f);
+}
+END_TEST
+
 TCase *light_irradiance_case(void)
 {
     TCase *tcase = tcase_create("irradiance");
@@ -169,5 +222,7 @@ TCase *light_irradiance_case(void)
     tcase_add_test(tcase, test_tiny_sphere_points);
     tcase_add_test(tcase, test_delta_lights);
     tcase_add_test(tcase, test_spot_step);
+    tcase_add_test(tcase, test_sides);
+    tcase_add_test(tcase, test_alpha);
     return tcase;
 }
