@@ -18,9 +18,9 @@
 
 /* One loop a kernel, with the kernel inlined into it. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
-    static void run_##name(void *const *buffers, uint count)                                                          \
+    static void run_##name(void *const *buffers, uint count)                                                           \
     {                                                                                                                  \
-        for (platform_item = 0; platform_item < count; ++platform_item)                                               \
+        for (platform_item = 0; platform_item < count; ++platform_item)                                                \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \
     }
 KERNEL_LIST(KERNEL_LOOP)

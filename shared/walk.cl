@@ -40,9 +40,9 @@ __kernel void walk_start(__global const FrameParams *frame, __global uint *paths
 }
 
 /* From: a hit. To: the next ray, and a shadow ray to the point before. A walk that misses starts again. */
-__kernel void walk_extend(__global const FrameParams *frame, __global const uint *geometry,
-                          __global const uint *tables, __global const uint *texels, __global uint *paths,
-                          __global uint *rays, __global const uint *hits, __global uint *shadows)
+__kernel void walk_extend(__global const FrameParams *frame, __global const uint *geometry, __global const uint *tables,
+                          __global const uint *texels, __global uint *paths, __global uint *rays,
+                          __global const uint *hits, __global uint *shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -59,9 +59,9 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
         p = surface.p;
         ng = surface.ng;
     }
-    ray_store(shadows, stride, t,
-              ray_between(p, ng, state_load_vec3(paths, stride, WALK_POINT, t),
-                          state_load_vec3(paths, stride, WALK_NG, t)));
+    ray_store(
+        shadows, stride, t,
+        ray_between(p, ng, state_load_vec3(paths, stride, WALK_POINT, t), state_load_vec3(paths, stride, WALK_NG, t)));
     ray_store(rays, stride, t, ray_spawn(p, ng, d));
     state_store_vec3(paths, stride, WALK_POINT, t, p);
     state_store_vec3(paths, stride, WALK_NG, t, ng);
