@@ -20,8 +20,8 @@ typedef struct Image {
 } Image;
 
 /* Reads `path`; the kind of file is told by its content, TGA (which has no signature) by its ending. Of an EXR the
- * first part's data window and the channels R G B [A] or Y [A] (or the only channel) are read. As in pbrt, the alpha of
- * TGA and of grey PNG is dropped. Fails, naming the path, for what cannot be opened, is damaged, truncated, too large
+ * first part's data window and the channels R G B [A] or Y (or the only channel) are read. As in pbrt, the alpha of
+ * TGA and of grey pictures is dropped. Fails, naming the path, for what cannot be opened, is damaged, truncated, too large
  * or of another kind. */
 bool image_read(const char *path, Image *image, Error *error);
 void image_destroy(Image *image);
@@ -32,8 +32,5 @@ float image_value(const Image *image, size_t i);
 /* All pixels as linear RGB floats, 3 a pixel, in a new array that the caller frees: grey is repeated, alpha left out,
  * sRGB decoded. */
 bool image_linear_rgb(const Image *image, float **rgb, Error *error);
-
-/* image_read for a file that is OpenEXR. */
-bool image_read_exr(const char *path, Image *image, Error *error);
 
 #endif

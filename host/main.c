@@ -1,4 +1,122 @@
-int main(void)
+/* The program `twinlight`: picks the command, prints its error, sets the exit status. The only file that names a
+ * backend. */
+#include "config.h"
+
+#include "cmd_compare.h"
+#include "command.h"
+
+#ifdef HAVE_EMBREE
+#include "backend_cpu.h"
+#endif
+
+#include <stdio.h>
+#include <string.h>
+
+#define BACKENDS_MAX 4
+
+typedef struct Command {
+    const char *name;
+    const char *summary;
+    int (*run)(const BackendTable *backends, int argc, char **argv, Error *error);
+} Command;
+
+static int compare_run(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    return 0;
+    (void)backends;
+    (void)error;
+    return cmd_compare(argc, argv);
+}
+
+static const Command COMMANDS[] = {
+    {"render", "render a scene to OpenEXR and PNG", cmd_render},
+    {"compare", "measure how far an image is from a reference", compare_run},
+    {"info", "say what a scene holds", cmd_info},
+};
+
+#define COMMAND_COUNT (int)(sizeof COMMANDS / sizeof COMMANDS[0])
+
+static int backends_fill(const BackendInterface **backends)
+{
+    int count = 0;
+#ifdef HAVE_EMBREE
+    backends[count++] = backend_cpu();
+#endif
+    return count;
+}
+
+static void help_print(FILE *stream)
+{
+    fputs("Usage: twinlight COMMAND [OPTION]... [FILE]...\n"
+          "A physically based renderer for light transport that is hard to sample.\n\n",
+          stream);
+    for (int i = 0; i < COMMAND_COUNT; ++i)
+        fprintf(stream, "  %-8s  %s\n", COMMANDS[i].name, COMMANDS[i].summary);
+    fputs("\n  -h, --help     print this and exit; after a command, its own help\n"
+          "  -V, --version  print the version and exit\n\n"
+          "Exit status: 0 done; 1 failed, with an error; 2 command line not understood; 130 ended by a signal.\n"
+          "More: man twinlight.\n",
+          stream);
+}
+
+static void version_print(FILE *stream, const BackendTable *backends)
+{
+    fputs(PACKAGE_NAME " " PACKAGE_VERSION "\nBackends:", stream);
+    for (int i = 0; i < backends->count; ++i)
+        fprintf(stream, " %s", backends->backends[i]->name);
+    fputs("\nLicence: Apache-2.0\n", stream);
+}
+
+static int usage_fail(Error *error, const char *word)
+{
+    if (word)
+        error_set(error, "unknown %s %s", word[0] == '-' ? "option" : "command", word);
+    else
+        error_set(error, "no command is given");
+    error_fix(error, "use render, compare or info; see twinlight --help");
+    return EXIT_USAGE;
+}
+
+static int command_run(const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    const char *word = argc > 1 ? argv[1] : NULL;
+    if (!word)
+        return usage_fail(error, NULL);
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
+        help_print(stdout);
+        return EXIT_OK;
+    }
+    if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
+        version_print(stdout, backends);
+        return EXIT_OK;
+    }
+    for (int i = 0; i < COMMAND_COUNT; ++i)
+        if (strcmp(word, COMMANDS[i].name) == 0)
+            return COMMANDS[i].run(backends, argc - 1, argv + 1, error);
+    return usage_fail(error, word);
+}
+
+/* Output that did not reach its file (a full disk, a closed pipe) is a failure too. */
+static int output_close(int status, Error *error)
+{
+    bool failed = ferror(stdout) != 0;
+    if (fclose(stdout) == 0 && !failed)
+        return status;
+    if (status == EXIT_OK) {
+        error_errno(error, "write", "standard output");
+        return EXIT_FAILED;
+    }
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    const BackendInterface *backends[BACKENDS_MAX];
+    BackendTable table = {backends, backends_fill(backends)};
+    Error error = {0};
+    int status = output_close(command_run(&table, argc, argv, &error), &error);
+    if (error.message[0])
+        fprintf(stderr, "%s\n", error.message);
+    if (error.message[0] && error.fix[0])
+        fprintf(stderr, "  fix: %s\n", error.fix);
+    return status;
 }

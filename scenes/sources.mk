@@ -1,1 +1,5 @@
-# Nothing here yet.
+# Scenes drawn for Twinlight, installed as examples.
+scenesdir = $(pkgdatadir)/scenes
+dist_scenes_DATA = \
+	scenes/cornell.pbrt \
+	scenes/showcase.pbrt

@@ -16,6 +16,8 @@
 #define float_sqrt(x) sqrt(x)
 #define float_abs(x) fabs(x)
 #define float_floor(x) floor(x)
+/* Items run at once and share the counters. */
+#define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 
 #else
 
@@ -56,6 +58,8 @@ SHARED_FUNCTION float bits_float(uint bits)
 #define float_sqrt(x) sqrtf(x)
 #define float_abs(x) fabsf(x)
 #define float_floor(x) floorf(x)
+/* Every thread has its own counters. */
+#define counter_increment(counter) (++*(counter))
 
 #endif
 

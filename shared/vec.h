@@ -165,7 +165,8 @@ SHARED_FUNCTION Vec3 frame_to_world(Frame f, Vec3 v)
 
 SHARED_FUNCTION Vec3 affine_point(Affine a, Vec3 p)
 {
-    return vec3(a.m[0] * p.x + a.m[1] * p.y + a.m[2] * p.z + a.m[3], a.m[4] * p.x + a.m[5] * p.y + a.m[6] * p.z + a.m[7],
+    return vec3(a.m[0] * p.x + a.m[1] * p.y + a.m[2] * p.z + a.m[3],
+                a.m[4] * p.x + a.m[5] * p.y + a.m[6] * p.z + a.m[7],
                 a.m[8] * p.x + a.m[9] * p.y + a.m[10] * p.z + a.m[11]);
 }
 

@@ -19,8 +19,15 @@ tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
 tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
-tests_test_render_SOURCES = tests/test_render.c tests/test_util.h
+tests_test_render_SOURCES = tests/test_render.c tests/render_fixture.c tests/render_fixture.h tests/test_util.h
+tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
+	tests/test_math_alias.c \
+	tests/test_math_distribution2d.c \
+	tests/test_math_elementary.c \
+	tests/test_math_elementary_pairs.c \
+	tests/test_math_rng.c \
+	tests/test_math_sphere_maps.c \
+	tests/test_math_warp.c
 tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
 
 tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
@@ -40,3 +47,17 @@ tests_test_light_LDADD = $(TEST_LIBS)
 tests_test_math_LDADD = $(TEST_LIBS)
 tests_test_render_LDADD = $(TEST_LIBS)
 tests_test_texture_LDADD = $(TEST_LIBS)
+
+# The command line: its parts, and the whole program.
+if HAVE_CHECK
+check_PROGRAMS += tests/test_options
+endif
+tests_test_options_SOURCES = tests/test_options.c tests/test_util.h
+tests_test_options_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+tests_test_options_LDADD = $(TEST_LIBS)
+
+dist_check_SCRIPTS += tests/test_cli.sh
+TESTS += tests/test_cli.sh
+# Rules of the tree itself.
+dist_check_SCRIPTS += tests/check_layers.sh tests/check_opencl.sh
+TESTS += tests/check_layers.sh tests/check_opencl.sh

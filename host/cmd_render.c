@@ -1,0 +1,285 @@
+/* `twinlight render`: scene in, picture out. */
+#include "command.h"
+
+#include "interrupt.h"
+#include "log.h"
+#include "pbrt_import.h"
+#include "progress.h"
+#include "render.h"
+#include "render_options.h"
+#include "render_output.h"
+#include "stats.h"
+#include "timing.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef bool (*RenderFunction)(const Scene *scene, const BackendInterface *interface, Backend *backend,
+                               const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks,
+                               Film *film, RenderResult *result, Error *error);
+
+static const struct Integrator {
+    const char *name;
+    RenderFunction render;
+} INTEGRATORS[] = {{"pt", render_pt}};
+
+#define INTEGRATOR_COUNT (sizeof INTEGRATORS / sizeof INTEGRATORS[0])
+
+/* One rendering from command line to files. */
+typedef struct RenderJob {
+    const RenderCommand *command;
+    RenderFunction render;
+    Scene scene;
+    Film film;
+    Backend *backend;
+    RenderOutput output;
+    Progress progress;
+    uint64_t samples_done; /* paths, at the latest progress */
+    RenderResult result;
+    double load, build, rendering, write; /* seconds */
+    double start;
+} RenderJob;
+
+static bool integrator_choose(const char *name, RenderFunction *render, Error *error)
+{
+    for (size_t i = 0; i < INTEGRATOR_COUNT; ++i) {
+        if (strcmp(INTEGRATORS[i].name, name) == 0) {
+            *render = INTEGRATORS[i].render;
+            return true;
+        }
+    }
+    error_set(error, "--integrator=%s: there is no such integrator in this version", name);
+    return error_fix(error, "use pt (path tracing)");
+}
+
+/* ---- before rendering ------------------------------------------------------------------------------------------- */
+
+/* The scene's crop window on a film of another size: the same part of the picture (pbrt rounds both ends up). */
+static void crop_scale(const SceneSettings *settings, const int size[2], int crop[4])
+{
+    const int old[2] = {settings->width, settings->height};
+    for (int i = 0; i < 4; ++i) {
+        double part = (double)settings->crop[i] / old[i % 2];
+        crop[i] = (int)ceil(part * size[i % 2] - 1e-9);
+    }
+    for (int i = 0; i < 2; ++i)
+        if (crop[i] >= crop[i + 2])
+            crop[i] = crop[i + 2] - 1;
+}
+
+/* Size, crop, depth and samples: the command line's where it says so, else the scene's. */
+static bool settings_override(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    SceneSettings *settings = &job->scene.settings;
+    int size[2] = {settings->width, settings->height};
+    int crop[4];
+    memcpy(crop, settings->crop, sizeof crop);
+    if (command->resolution[0] > 0) {
+        memcpy(size, command->resolution, sizeof size);
+        crop_scale(settings, size, crop);
+    }
+    if (command->has_crop)
+        memcpy(crop, command->crop, sizeof crop);
+    if (command->max_depth > 0)
+        settings->max_depth = command->max_depth;
+    return scene_film_set(&job->scene, size[0], size[1], crop, error);
+}
+
+static bool outputs_name(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    RenderOutput *output = &job->output;
+    if (!render_output_name(output, &job->scene, command->scene, command->output, command->png, command->png_path,
+                            command->exposure, error))
+        return false;
+    output->scene_file = command->scene;
+    output->integrator = command->integrator;
+    output->seed = command->seed;
+    output->max_depth = job->scene.settings.max_depth;
+    return render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
+           (!command->stats || render_output_check(command->stats, error));
+}
+
+static bool scene_load(RenderJob *job, Error *error)
+{
+    ImportOptions options = {.lenient = job->command->lenient};
+    return pbrt_import(job->command->scene, &options, &job->scene, error) && scene_finish(&job->scene, error);
+}
+
+static bool backend_build(RenderJob *job, Error *error)
+{
+    const Scene *scene = &job->scene;
+    const BackendScene view = {
+        .frame = &scene->frame,
+        .geometry = scene->geometry_words.data,
+        .geometry_words = scene->geometry_words.count,
+        .tables = scene->tables_words.data,
+        .tables_words = scene->tables_words.count,
+        .texels = scene->texels.data,
+        .texel_words = scene->texels.count,
+        .primitive_count = scene->primitive_count,
+        .object_count = scene->objects.count,
+        .instance_count = scene->instances.count,
+    };
+    const BackendOptions options = {.threads = job->command->threads};
+    job->backend = job->command->backend->open(&view, &options, error);
+    return job->backend != NULL;
+}
+
+/* ---- rendering -------------------------------------------------------------------------------------------------- */
+
+static double film_pixels(const Film *film)
+{
+    return (double)(film->crop[2] - film->crop[0]) * (double)(film->crop[3] - film->crop[1]);
+}
+
+static void job_progress(void *context, const RenderProgress *progress)
+{
+    RenderJob *job = context;
+    job->samples_done = progress->samples;
+    progress_update(&job->progress, progress);
+}
+
+static bool job_save(void *context, const Film *film, Error *error)
+{
+    RenderJob *job = context;
+    return render_output_write(&job->output, film, (double)job->samples_done / film_pixels(film), error);
+}
+
+static bool film_render(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const SceneSettings *settings = &job->scene.settings;
+    RenderOptions options = {
+        .samples = (unsigned)command->samples,
+        .seconds = command->seconds,
+        .max_depth = settings->max_depth,
+        .seed = command->seed,
+        .save_every = command->save_every,
+        .stop = interrupt_flag(),
+    };
+    if (options.samples == 0 && options.seconds == 0.0)
+        options.samples = (unsigned)settings->samples;
+    RenderCallbacks callbacks = {job_progress, job_save, job};
+    progress_init(&job->progress, stderr, command->quiet);
+    bool rendered = interrupt_install(error) &&
+                    film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
+                    job->render(&job->scene, command->backend, job->backend, &options, false, &callbacks, &job->film,
+                                &job->result, error);
+    progress_end(&job->progress);
+    return rendered;
+}
+
+/* ---- after rendering -------------------------------------------------------------------------------------------- */
+
+/* What the picture may suffer from. */
+static void diagnostics_report(const RenderJob *job)
+{
+    const RenderResult *result = &job->result;
+    for (int i = 0; i < result->diagnostic_count; ++i)
+        if (result->diagnostics[i] > 0)
+            log_message(LOG_WARNING, "%s: %llu", result->diagnostic_names[i],
+                        (unsigned long long)result->diagnostics[i]);
+    if (job->film.saturated > 0)
+        log_message(LOG_WARNING, "%llu contributions were too bright for the film and were clamped",
+                    (unsigned long long)job->film.saturated);
+    if (job->film.not_finite > 0)
+        log_message(LOG_WARNING, "%llu contributions were not finite and count as black",
+                    (unsigned long long)job->film.not_finite);
+}
+
+static void summary_report(const RenderJob *job)
+{
+    const RenderResult *result = &job->result;
+    char seconds[24], samples[24], rays[24];
+    double per_second = result->seconds > 0.0 ? 1.0 / result->seconds : 0.0;
+    progress_time(result->seconds, seconds, sizeof seconds);
+    progress_rate((double)result->samples * per_second, samples, sizeof samples);
+    progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
+    log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
+                result->samples_per_pixel, seconds, samples, rays);
+    log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
+}
+
+static bool stats_output(const RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const RenderStats stats = {
+        .scene_file = command->scene,
+        .scene = &job->scene,
+        .film = &job->film,
+        .integrator = command->integrator,
+        .backend = command->backend->name,
+        .seed = command->seed,
+        .exr = job->output.exr,
+        .png = job->output.png,
+        .result = &job->result,
+        .load = job->load,
+        .build = job->build,
+        .render = job->rendering,
+        .write = job->write,
+        .total = timing_now() - job->start,
+    };
+    return stats_write(command->stats, &stats, error);
+}
+
+/* ---- the whole job ---------------------------------------------------------------------------------------------- */
+
+/* Runs one stage and adds its wall-clock time to *seconds. */
+static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, double *seconds, Error *error)
+{
+    double start = timing_now();
+    bool done = stage(job, error);
+    *seconds += timing_now() - start;
+    return done;
+}
+
+static bool film_write(RenderJob *job, Error *error)
+{
+    return render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
+}
+
+static int job_run(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    if (!integrator_choose(command->integrator, &job->render, error))
+        return EXIT_USAGE;
+    if (command->output && !render_output_check(command->output, error))
+        return EXIT_FAILED; /* before a scene that may take long to load */
+    if (!stage_run(scene_load, job, &job->load, error))
+        return EXIT_FAILED;
+    if (!settings_override(job, error))
+        return EXIT_USAGE;
+    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error) ||
+        !stage_run(film_render, job, &job->rendering, error) || !stage_run(film_write, job, &job->write, error))
+        return EXIT_FAILED;
+    diagnostics_report(job);
+    summary_report(job);
+    if (command->stats && !stats_output(job, error))
+        return EXIT_FAILED;
+    return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
+}
+
+int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    RenderCommand command;
+    if (!render_options_parse(&command, backends, argc, argv, error))
+        return EXIT_USAGE;
+    if (command.help) {
+        render_options_help(stdout);
+        return EXIT_OK;
+    }
+    log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
+    RenderJob job;
+    memset(&job, 0, sizeof job);
+    job.command = &command;
+    job.start = timing_now();
+    scene_init(&job.scene);
+    int status = job_run(&job, error);
+    if (job.backend)
+        command.backend->close(job.backend);
+    film_destroy(&job.film);
+    scene_destroy(&job.scene);
+    return status;
+}

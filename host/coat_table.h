@@ -1,0 +1,20 @@
+/* Tables of what rough dielectric coats transmit, appended to the scene's `lookup` array. shared/coat.h has the layout. */
+#ifndef TWINLIGHT_COAT_TABLE_H
+#define TWINLIGHT_COAT_TABLE_H
+
+#include "array.h"
+
+#include <stdint.h>
+
+/* Appends the table of a coat with constant roughness and returns its first float in *first, which is what
+ * Material.coat_table wants. alpha_x, alpha_y: of the GGX coat, at least one >= ALPHA_DELTA (a smooth coat needs no
+ * table, but gets a valid one). eta: coat over outside, > 0. Where the coat is anisotropic, T(c) is its least value over
+ * azimuth, so that no direction gains energy. Deterministic; a few milliseconds. Fails only when memory is out or
+ * `lookup` would exceed 32 bits. */
+bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, uint32_t *first, Error *error);
+
+/* The same for every alpha in 0..1 at once, for a coat whose roughness is textured. Larger alphas use alpha = 1, and
+ * anisotropic ones sqrt(alpha_x alpha_y). */
+bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *error);
+
+#endif

@@ -1,0 +1,24 @@
+/* The commands of the program: what main hands them and how they end. */
+#ifndef TWINLIGHT_COMMAND_H
+#define TWINLIGHT_COMMAND_H
+
+#include "backend.h"
+
+/* Exit statuses. */
+#define EXIT_OK 0
+#define EXIT_FAILED 1 /* something outside the program was not as it should be */
+#define EXIT_USAGE 2 /* the command line was not understood */
+#define EXIT_STOPPED 130 /* ended early by SIGINT or SIGTERM, output written */
+
+/* The backends of this build, the default one first. Only main.c fills it. */
+typedef struct BackendTable {
+    const BackendInterface *const *backends;
+    int count;
+} BackendTable;
+
+/* A command gets argv[0] = its own name. It returns an exit status; when that is EXIT_FAILED or EXIT_USAGE, `error`
+ * says why, or is empty when the command's own output has. */
+int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error);
+
+#endif

@@ -1,0 +1,204 @@
+#include "exr.h"
+
+#include "output_file.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <openexr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The library's default; named so that a change of its default does not change our bytes. */
+#define EXR_ZIP_LEVEL 4
+
+typedef struct ExrWriter {
+    OutputFile file;
+    const ExrChannel **channels; /* sorted by name */
+    size_t channel_count;
+    int width, height; /* of the data window */
+    int write_errno; /* of the first write that failed, else 0 */
+    char message[256]; /* the library's last complaint */
+} ExrWriter;
+
+static void exr_message(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    void *user = NULL;
+    if (exr_get_user_data(context, &user) == EXR_ERR_SUCCESS && user) {
+        ExrWriter *writer = user;
+        snprintf(writer->message, sizeof writer->message, "%s",
+                 message ? message : exr_get_default_error_message(code));
+    }
+}
+
+/* pwrite for the library, all of it or an error. */
+static int64_t exr_write_bytes(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
+                               uint64_t offset, exr_stream_error_func_ptr_t report)
+{
+    ExrWriter *writer = user;
+    uint64_t done = 0;
+    while (done < size) {
+        ssize_t n = pwrite(writer->file.descriptor, (const char *)buffer + done, size - done, (off_t)(offset + done));
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0) {
+            writer->write_errno = n < 0 ? errno : EIO;
+            report(context, EXR_ERR_WRITE_IO, "%s", strerror(writer->write_errno));
+            return -1;
+        }
+        done += (uint64_t)n;
+    }
+    return (int64_t)done;
+}
+
+static int channel_compare(const void *a, const void *b)
+{
+    return strcmp((*(const ExrChannel *const *)a)->name, (*(const ExrChannel *const *)b)->name);
+}
+
+/* x0 <= x < x1 as EXR's box, whose ends are inside. */
+static exr_attr_box2i_t box_make(int x0, int y0, int x1, int y1)
+{
+    exr_attr_box2i_t box;
+    box.min.x = x0;
+    box.min.y = y0;
+    box.max.x = x1 - 1;
+    box.max.y = y1 - 1;
+    return box;
+}
+
+static exr_result_t header_write(exr_context_t context, const ExrWriter *writer, int width, int height, const int *crop,
+                                 const ExrAttribute *attributes, size_t attribute_count)
+{
+    int part = 0;
+    exr_attr_box2i_t display = box_make(0, 0, width, height);
+    exr_attr_box2i_t data = box_make(crop[0], crop[1], crop[2], crop[3]);
+    exr_attr_v2f_t center = {.x = 0.0f, .y = 0.0f};
+    exr_result_t result = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_initialize_required_attr(context, part, &display, &data, 1.0f, &center, 1.0f,
+                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
+    for (size_t i = 0; i < writer->channel_count && result == EXR_ERR_SUCCESS; ++i)
+        result = exr_add_channel(context, part, writer->channels[i]->name,
+                                 writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (size_t i = 0; i < attribute_count && result == EXR_ERR_SUCCESS; ++i)
+        result = exr_attr_set_string(context, part, attributes[i].name, attributes[i].value);
+    return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
+}
+
+/* The largest finite half instead of infinity. */
+static float half_range(float x)
+{
+    const float HALF_MAX = 65504.0f;
+    return x > HALF_MAX ? HALF_MAX : x < -HALF_MAX ? -HALF_MAX : x;
+}
+
+/* Points the encoder's channels at lines y ... of the picture. The packing routine takes contiguous planes only, so
+ * the lines are gathered into `plane` (chunk lines x width x channels floats) first. */
+static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder, float *plane, int y, int lines)
+{
+    size_t width = (size_t)writer->width, count = (size_t)lines * width;
+    for (size_t c = 0; c < writer->channel_count; ++c) {
+        const ExrChannel *channel = writer->channels[c];
+        const float *from = channel->data + (size_t)y * width * channel->stride;
+        float *to = plane + c * count;
+        for (size_t i = 0; i < count; ++i)
+            to[i] = channel->half ? half_range(from[i * channel->stride]) : from[i * channel->stride];
+        exr_coding_channel_info_t *info = &encoder->channels[c];
+        assert(strcmp(info->channel_name, channel->name) == 0);
+        info->user_data_type = EXR_PIXEL_FLOAT;
+        info->user_bytes_per_element = 4;
+        info->user_pixel_stride = 4;
+        info->user_line_stride = 4 * writer->width;
+        info->encode_from_ptr = (const uint8_t *)to;
+    }
+}
+
+static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, int first_line)
+{
+    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    int32_t step = 1;
+    bool begun = false;
+    exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &step);
+    float *plane = malloc((size_t)step * (size_t)writer->width * writer->channel_count * sizeof *plane);
+    if (!plane)
+        result = EXR_ERR_OUT_OF_MEMORY;
+    for (int y = 0; y < writer->height && result == EXR_ERR_SUCCESS; y += step) {
+        exr_chunk_info_t chunk;
+        result = exr_write_scanline_chunk_info(context, 0, first_line + y, &chunk);
+        if (result == EXR_ERR_SUCCESS)
+            result = begun ? exr_encoding_update(context, 0, &chunk, &encoder)
+                           : exr_encoding_initialize(context, 0, &chunk, &encoder);
+        if (result != EXR_ERR_SUCCESS)
+            break;
+        chunk_gather(writer, &encoder, plane, y, chunk.height);
+        if (!begun)
+            result = exr_encoding_choose_default_routines(context, 0, &encoder);
+        begun = true;
+        if (result == EXR_ERR_SUCCESS)
+            result = exr_encoding_run(context, 0, &encoder);
+    }
+    exr_encoding_destroy(context, &encoder);
+    free(plane);
+    return result;
+}
+
+static bool channels_check(const ExrWriter *writer, const char *path, Error *error)
+{
+    for (size_t i = 1; i < writer->channel_count; ++i)
+        if (strcmp(writer->channels[i - 1]->name, writer->channels[i]->name) == 0)
+            return error_set(error, "cannot write %s: two channels are named \"%s\"", path, writer->channels[i]->name);
+    return true;
+}
+
+static bool exr_write_open(ExrWriter *writer, const char *path, int width, int height, const int *crop,
+                           const ExrAttribute *attributes, size_t attribute_count, Error *error)
+{
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = exr_message;
+    setup.user_data = writer;
+    setup.write_fn = exr_write_bytes;
+    exr_context_t context = NULL;
+    exr_result_t result = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
+    if (result == EXR_ERR_SUCCESS)
+        result = header_write(context, writer, width, height, crop, attributes, attribute_count);
+    if (result == EXR_ERR_SUCCESS)
+        result = chunks_write(context, writer, crop[1]);
+    exr_result_t finished = context ? exr_finish(&context) : EXR_ERR_SUCCESS;
+    if (result == EXR_ERR_SUCCESS)
+        result = finished;
+    if (result == EXR_ERR_SUCCESS && !writer->write_errno)
+        return true;
+    return error_set(error, "cannot write %s: %s", path,
+                     writer->write_errno  ? strerror(writer->write_errno)
+                     : writer->message[0] ? writer->message
+                                          : exr_get_default_error_message(result));
+}
+
+bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
+               const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error)
+{
+    const int whole[4] = {0, 0, width, height};
+    const int *window = crop ? crop : whole;
+    ExrWriter writer = {.file = {.descriptor = -1},
+                        .channel_count = channel_count,
+                        .width = window[2] - window[0],
+                        .height = window[3] - window[1]};
+    assert(channel_count > 0 && writer.width > 0 && writer.height > 0);
+    writer.channels = calloc(channel_count, sizeof *writer.channels);
+    if (!writer.channels)
+        return error_memory(error, channel_count * sizeof *writer.channels, "the channels of an EXR file");
+    for (size_t i = 0; i < channel_count; ++i)
+        writer.channels[i] = &channels[i];
+    qsort(writer.channels, channel_count, sizeof *writer.channels, channel_compare);
+    bool good = channels_check(&writer, path, error) && output_file_begin(&writer.file, path, error) &&
+                exr_write_open(&writer, path, width, height, window, attributes, attribute_count, error) &&
+                output_file_commit(&writer.file, error);
+    output_file_cancel(&writer.file);
+    free(writer.channels);
+    return good;
+}

@@ -1,0 +1,123 @@
+#include "image.h"
+
+#include "color.h"
+#include "image_formats.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#define HEADER_SIZE 26 /* enough for every signature, and for PNG's bit depth at byte 24 */
+
+bool image_error(Error *error, const char *path, const char *why)
+{
+    return error_set(error, "cannot read the image %s: %s", path, why);
+}
+
+bool image_size_check(const char *path, long long width, long long height, Error *error)
+{
+    if (width < 1 || height < 1)
+        return error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, width, height);
+    if (width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX || width * height > IMAGE_PIXELS_MAX) {
+        error_set(error, "the image %s is too large: %lld x %lld pixels", path, width, height);
+        return error_fix(error, "use one of at most %u pixels, no side longer than %d", IMAGE_PIXELS_MAX,
+                         IMAGE_SIDE_MAX);
+    }
+    return true;
+}
+
+bool image_allocate_float(const char *path, long long width, long long height, int channels, Image *image, Error *error)
+{
+    if (!image_size_check(path, width, height, error))
+        return false;
+    size_t count = (size_t)width * (size_t)height * (size_t)channels;
+    *image = (Image){.width = (int)width, .height = (int)height, .channels = channels, .is_float = true};
+    image->data = calloc(count, sizeof(float));
+    return image->data || error_memory(error, count * sizeof(float), path);
+}
+
+static bool ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), ending_length = strlen(ending);
+    return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
+}
+
+/* TGA has no signature: what its header must fulfil. Every other format that stb_image knows fails this. */
+static bool is_tga(const unsigned char *header, size_t size)
+{
+    return size >= 18 && header[1] <= 1 && ((header[2] >= 1 && header[2] <= 3) || (header[2] >= 9 && header[2] <= 11));
+}
+
+static bool image_read_kind(FILE *file, const char *path, const unsigned char *header, size_t size, Image *image,
+                            Error *error)
+{
+    if (size >= 4 && memcmp(header, "\x76\x2f\x31\x01", 4) == 0)
+        return image_read_exr(file, path, image, error);
+    if (size >= 3 && (memcmp(header, "PF", 2) == 0 || memcmp(header, "Pf", 2) == 0))
+        return image_read_pfm(file, path, image, error);
+    if (size == HEADER_SIZE && memcmp(header, "\x89PNG\r\n\x1a\n", 8) == 0)
+        return image_read_stb(file, path, STB_PNG, header[24] == 16, image, error);
+    if (size >= 3 && memcmp(header, "\xff\xd8\xff", 3) == 0)
+        return image_read_stb(file, path, STB_JPEG, false, image, error);
+    if (size >= 2 && memcmp(header, "#?", 2) == 0)
+        return image_read_stb(file, path, STB_HDR, false, image, error);
+    if (ends_with(path, ".tga") && is_tga(header, size))
+        return image_read_stb(file, path, STB_TGA, false, image, error);
+    image_error(error, path, size == 0 ? "the file is empty" : "it is of no kind that is known, or truncated");
+    return error_fix(error, "use PNG, JPEG, TGA, HDR, EXR or PFM");
+}
+
+bool image_read(const char *path, Image *image, Error *error)
+{
+    unsigned char header[HEADER_SIZE];
+    struct stat status;
+    *image = (Image){0};
+    FILE *file = fopen(path, "rb");
+    if (!file || fstat(fileno(file), &status) != 0) {
+        error_errno(error, "open the image", path);
+        if (file)
+            fclose(file);
+        return false;
+    }
+    bool good = S_ISREG(status.st_mode) || image_error(error, path, "it is not a file");
+    if (good) {
+        size_t size = fread(header, 1, sizeof header, file);
+        rewind(file);
+        good = image_read_kind(file, path, header, size, image, error);
+    }
+    fclose(file);
+    if (!good)
+        image_destroy(image);
+    return good;
+}
+
+void image_destroy(Image *image)
+{
+    free(image->data);
+    *image = (Image){0};
+}
+
+float image_value(const Image *image, size_t i)
+{
+    if (image->is_float)
+        return ((const float *)image->data)[i];
+    return (float)((const unsigned char *)image->data)[i] / 255.0f;
+}
+
+bool image_linear_rgb(const Image *image, float **rgb, Error *error)
+{
+    size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+    float *out = malloc(pixels * 3 * sizeof *out);
+    if (!out)
+        return error_memory(error, pixels * 3 * sizeof *out, "an image");
+    for (size_t i = 0; i < pixels; ++i) {
+        for (size_t c = 0; c < 3; ++c) {
+            float value = image_value(image, i * channels + (channels >= 3 ? c : 0));
+            out[3 * i + c] = image->srgb_encoded ? (float)color_srgb_decode((double)value) : value;
+        }
+    }
+    *rgb = out;
+    return true;
+}

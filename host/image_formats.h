@@ -1,0 +1,25 @@
+/* The decoders behind image_read. Each gets the file open at its start. */
+#ifndef TWINLIGHT_IMAGE_FORMATS_H
+#define TWINLIGHT_IMAGE_FORMATS_H
+
+#include "image.h"
+
+#include <stdio.h>
+
+typedef enum StbKind { STB_PNG, STB_JPEG, STB_TGA, STB_HDR } StbKind;
+
+bool image_read_exr(FILE *file, const char *path, Image *image, Error *error);
+bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error);
+bool image_read_stb(FILE *file, const char *path, StbKind kind, bool sixteen_bits, Image *image, Error *error);
+
+/* "cannot read PATH: WHY" */
+bool image_error(Error *error, const char *path, const char *why);
+
+/* Fails when a picture of this size is empty or beyond IMAGE_PIXELS_MAX. */
+bool image_size_check(const char *path, long long width, long long height, Error *error);
+
+/* Sets the members and allocates zeroed float data after image_size_check. */
+bool image_allocate_float(const char *path, long long width, long long height, int channels, Image *image,
+                          Error *error);
+
+#endif

@@ -1,0 +1,108 @@
+#include "png_write.h"
+
+#include "color.h"
+#include "output_file.h"
+
+#include <errno.h>
+#include <math.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct PngWriter {
+    int descriptor;
+    char message[256]; /* why it failed */
+} PngWriter;
+
+static void png_failed(png_structp png, png_const_charp message)
+{
+    PngWriter *writer = png_get_error_ptr(png);
+    snprintf(writer->message, sizeof writer->message, "%s", message);
+    longjmp(png_jmpbuf(png), 1);
+}
+
+static void png_warned(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+static void png_bytes(png_structp png, png_bytep bytes, png_size_t size)
+{
+    PngWriter *writer = png_get_io_ptr(png);
+    while (size > 0) {
+        ssize_t n = write(writer->descriptor, bytes, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            png_error(png, n < 0 ? strerror(errno) : "nothing written");
+        bytes += n;
+        size -= (size_t)n;
+    }
+}
+
+static void png_flush_nothing(png_structp png)
+{
+    (void)png;
+}
+
+/* One linear value to a byte: the code nearest to it; NaN and what is below 0 are 0. */
+static unsigned char byte_encode(float linear, double exposure)
+{
+    double x = (double)linear * exposure;
+    if (!(x > 0.0))
+        return 0;
+    return (unsigned char)(color_srgb_encode(x < 1.0 ? x : 1.0) * 255.0 + 0.5);
+}
+
+/* Everything between a png_struct and its end; longjmps out on failure, so it owns no resources. */
+static void png_rows_write(png_structp png, png_infop info, unsigned char *row, const float *rgb, int width, int height,
+                           double exposure)
+{
+    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(png, info);
+    size_t values = 3 * (size_t)width;
+    for (int y = 0; y < height; ++y) {
+        for (size_t i = 0; i < values; ++i)
+            row[i] = byte_encode(rgb[(size_t)y * values + i], exposure);
+        png_write_row(png, row);
+    }
+    png_write_end(png, info);
+}
+
+static bool png_encode(PngWriter *writer, const float *rgb, int width, int height, double exposure)
+{
+    unsigned char *volatile row = malloc(3 * (size_t)width);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, writer, png_failed, png_warned);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    volatile bool good = false;
+    if (!row || !info) {
+        snprintf(writer->message, sizeof writer->message, "out of memory");
+    } else if (setjmp(png_jmpbuf(png)) == 0) {
+        png_set_write_fn(png, writer, png_bytes, png_flush_nothing);
+        png_rows_write(png, info, row, rgb, width, height, exposure);
+        good = true;
+    }
+    png_destroy_write_struct(&png, &info);
+    free(row);
+    return good;
+}
+
+bool png_write(const char *path, const float *rgb, int width, int height, float exposure_stops, Error *error)
+{
+    OutputFile file;
+    if (!output_file_begin(&file, path, error))
+        return false;
+    PngWriter writer = {.descriptor = file.descriptor};
+    bool good = png_encode(&writer, rgb, width, height, exp2((double)exposure_stops));
+    if (!good)
+        error_set(error, "cannot write %s: %s", path, writer.message);
+    good = good && output_file_commit(&file, error);
+    output_file_cancel(&file);
+    return good;
+}

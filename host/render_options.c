@@ -1,0 +1,192 @@
+#include "render_options.h"
+
+#include "option_values.h"
+#include "options.h"
+
+#include <string.h>
+
+enum {
+    OPTION_OUTPUT,
+    OPTION_INTEGRATOR,
+    OPTION_SAMPLES,
+    OPTION_TIME,
+    OPTION_BACKEND,
+    OPTION_THREADS,
+    OPTION_SEED,
+    OPTION_MAX_DEPTH,
+    OPTION_RESOLUTION,
+    OPTION_CROP,
+    OPTION_SAVE_EVERY,
+    OPTION_PNG,
+    OPTION_NO_PNG,
+    OPTION_EXPOSURE,
+    OPTION_STATS,
+    OPTION_LENIENT,
+    OPTION_QUIET,
+    OPTION_HELP
+};
+
+static const OptionSpec SPECS[] = {
+    [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
+    [OPTION_INTEGRATOR] = {"integrator", 0, "NAME", "algorithm: pt, path tracing (default)"},
+    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
+    [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
+    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default)"},
+    [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
+    [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
+    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
+    [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
+    [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
+    [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
+    [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
+    [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
+    [OPTION_STATS] = {"stats", 0, "FILE.json", "write what was rendered, how fast, and what was noticed"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
+    [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
+    [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
+};
+
+static const OptionTable TABLE = {
+    "render",
+    "render [OPTION]... SCENE",
+    "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
+    SPECS,
+    sizeof SPECS / sizeof SPECS[0],
+    "SIGINT and SIGTERM end the rendering early; what is there is written and the exit status is 130.\n"
+    "More: man twinlight-render.",
+};
+
+void render_options_help(FILE *stream)
+{
+    options_help(&TABLE, stream);
+}
+
+static bool backend_choose(const BackendTable *backends, const char *name, const BackendInterface **chosen,
+                           Error *error)
+{
+    char names[256] = "";
+    for (int i = 0; i < backends->count; ++i) {
+        if (strcmp(backends->backends[i]->name, name) == 0) {
+            *chosen = backends->backends[i];
+            return true;
+        }
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", backends->backends[i]->name);
+    }
+    error_set(error, "--backend=%s: this build has no such backend", name);
+    return error_fix(error, "use one of: %s", names);
+}
+
+/* Parsing in progress. */
+typedef struct Parse {
+    RenderCommand *command;
+    const BackendTable *backends;
+} Parse;
+
+/* The options whose value is a number. */
+static bool number_set(RenderCommand *command, int index, const char *value, Error *error)
+{
+    uint64_t whole = 0;
+    const char *name = SPECS[index].name;
+    switch (index) {
+    case OPTION_SAMPLES:
+        return option_whole(name, value, 1, 0x7fffffff, &command->samples, error);
+    case OPTION_SEED:
+        return option_whole(name, value, 0, UINT64_MAX, &command->seed, error);
+    case OPTION_THREADS:
+        if (!option_whole(name, value, 1, 1024, &whole, error))
+            return false;
+        command->threads = (int)whole;
+        return true;
+    case OPTION_MAX_DEPTH:
+        if (!option_whole(name, value, 1, 65535, &whole, error))
+            return false;
+        command->max_depth = (int)whole;
+        return true;
+    default:
+        return option_number(name, value, -64.0, 64.0, &command->exposure, error);
+    }
+}
+
+static bool name_ends(const char *name, const char *ending)
+{
+    size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
+}
+
+static bool path_set(const char **path, int index, const char *value, const char *ending, Error *error)
+{
+    *path = value;
+    if (!ending || name_ends(value, ending))
+        return true;
+    error_set(error, "--%s=%s: the name does not end in %s", SPECS[index].name, value, ending);
+    return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
+}
+
+static bool option_set(void *context, int index, const char *value, Error *error)
+{
+    Parse *parse = context;
+    RenderCommand *command = parse->command;
+    switch (index) {
+    case OPTION_OUTPUT:
+        return path_set(&command->output, index, value, ".exr", error);
+    case OPTION_STATS:
+        return path_set(&command->stats, index, value, NULL, error);
+    case OPTION_PNG:
+        command->png = true;
+        return !value || path_set(&command->png_path, index, value, ".png", error);
+    case OPTION_NO_PNG:
+        command->png = false;
+        return true;
+    case OPTION_INTEGRATOR:
+        command->integrator = value;
+        return true;
+    case OPTION_BACKEND:
+        return backend_choose(parse->backends, value, &command->backend, error);
+    case OPTION_TIME:
+        return option_seconds("time", value, &command->seconds, error);
+    case OPTION_SAVE_EVERY:
+        return option_seconds("save-every", value, &command->save_every, error);
+    case OPTION_RESOLUTION:
+        return option_resolution("resolution", value, command->resolution, error);
+    case OPTION_CROP:
+        command->has_crop = true;
+        return option_crop("crop", value, command->crop, error);
+    case OPTION_LENIENT:
+        command->lenient = true;
+        return true;
+    case OPTION_QUIET:
+        command->quiet = true;
+        return true;
+    case OPTION_HELP:
+        command->help = true;
+        return true;
+    default:
+        return number_set(command, index, value, error);
+    }
+}
+
+bool render_options_parse(RenderCommand *command, const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    Parse parse = {command, backends};
+    int first = 0;
+    memset(command, 0, sizeof *command);
+    command->png = true;
+    command->integrator = "pt";
+    command->backend = backends->count > 0 ? backends->backends[0] : NULL;
+    if (!options_parse(&TABLE, argc, argv, option_set, &parse, &first, error))
+        return false;
+    if (command->help)
+        return true;
+    if (first >= argc) {
+        error_set(error, "no scene is given");
+        return error_fix(error, "write twinlight render SCENE, e.g. twinlight render scenes/cornell.pbrt");
+    }
+    if (first + 1 < argc) {
+        error_set(error, "more than one scene: %s and %s", argv[first], argv[first + 1]);
+        return error_fix(error, "render one scene at a time; options come as --name=value");
+    }
+    command->scene = argv[first];
+    return true;
+}

@@ -1,0 +1,96 @@
+#include "render_output.h"
+
+#include "config.h"
+
+#include "exr.h"
+#include "output_file.h"
+#include "png_write.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+static const char *path_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* target = `path` with its ending (if it has one) replaced by `ending`. */
+static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
+{
+    const char *name = path_file_name(path);
+    const char *dot = strrchr(name, '.');
+    size_t stem = dot && dot != name ? (size_t)(dot - path) : strlen(path);
+    if (stem + strlen(ending) >= PATH_MAX) {
+        error_set(error, "the file name is too long: %.200s...", path);
+        return error_fix(error, "give a shorter one with --output");
+    }
+    memcpy(target, path, stem);
+    strcpy(target + stem, ending);
+    return true;
+}
+
+bool render_output_name(RenderOutput *output, const Scene *scene, const char *scene_file, const char *exr,
+                        bool want_png, const char *png, double exposure, Error *error)
+{
+    const char *film_name = path_file_name(scene->settings.output);
+    const char *base = exr ? exr : film_name[0] ? film_name : path_file_name(scene_file);
+    output->png[0] = '\0';
+    output->film_scale = scene->settings.film_scale;
+    output->exposure = (float)exposure;
+    if (!path_with_ending(output->exr, base, ".exr", error))
+        return false;
+    return !want_png || path_with_ending(output->png, png ? png : output->exr, ".png", error);
+}
+
+bool render_output_check(const char *path, Error *error)
+{
+    struct stat status;
+    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+        error_set(error, "cannot write %s: it is a folder", path);
+        return error_fix(error, "give the name of a file in it");
+    }
+    OutputFile file = {.descriptor = -1};
+    bool writable = output_file_begin(&file, path, error);
+    output_file_cancel(&file);
+    return writable;
+}
+
+static bool exr_output_write(const RenderOutput *output, const Film *film, const float *rgb, double samples_per_pixel,
+                             Error *error)
+{
+    char samples[32], seed[32], depth[32];
+    snprintf(samples, sizeof samples, "%.9g", samples_per_pixel);
+    snprintf(seed, sizeof seed, "%" PRIu64, output->seed);
+    snprintf(depth, sizeof depth, "%d", output->max_depth);
+    /* Nothing of time, machine or threads: the same picture is the same file. */
+    const ExrAttribute attributes[] = {
+        {"integrator", output->integrator},
+        {"maxDepth", depth},
+        {"renderer", PACKAGE_NAME " " PACKAGE_VERSION},
+        {"samples", samples},
+        {"scene", path_file_name(output->scene_file)},
+        {"seed", seed},
+    };
+    const ExrChannel channels[] = {{"B", rgb + 2, 3, false}, {"G", rgb + 1, 3, false}, {"R", rgb, 3, false}};
+    return exr_write(output->exr, channels, 3, film->width, film->height, film->crop, attributes,
+                     sizeof attributes / sizeof attributes[0], error);
+}
+
+bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
+{
+    int width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
+    size_t bytes = 3 * sizeof(float) * (size_t)width * (size_t)height;
+    float *rgb = malloc(bytes);
+    if (!rgb)
+        return error_memory(error, bytes, "the picture");
+    film_resolve(film, output->film_scale, rgb);
+    bool written = exr_output_write(output, film, rgb, samples_per_pixel, error) &&
+                   (!output->png[0] || png_write(output->png, rgb, width, height, output->exposure, error));
+    free(rgb);
+    return written;
+}

@@ -1,0 +1,34 @@
+/* Where a rendering goes: an OpenEXR image and a PNG beside it, each written to a temporary file that then takes the
+ * name, so that a reader never sees half an image. */
+#ifndef TWINLIGHT_RENDER_OUTPUT_H
+#define TWINLIGHT_RENDER_OUTPUT_H
+
+#include "film.h"
+#include "scene.h"
+
+#include <limits.h>
+
+typedef struct RenderOutput {
+    char exr[PATH_MAX];
+    char png[PATH_MAX]; /* "": none */
+    float film_scale; /* factor on every pixel */
+    float exposure; /* stops, PNG only */
+    /* What the EXR header says besides the picture. */
+    const char *scene_file;
+    const char *integrator;
+    uint64_t seed;
+    int max_depth;
+} RenderOutput;
+
+/* Sets the names: `exr` as given, or the file name (without folders) of the scene's Film, or the scene file's name, in
+ * the current folder; `png` as given or beside the EXR, none when !want_png. Also film_scale and exposure. */
+bool render_output_name(RenderOutput *output, const Scene *scene, const char *scene_file, const char *exr,
+                        bool want_png, const char *png, double exposure, Error *error);
+
+/* Fails when a file of this name could not be created: its folder is missing or not writable, or it is a folder. */
+bool render_output_check(const char *path, Error *error);
+
+/* Writes both files. `samples_per_pixel` goes to the header. */
+bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error);
+
+#endif

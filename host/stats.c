@@ -1,0 +1,110 @@
+#include "stats.h"
+
+#include "config.h"
+
+#include "json.h"
+#include "log.h"
+#include "timing.h"
+
+#include <stdio.h>
+
+static void stats_scene(JsonWriter *json, const RenderStats *stats)
+{
+    const Scene *scene = stats->scene;
+    const SceneSettings *settings = &scene->settings;
+    json_object_begin(json, "scene");
+    json_string(json, "file", stats->scene_file);
+    json_integer(json, "width", settings->width);
+    json_integer(json, "height", settings->height);
+    json_array_begin(json, "crop");
+    for (int i = 0; i < 4; ++i)
+        json_integer(json, NULL, settings->crop[i]);
+    json_array_end(json);
+    json_integer(json, "max_depth", settings->max_depth);
+    json_unsigned(json, "primitives", scene->primitive_count);
+    json_unsigned(json, "instances", scene->instances.count);
+    json_unsigned(json, "materials", scene->materials.count);
+    json_unsigned(json, "lights", scene->lights.count);
+    json_unsigned(json, "bytes", scene_bytes(scene));
+    json_object_end(json);
+}
+
+static void stats_seconds(JsonWriter *json, const RenderStats *stats)
+{
+    json_object_begin(json, "seconds");
+    json_number(json, "load", stats->load);
+    json_number(json, "build", stats->build);
+    json_number(json, "render", stats->render);
+    json_number(json, "write", stats->write);
+    json_number(json, "total", stats->total);
+    json_object_end(json);
+}
+
+static void stats_rays(JsonWriter *json, const RenderResult *result)
+{
+    uint64_t all = result->backend.closest_rays + result->backend.shadow_rays;
+    json_object_begin(json, "rays");
+    json_unsigned(json, "closest", result->backend.closest_rays);
+    json_unsigned(json, "shadow", result->backend.shadow_rays);
+    json_number(json, "seconds_all_threads", result->backend.ray_seconds);
+    json_number(json, "per_second", result->seconds > 0.0 ? (double)all / result->seconds : 0.0);
+    json_object_end(json);
+}
+
+static void stats_diagnostics(JsonWriter *json, const RenderStats *stats)
+{
+    const RenderResult *result = stats->result;
+    const SceneCounts *counts = &stats->scene->counts;
+    json_object_begin(json, "diagnostics");
+    json_unsigned(json, "film_saturated", stats->film->saturated);
+    json_unsigned(json, "film_not_finite", stats->film->not_finite);
+    json_unsigned(json, "degenerate_triangles", counts->degenerate_triangles);
+    json_unsigned(json, "zero_area_lights", counts->zero_area_lights);
+    json_unsigned(json, "substitutions", counts->substitutions);
+    json_unsigned(json, "warnings", log_warning_count());
+    json_object_begin(json, "kernels");
+    for (int i = 0; i < result->diagnostic_count; ++i)
+        json_unsigned(json, result->diagnostic_names[i], result->diagnostics[i]);
+    json_object_end(json);
+    json_object_end(json);
+}
+
+static void stats_print(FILE *stream, const RenderStats *stats)
+{
+    const RenderResult *result = stats->result;
+    JsonWriter json;
+    json_init(&json, stream);
+    json_object_begin(&json, NULL);
+    json_integer(&json, "format", STATS_FORMAT);
+    json_string(&json, "version", PACKAGE_VERSION);
+    stats_scene(&json, stats);
+    json_string(&json, "integrator", stats->integrator);
+    json_string(&json, "backend", stats->backend);
+    json_string(&json, "device", result->backend.device);
+    json_unsigned(&json, "seed", stats->seed);
+    json_integer(&json, "threads", result->backend.threads);
+    json_number(&json, "samples_per_pixel", result->samples_per_pixel);
+    json_unsigned(&json, "samples", result->samples);
+    json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
+    json_bool(&json, "stopped", result->stopped);
+    stats_seconds(&json, stats);
+    stats_rays(&json, result);
+    json_unsigned(&json, "peak_memory_bytes", timing_peak_memory());
+    json_unsigned(&json, "backend_bytes", result->backend.bytes);
+    stats_diagnostics(&json, stats);
+    json_string(&json, "image", stats->exr);
+    json_string(&json, "png", stats->png[0] ? stats->png : NULL);
+    json_object_end(&json);
+}
+
+bool stats_write(const char *path, const RenderStats *stats, Error *error)
+{
+    FILE *stream = fopen(path, "w");
+    if (!stream)
+        return error_errno(error, "write", path);
+    stats_print(stream, stats);
+    bool failed = ferror(stream) != 0;
+    if (fclose(stream) != 0 || failed)
+        return error_errno(error, "write", path);
+    return true;
+}

@@ -1,0 +1,26 @@
+/* The --stats file: what was rendered, how fast, and what was noticed. twinlight-render(1) documents the keys; they
+ * are a promise to scripts: add keys, never rename or remove one without raising STATS_FORMAT. */
+#ifndef TWINLIGHT_STATS_H
+#define TWINLIGHT_STATS_H
+
+#include "render.h"
+
+#define STATS_FORMAT 1
+
+typedef struct RenderStats {
+    const char *scene_file;
+    const Scene *scene;
+    const Film *film;
+    const char *integrator;
+    const char *backend;
+    uint64_t seed;
+    const char *exr;
+    const char *png; /* "": none */
+    const RenderResult *result;
+    /* Seconds of wall-clock time. */
+    double load, build, render, write, total;
+} RenderStats;
+
+bool stats_write(const char *path, const RenderStats *stats, Error *error);
+
+#endif

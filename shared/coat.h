@@ -1,0 +1,106 @@
+/* Transmission through the dielectric coat of coateddiffuse: closed form where it is smooth, a table where it is rough.
+ *
+ * T(w) is the fraction of the light arriving from direction w outside that the interface sends inside. Averaged over a
+ * diffuse field, T_mean = integral of T(c) 2 c dc over 0..1. By reciprocity of the interface the fraction of a diffuse
+ * field *inside* that gets out is T_mean / eta^2; the rest, R_i, goes back to the base.
+ *
+ * Layout of a table in `lookup`, from Bsdf.coat_table on (all floats):
+ *     [0]                          rows
+ *     [1 + r * COAT_ROW + k]       k < COAT_CELLS: T(c) of row r at c = k / (COAT_CELLS - 1), linear in between
+ *     [1 + r * COAT_ROW + COAT_CELLS]  1 - R_i of row r, from the integral of the linear interpolant, so that what the
+ *                                  table says is transmitted is what comes back out
+ * One row: the coat's own alphas. COAT_ALPHA_ROWS rows (textured roughness): row r is isotropic with
+ * alpha = r / (COAT_ALPHA_ROWS - 1), row 0 smooth; linear in between, clamped above 1. host/coat_table.c builds both. */
+#ifndef TWINLIGHT_COAT_H
+#define TWINLIGHT_COAT_H
+
+#include "fresnel.h"
+#include "scene_view.h"
+
+#define COAT_CELLS 64u
+#define COAT_ROW (COAT_CELLS + 1u)
+#define COAT_ALPHA_ROWS 17u
+
+/* Largest eta of the closed form below; beyond it 1 - R_i is overestimated, which darkens. */
+#define COAT_ETA_MAX 4.0f
+
+/* The coat at one shading point: T seen from two directions, and 1 - R_i. */
+typedef struct CoatTransmission {
+    float t_o, t_i;
+    float escape;
+} CoatTransmission;
+
+/* T_mean of a smooth interface with eta >= 1, to a relative 1e-4: 1 - q^2 p(q), q = sqrt((eta - 1) / (eta + 1)), with p
+ * the polynomial through eight Chebyshev points of the exact integral (Walsh 1926; see tests/test_bsdf_coated.c). */
+SHARED_FUNCTION float coat_smooth_mean(float eta)
+{
+    float clamped = float_min(eta, COAT_ETA_MAX);
+    float q = float_sqrt((clamped - 1.0f) / (clamped + 1.0f));
+    float p = 20.6582987f;
+    p = p * q - 67.0175121f;
+    p = p * q + 91.2032134f;
+    p = p * q - 67.0965884f;
+    p = p * q + 28.7681031f;
+    p = p * q - 5.87618604f;
+    p = p * q - 0.205641311f;
+    p = p * q + 0.667637352f;
+    return 1.0f - q * q * p;
+}
+
+/* 1 - R_i of a smooth coat: T_mean(eta) / eta^2, which for eta < 1 is T_mean(1 / eta) by the same reciprocity. */
+SHARED_FUNCTION float coat_smooth_escape(float eta)
+{
+    if (eta < 1.0f)
+        return coat_smooth_mean(1.0f / eta);
+    return coat_smooth_mean(eta) / (eta * eta);
+}
+
+SHARED_FUNCTION float coat_row_transmission(__global const float *row, float cosine)
+{
+    float position = float_clamp(cosine, 0.0f, 1.0f) * (float)(COAT_CELLS - 1u);
+    uint cell = (uint)position;
+    if (cell > COAT_CELLS - 2u)
+        cell = COAT_CELLS - 2u;
+    float t = position - (float)cell;
+    return (1.0f - t) * row[cell] + t * row[cell + 1u];
+}
+
+SHARED_FUNCTION CoatTransmission coat_row_lookup(__global const float *row, float cos_o, float cos_i)
+{
+    CoatTransmission coat;
+    coat.t_o = coat_row_transmission(row, cos_o);
+    coat.t_i = coat_row_transmission(row, cos_i);
+    coat.escape = row[COAT_CELLS];
+    return coat;
+}
+
+/* `alpha_squared` = alpha_x alpha_y is read only by tables of several rows. Cosines in 0..1. */
+SHARED_FUNCTION CoatTransmission coat_table_lookup(__global const float *table, float alpha_squared, float cos_o,
+                                                   float cos_i)
+{
+    __global const float *rows = table + 1;
+    if (table[0] < 2.0f)
+        return coat_row_lookup(rows, cos_o, cos_i);
+    float position = float_sqrt(float_clamp(alpha_squared, 0.0f, 1.0f)) * (float)(COAT_ALPHA_ROWS - 1u);
+    uint cell = (uint)position;
+    if (cell > COAT_ALPHA_ROWS - 2u)
+        cell = COAT_ALPHA_ROWS - 2u;
+    float t = position - (float)cell;
+    CoatTransmission a = coat_row_lookup(rows + cell * COAT_ROW, cos_o, cos_i);
+    CoatTransmission b = coat_row_lookup(rows + (cell + 1u) * COAT_ROW, cos_o, cos_i);
+    a.t_o = (1.0f - t) * a.t_o + t * b.t_o;
+    a.t_i = (1.0f - t) * a.t_i + t * b.t_i;
+    a.escape = (1.0f - t) * a.escape + t * b.escape;
+    return a;
+}
+
+SHARED_FUNCTION CoatTransmission coat_smooth(float eta, float cos_o, float cos_i)
+{
+    CoatTransmission coat;
+    coat.t_o = 1.0f - fresnel_dielectric(cos_o, eta);
+    coat.t_i = 1.0f - fresnel_dielectric(cos_i, eta);
+    coat.escape = coat_smooth_escape(eta);
+    return coat;
+}
+
+#endif

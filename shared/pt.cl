@@ -1,0 +1,242 @@
+/* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
+ * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
+ * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+#include "bsdf.h"
+#include "camera.h"
+#include "diagnostics.h"
+#include "light.h"
+#include "material.h"
+#include "mis.h"
+#include "path_random.h"
+#include "path_state.h"
+#include "pixel_filter.h"
+#include "ray.h"
+#include "surface.h"
+
+/* The first vertices always survive. */
+#define ROULETTE_FIRST_DEPTH 2u
+
+/* From: nothing. To: the path's first ray, throughput 1. */
+__kernel void pt_start_paths(__global const FrameParams *frame, __global const uint *geometry,
+                             __global const uint *tables, __global const uint *texels, __global uint *paths,
+                             __global uint *rays, __global uint *shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
+    uint crop_pixels = crop_width * crop_height, item = frame->first_item + t;
+    uint place = (uint)((ulong)(item % crop_pixels) * frame->pixel_stride % crop_pixels);
+    uint x = frame->crop_x0 + place % crop_width, y = frame->crop_y0 + place / crop_width;
+    uint pixel = y * frame->width + x, sample = frame->sample_index + item / crop_pixels;
+    Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
+    float weight;
+    Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
+    Vec2 film = vec2((float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
+    Ray ray = camera_ray(&frame->camera, film, (float)frame->width, (float)frame->height,
+                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    ray_store(rays, stride, t, ray);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    state_store(paths, stride, PATH_PIXEL, t, pixel);
+    state_store(paths, stride, PATH_SAMPLE, t, sample);
+    state_store(paths, stride, PATH_DEPTH, t, 1u);
+    state_store(paths, stride, PATH_FLAGS, t, PATH_FLAG_DELTA);
+    state_store_float(paths, stride, PATH_WEIGHT, t, weight);
+    state_store_vec3(paths, stride, PATH_BETA, t, vec3_splat(1.0f));
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
+    state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
+    state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
+    state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
+}
+
+SHARED_FUNCTION void path_end(__global uint *paths, __global uint *rays, uint stride, uint t)
+{
+    state_store(paths, stride, PATH_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+SHARED_FUNCTION void path_add_radiance(__global uint *paths, uint stride, uint t, Vec3 radiance)
+{
+    Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
+}
+
+/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
+SHARED_FUNCTION Vec3 path_environment(const SceneView *scene, uint flags, float pdf_w, Vec3 d)
+{
+    Vec3 sum = vec3_splat(0.0f);
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        uint light = scene->infinite_lights[i];
+        Vec3 radiance = environment_light_radiance(scene, light, d);
+        float weight = 1.0f;
+        if ((flags & PATH_FLAG_DELTA) == 0u)
+            weight = mis_power(pdf_w, scene->lights[light].select_pdf * environment_pdf_w(scene, light, d));
+        sum = vec3_mad(sum, weight, radiance);
+    }
+    return sum;
+}
+
+/* The same for the area light at `surface`. */
+SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flags, float pdf_w, Vec3 from,
+                                   const Surface *surface, Vec3 d)
+{
+    Vec3 radiance = light_emitted(scene, light, surface->ng, vec3_negate(d));
+    if ((flags & PATH_FLAG_DELTA) != 0u || vec3_is_zero(radiance))
+        return radiance;
+    float pdf_light = scene->lights[light].select_pdf * light_pdf_w(scene, light, from, d, surface);
+    return vec3_scale(radiance, mis_power(pdf_w, pdf_light));
+}
+
+/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
+__kernel void pt_shade_hits(__global const FrameParams *frame, __global const uint *geometry,
+                            __global const uint *tables, __global const uint *texels, __global uint *paths,
+                            __global uint *rays, __global const uint *hits)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Ray ray = ray_load(rays, stride, t);
+    Hit hit = hit_load(hits, stride, t);
+    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
+    uint flags = state_load(paths, stride, PATH_FLAGS, t);
+    float pdf_w = state_load_float(paths, stride, PATH_PDF_W, t);
+    if (hit.primitive == NONE) {
+        if (SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT))
+            path_add_radiance(paths, stride, t, vec3_mul(beta, path_environment(&scene, flags, pdf_w, ray.d)));
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    Surface surface = surface_from_hit(&scene, &ray, hit);
+    uint first_light = scene.shapes[surface.shape].first_light;
+    if (SCENE_HAS(&scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
+        uint light = first_light + hit.primitive - scene.shapes[surface.shape].first_primitive;
+        Vec3 from = state_load_vec3(paths, stride, PATH_POINT, t);
+        path_add_radiance(paths, stride, t,
+                          vec3_mul(beta, path_emission(&scene, light, flags, pdf_w, from, &surface, ray.d)));
+    }
+    if (depth >= frame->max_depth) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    float u_mix = 0.5f;
+    if (SCENE_HAS(&scene, FEATURE_MIX)) {
+        Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                     state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_MIX));
+        u_mix = random_float(random.x[0]);
+    }
+    Bsdf bsdf;
+    Frame shading;
+    material_resolve(&scene, u_mix, &surface, &bsdf, &shading);
+    if (bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(bsdf.color0)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    state_store_vec3(paths, stride, PATH_POINT, t, surface.p);
+    state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
+    state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
+    path_store_frame(paths, stride, t, shading);
+    path_store_bsdf(paths, stride, t, &bsdf);
+}
+
+/* The segment between a vertex and its light sample. */
+SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
+{
+    if (sample->infinite != 0u)
+        return ray_spawn(p, ng, sample->wi);
+    return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
+}
+
+/* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
+__kernel void pt_sample_lights(__global const FrameParams *frame, __global const uint *geometry,
+                               __global const uint *tables, __global const uint *texels, __global uint *paths,
+                               __global uint *shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    if (depth == 0u || (state_load(paths, stride, PATH_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_LIGHT));
+    uint light = light_select(&scene, random.x[0], random.x[1]);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    LightSample sample;
+    if (!light_sample(&scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+        return;
+    Bsdf bsdf = path_load_bsdf(paths, stride, t);
+    Frame shading = path_load_frame(paths, stride, t);
+    BsdfValue value = bsdf_eval(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
+                                frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
+    if (vec3_is_zero(value.f_cos))
+        return;
+    float pdf = scene.lights[light].select_pdf * sample.pdf_w;
+    float weight = sample.delta != 0u ? 1.0f : mis_power(pdf, value.pdf_w);
+    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
+    Vec3 light_term = vec3_scale(vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance), weight / pdf);
+    state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
+    ray_store(shadows, stride, t, light_shadow_ray(p, ng, &sample));
+}
+
+/* From: traced shadow rays. To: visible light samples gathered. */
+__kernel void pt_add_lights(__global const FrameParams *frame, __global uint *paths, __global const uint *shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f && state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
+        path_add_radiance(paths, stride, t, state_load_vec3(paths, stride, PATH_LIGHT, t));
+}
+
+/* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
+__kernel void pt_extend_paths(__global const FrameParams *frame, __global const uint *geometry,
+                              __global const uint *tables, __global const uint *texels, __global uint *paths,
+                              __global uint *rays)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
+    Bsdf bsdf = path_load_bsdf(paths, stride, t);
+    BsdfSample sample;
+    if (!bsdf_sample(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
+                     vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), sample.weight);
+    float eta_scale = state_load_float(paths, stride, PATH_ETA_SCALE, t) * sample.eta * sample.eta;
+    float survival = depth >= ROULETTE_FIRST_DEPTH ? vec3_max_component(beta) * eta_scale : 1.0f;
+    if (!(random_float(random.x[3]) < survival)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    if (survival < 1.0f)
+        beta = vec3_scale(beta, 1.0f / survival);
+    Frame shading = path_load_frame(paths, stride, t);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    Vec3 wi = vec3_normalize(frame_to_world(shading, sample.wi));
+    ray_store(rays, stride, t, ray_spawn(p, ng, wi));
+    state_store_vec3(paths, stride, PATH_BETA, t, beta);
+    state_store_float(paths, stride, PATH_PDF_W, t, sample.pdf_w);
+    state_store_float(paths, stride, PATH_ETA_SCALE, t, eta_scale);
+    state_store(paths, stride, PATH_FLAGS, t, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
+    state_store(paths, stride, PATH_DEPTH, t, depth + 1u);
+}
+
+/* From: the finished path. To: what it adds to its pixel. A sum that is not finite counts as zero and is counted. */
+__kernel void pt_splat(__global const FrameParams *frame, __global const uint *paths, __global uint *splats,
+                       __global uint *diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    Vec3 radiance =
+        vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, t), state_load_float(paths, stride, PATH_WEIGHT, t));
+    if (!vec3_finite(radiance)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        radiance = vec3_splat(0.0f);
+    }
+    state_store(splats, stride, SPLAT_PIXEL, t, state_load(paths, stride, PATH_PIXEL, t));
+    state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
+}
