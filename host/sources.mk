@@ -27,6 +27,30 @@ libtwinlight_host_la_SOURCES = \
 	host/json.c host/json.h \
 	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
+	host/arena.c host/arena.h \
+	host/file_read.c host/file_read.h \
+	host/matrix.c host/matrix.h \
+	host/name_table.c host/name_table.h \
+	host/pbrt_context.h \
+	host/pbrt_directives.c host/pbrt_directives.h \
+	host/pbrt_film_camera.c \
+	host/pbrt_import.c host/pbrt_import.h \
+	host/pbrt_lexer.c host/pbrt_lexer.h \
+	host/pbrt_lights.c \
+	host/pbrt_materials.c \
+	host/pbrt_mesh.c host/pbrt_mesh.h \
+	host/pbrt_objects.c \
+	host/pbrt_options.c \
+	host/pbrt_param_list.c \
+	host/pbrt_params.c host/pbrt_params.h \
+	host/pbrt_parser.c host/pbrt_parser.h \
+	host/pbrt_shapes.c host/pbrt_shapes.h \
+	host/pbrt_state.c host/pbrt_state.h \
+	host/pbrt_textures.c \
+	host/pbrt_values.c host/pbrt_values.h \
+	host/ply.c host/ply.h \
+	host/ply_header.c host/ply_internal.h \
+	host/text_number.c host/text_number.h \
 	host/matrix.c host/matrix.h \
 	host/metrics.c host/metrics.h \
 	host/name_table.c host/name_table.h \
