@@ -29,7 +29,6 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
-	shared/pt.cl \
 	shared/primitive.h \
 	shared/pt.cl \
 	shared/ray.h \
