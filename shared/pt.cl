@@ -67,10 +67,10 @@ SHARED_FUNCTION Vec3 path_environment(const SceneView *scene, uint flags, float 
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
         Vec3 radiance = environment_light_radiance(scene, light, d);
-        float pdf_light = 0.0f;
+        float weight = 1.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
-            pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-        sum = vec3_mad(sum, mis_weight_hit(flags & PATH_FLAG_DELTA, pdf_w, pdf_light), radiance);
+            weight = mis_power(pdf_w, scene->lights[light].select_pdf * environment_pdf_w(scene, light, d));
+        sum = vec3_mad(sum, weight, radiance);
     }
     return sum;
 }
@@ -83,7 +83,7 @@ SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flag
     if ((flags & PATH_FLAG_DELTA) != 0u || vec3_is_zero(radiance))
         return radiance;
     float pdf_light = scene->lights[light].select_pdf * light_pdf_w(scene, light, from, d, surface);
-    return vec3_scale(radiance, mis_weight_hit(0u, pdf_w, pdf_light));
+    return vec3_scale(radiance, mis_power(pdf_w, pdf_light));
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
@@ -172,7 +172,7 @@ __kernel void pt_sample_lights(__global const FrameParams *frame, __global const
     if (vec3_is_zero(value.f_cos))
         return;
     float pdf = scene.lights[light].select_pdf * sample.pdf_w;
-    float weight = mis_weight_light(sample.delta, pdf, value.pdf_w);
+    float weight = sample.delta != 0u ? 1.0f : mis_power(pdf, value.pdf_w);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
     Vec3 light_term = vec3_scale(vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance), weight / pdf);
     state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
