@@ -185,8 +185,8 @@ static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 
     do {                                                                                                               \
         double error_, e_ = (expected);                                                                                \
         double got_ = fixture_irradiance(f, light, ref, n, 7, 300, &error_);                                           \
-        ck_assert_msg(fabs(got_ - e_) <= fmin(3.0 * error_ + 1e-5 * e_, 0.005 * e_), "%s: irradiance %g, not %g +- %g", \
-                      #expected, got_, e_, error_);                                                                    \
+        ck_assert_msg(fabs(got_ - e_) <= fmin(3.0 * error_ + 1e-5 * e_, 0.005 * e_),                                   \
+                      "%s: irradiance %g, not %g +- %g", #expected, got_, e_, error_);                                 \
     } while (0)
 
 #endif

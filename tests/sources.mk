@@ -51,6 +51,18 @@ tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
 tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
+tests_test_light_SOURCES = \
+	tests/light_fixture.h \
+	tests/test_camera.c \
+	tests/test_light.c tests/test_light.h \
+	tests/test_light_area.c \
+	tests/test_light_environment.c \
+	tests/test_light_irradiance.c \
+	tests/test_light_select.c \
+	tests/test_mis.c \
+	tests/test_pixel_filter.c \
+	tests/test_util.h
+tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
 tests_test_render_SOURCES = tests/test_render.c tests/render_fixture.c tests/render_fixture.h tests/test_util.h
 tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
 	tests/test_math_alias.c \

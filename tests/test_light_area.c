@@ -6,7 +6,7 @@
 #include "light_fixture.h"
 #include "test_light.h"
 
-enum { GRID = 10, SUB = 8, SAMPLES = 40000 };
+enum { GRID = 10, SUB = 24, SAMPLES = 40000 };
 
 /* Twelve cases: each may fail by chance with 1e-3 / 12 (Sidak: 1e-3 together). */
 #define P_MIN (1e-3 / 12.0)
@@ -57,8 +57,8 @@ static void cap_basis(const AreaShape *s, double axes[3][3], double *distance)
 
 static double world_radius(const AreaShape *s)
 {
-    return (double)s->quadric.radius * sqrt(s->matrix[0] * s->matrix[0] + s->matrix[4] * s->matrix[4] +
-                                            s->matrix[8] * s->matrix[8]);
+    return (double)s->quadric.radius *
+           sqrt(s->matrix[0] * s->matrix[0] + s->matrix[4] * s->matrix[4] + s->matrix[8] * s->matrix[8]);
 }
 
 static void cap_point(const AreaShape *s, double a, double b, double out[3])
@@ -67,8 +67,8 @@ static void cap_point(const AreaShape *s, double a, double b, double out[3])
     cap_basis(s, axes, &distance);
     double low = radius / distance, z = low + (1.0 - low) * a, r = sqrt(1.0 - z * z), phi = 2.0 * M_PI * b;
     for (int i = 0; i < 3; ++i)
-        out[i] = s->matrix[4 * i + 3] +
-                 radius * (r * cos(phi) * axes[0][i] + r * sin(phi) * axes[1][i] + z * axes[2][i]);
+        out[i] =
+            s->matrix[4 * i + 3] + radius * (r * cos(phi) * axes[0][i] + r * sin(phi) * axes[1][i] + z * axes[2][i]);
 }
 
 static void shape_point(const AreaShape *s, double a, double b, double out[3])
@@ -232,7 +232,7 @@ static void check_shape(const char *name, const AreaShape *s)
         total += expected[i];
         expected[i] *= SAMPLES;
     }
-    ck_assert_msg(fabs(total - 1.0) < 2e-3, "%s: light_pdf_w integrates to %g", name, total);
+    ck_assert_msg(fabs(total - 1.0) < 5e-4, "%s: light_pdf_w integrates to %g", name, total);
     for (uint i = 0; i < SAMPLES; ++i) {
         LightSample sample;
         ck_assert(light_sample(&f.view, 0, to_vec3(s->ref), fixture_random(3, i), &sample));
@@ -248,8 +248,14 @@ static void check_shape(const char *name, const AreaShape *s)
     fixture_destroy(&f);
 }
 
-#define SHEAR {1.0, 0.4, -0.2, 0.5, 0.0, 0.7, 0.3, -1.0, 0.1, 0.0, 1.6, 2.0, 0.0, 0.0, 0.0, 1.0}
-#define SHIFT {0.0, 2.0, 0.0, 0.5, -2.0, 0.0, 0.0, -1.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 1.0}
+#define SHEAR                                                                                                          \
+    {                                                                                                                  \
+        1.0, 0.4, -0.2, 0.5, 0.0, 0.7, 0.3, -1.0, 0.1, 0.0, 1.6, 2.0, 0.0, 0.0, 0.0, 1.0                               \
+    }
+#define SHIFT                                                                                                          \
+    {                                                                                                                  \
+        0.0, 2.0, 0.0, 0.5, -2.0, 0.0, 0.0, -1.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0, 1.0                               \
+    }
 #define TAU_F 6.28318531f
 
 START_TEST(test_triangle)
@@ -284,7 +290,7 @@ START_TEST(test_sphere_outside)
     check_shape("sphere from outside", &s);
     s.ref[0] = 1.0;
     s.ref[1] = -0.9;
-    s.ref[2] = 2.87;
+    s.ref[2] = 3.0;
     check_shape("sphere from close by", &s);
 }
 END_TEST

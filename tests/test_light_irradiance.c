@@ -137,8 +137,7 @@ START_TEST(test_delta_lights)
     ASSERT_IRRADIANCE(&f, 1, vec3(0, 0, 0), up, 3.0 / 4.0);
     /* Half-way between the cosines the falloff is one half; outside there is nothing. */
     double tangent = tan(acos((double)half));
-    ASSERT_IRRADIANCE(&f, 1, vec3((float)(2.0 * tangent), 0, 0), up,
-                      0.5 * 3.0 / 4.0 * pow((double)half, 3.0));
+    ASSERT_IRRADIANCE(&f, 1, vec3((float)(2.0 * tangent), 0, 0), up, 0.5 * 3.0 / 4.0 * pow((double)half, 3.0));
     ck_assert(!light_sample(&f.view, 1, vec3(2.0f, 0, 0), vec2(0.5f, 0.5f), &s));
     ck_assert(!light_sample(&f.view, 1, vec3(0, 0, 3.0f), vec2(0.5f, 0.5f), &s));
     ck_assert(!light_sample(&f.view, 0, vec3(0, 0, 2.0f), vec2(0.5f, 0.5f), &s));
