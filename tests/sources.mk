@@ -17,13 +17,15 @@ TESTS += $(check_PROGRAMS)
 endif
 
 EXTRA_DIST += \
+	tests/bsdf_cases.h \
 	tests/light_fixture.h \
 	tests/render_fixture.h \
 	tests/test_light.h \
 	tests/test_math.h \
 	tests/test_util.h
 
-tests_test_bsdf_SOURCES = tests/test_bsdf.c
+tests_test_bsdf_SOURCES = tests/test_bsdf.c \
+	tests/test_bsdf_sampling.c
 tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
 
@@ -41,30 +43,13 @@ tests_test_import_LDADD = $(TEST_LIBS)
 
 tests_test_light_SOURCES = tests/test_light.c \
 	tests/test_light_area.c \
-	tests/test_light_irradiance.c
+	tests/test_light_environment.c \
+	tests/test_light_irradiance.c \
+	tests/test_light_select.c
 tests_test_light_CFLAGS = $(TEST_CFLAGS)
 tests_test_light_LDADD = $(TEST_LIBS)
 
 tests_test_math_SOURCES = tests/test_math.c \
-tests_test_bsdf_SOURCES = tests/test_bsdf.c tests/test_util.h
-tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
-tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
-tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
-tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_light_SOURCES = \
-	tests/light_fixture.h \
-	tests/test_camera.c \
-	tests/test_light.c tests/test_light.h \
-	tests/test_light_area.c \
-	tests/test_light_environment.c \
-	tests/test_light_irradiance.c \
-	tests/test_light_select.c \
-	tests/test_mis.c \
-	tests/test_pixel_filter.c \
-	tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
-tests_test_render_SOURCES = tests/test_render.c tests/render_fixture.c tests/render_fixture.h tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
 	tests/test_math_alias.c \
 	tests/test_math_distribution2d.c \
 	tests/test_math_elementary.c \
@@ -73,22 +58,6 @@ tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h 
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
 tests_test_math_CFLAGS = $(TEST_CFLAGS)
-tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
-
-tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_film_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_geometry_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_import_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_light_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_math_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_render_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_texture_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-
-tests_test_bsdf_LDADD = $(TEST_LIBS)
-tests_test_film_LDADD = $(TEST_LIBS)
-tests_test_geometry_LDADD = $(TEST_LIBS)
-tests_test_import_LDADD = $(TEST_LIBS)
-tests_test_light_LDADD = $(TEST_LIBS)
 tests_test_math_LDADD = $(TEST_LIBS)
 
 tests_test_options_SOURCES = tests/test_options.c
