@@ -191,7 +191,7 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
     loop->frame.item_count = items;
     if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
-                              first ? &never : loop->options->stop, &delivered, error))
+                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error))
         return false;
     loop->next += items;
     loop->done += delivered;

@@ -21,7 +21,8 @@ SHARED_FUNCTION PatchCorners patch_corners(const SceneView *scene, uint patch)
 }
 
 /* Texture coordinates at barycentric weights u, v of a triangle's corners b, c; pbrt's default without them. */
-SHARED_FUNCTION Vec2 triangle_uv(const SceneView *scene, const Shape *shape, const Primitive *primitive, float u, float v)
+SHARED_FUNCTION Vec2 triangle_uv(const SceneView *scene, const Shape *shape, const Primitive *primitive, float u,
+                                 float v)
 {
     if (!(shape->flags & SHAPE_HAS_UV))
         return vec2(u + v, v);

@@ -104,7 +104,8 @@ typedef struct RayQuery {
     Vec3 o;
     Vec3 d;
     float t_max;
-    Vec3 error; /* bound on what rounding did to each component of o before it came here */
+    Vec3 error; /* bound on what a transform's rounding did to each component of o */
+    float offset; /* by how much, relative to its largest coordinate, ray_offset moved each end; 0: unknown */
     uint kx, ky, kz;
     float ox, oy, oz; /* o along kx, ky, kz */
     float sx, sy, sz;
@@ -115,7 +116,7 @@ SHARED_FUNCTION float vec3_component(Vec3 a, uint k)
     return k == 0u ? a.x : k == 1u ? a.y : a.z;
 }
 
-SHARED_FUNCTION RayQuery ray_query_shear(Vec3 o, Vec3 d, float t_max, Vec3 error)
+SHARED_FUNCTION RayQuery ray_query_shear(Vec3 o, Vec3 d, float t_max, Vec3 error, float offset)
 {
     RayQuery query;
     Vec3 size = vec3_abs(d);
@@ -123,6 +124,7 @@ SHARED_FUNCTION RayQuery ray_query_shear(Vec3 o, Vec3 d, float t_max, Vec3 error
     query.d = d;
     query.t_max = t_max;
     query.error = error;
+    query.offset = offset;
     query.kz = size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
     query.kx = query.kz == 2u ? 0u : query.kz + 1u;
     query.ky = query.kx == 2u ? 0u : query.kx + 1u;
@@ -136,11 +138,9 @@ SHARED_FUNCTION RayQuery ray_query_shear(Vec3 o, Vec3 d, float t_max, Vec3 error
     return query;
 }
 
-/* A point of a surface carries the rounding of its interpolation, of at most 2 units of its own coordinates beyond
- * what its triangle's corners explain. */
 SHARED_FUNCTION RayQuery ray_query(Ray ray)
 {
-    return ray_query_shear(ray.o, ray.d, ray.t_max, vec3_scale(vec3_abs(ray.o), 2.0f * FLOAT_EPSILON));
+    return ray_query_shear(ray.o, ray.d, ray.t_max, vec3_splat(0.0f), RAY_OFFSET_ULPS * FLOAT_EPSILON);
 }
 
 /* |M| |p| + |translation|: what bounds the rounding of affine_point. */
@@ -158,7 +158,7 @@ SHARED_FUNCTION RayQuery ray_query_transform(Affine object_from_world, const Ray
     Vec3 o = affine_point(object_from_world, world->o);
     Vec3 d = affine_vector(object_from_world, world->d);
     Vec3 error = vec3_scale(affine_magnitude(object_from_world, world->o), 4.0f * FLOAT_EPSILON);
-    return ray_query_shear(o, d, world->t_max, error);
+    return ray_query_shear(o, d, world->t_max, error, 0.0f);
 }
 
 /* Whether a hit at t may count: neither end of the ray may lie within `tolerance` of the tangent plane of the hit,

@@ -10,10 +10,13 @@ SHARED_FILES = \
 	shared/bsdf_thin_dielectric.h \
 	shared/camera.h \
 	shared/coat.h \
+	shared/diagnostics.h \
 	shared/disk.h \
 	shared/distribution.h \
 	shared/elementary.h \
 	shared/fresnel.h \
+	shared/kernel_list.h \
+	shared/kernels.cl \
 	shared/light.h \
 	shared/light_area.h \
 	shared/light_delta.h \
@@ -38,6 +41,7 @@ SHARED_FILES = \
 	shared/texture.h \
 	shared/triangle.h \
 	shared/vec.h \
+	shared/walk.cl \
 	shared/warp.h
 
 # Installed with the program: OpenCL builds its programs from them.

@@ -70,15 +70,24 @@ typedef struct TrianglePlane {
     Vec3 size; /* largest absolute coordinates of the corners */
 } TrianglePlane;
 
-/* Which side of the plane p is on: +1 (the side of the normal), -1, or 0 when rounding cannot tell. Every error is
- * bounded component by component, so a large floor that is parallel to an axis loses nothing near it. error: of each
- * component of p. */
-SHARED_FUNCTION int triangle_side(const TrianglePlane *plane, Vec3 p, Vec3 error)
+/* Rounding of the distance from the plane, in units of FLOAT_EPSILON times the magnitude of its terms: by the
+ * arithmetic here, and by the interpolation of a point on the triangle. 4 and 2 would bound the worst case; of 10^7
+ * points on triangles of all shapes, none was off by more than half of what 2 and 1 allow. */
+#define TRIANGLE_ULPS_AWAY 2.0f
+#define TRIANGLE_ULPS_SIZE 1.0f
+
+/* Which side of the plane p, an end of the query, is on: +1 (the side of the normal), -1, or 0 when rounding cannot
+ * tell. Errors are bounded component by component, so that a large floor parallel to an axis loses nothing near it,
+ * and only what exceeds the offset that ray_spawn gave to p makes the answer 0: a ray that starts in a corner, nearer
+ * to the other wall than the offset, must still meet that wall. error: of each component of p. */
+SHARED_FUNCTION int triangle_side(const TrianglePlane *plane, Vec3 p, Vec3 error, float offset)
 {
     Vec3 away = vec3_sub(p, plane->a);
-    Vec3 bound = vec3_scale(vec3_add(vec3_abs(away), plane->size), 3.0f * FLOAT_EPSILON);
+    Vec3 bound = vec3_mad(vec3_scale(vec3_abs(away), TRIANGLE_ULPS_AWAY), TRIANGLE_ULPS_SIZE, plane->size);
+    bound = vec3_mad(error, FLOAT_EPSILON, bound);
     float distance = vec3_dot(plane->normal, away);
-    float tolerance = vec3_dot(plane->terms, vec3_add(bound, error));
+    float tolerance = vec3_dot(plane->terms, bound) - 0.9f * offset * vec3_max_abs(p) * vec3_length(plane->normal);
+    tolerance = float_max(tolerance, 0.0f);
     return distance > tolerance ? 1 : distance < -tolerance ? -1 : 0;
 }
 
@@ -94,7 +103,7 @@ SHARED_FUNCTION int triangle_slope(const TrianglePlane *plane, Vec3 d)
 SHARED_FUNCTION Vec3 triangle_end_error(const RayQuery *query)
 {
     Vec3 size = vec3_add(vec3_abs(query->o), vec3_scale(vec3_abs(query->d), query->t_max));
-    return vec3_add(vec3_scale(size, 2.0f * FLOAT_EPSILON), query->error);
+    return vec3_add(vec3_scale(size, FLOAT_EPSILON), query->error);
 }
 
 /* A triangle that reaches behind the origin or beyond the end of the ray, as the one does that an end lies on, is hit
@@ -115,12 +124,13 @@ SHARED_FUNCTION bool triangle_between_ends(Vec3 a, Vec3 b, Vec3 c, Vec3 normal, 
     plane.size = vec3_max(vec3_abs(a), vec3_max(vec3_abs(b), vec3_abs(c)));
     int slope = triangle_slope(&plane, query->d);
     if (near) {
-        int side = triangle_side(&plane, query->o, query->error);
+        int side = triangle_side(&plane, query->o, query->error, query->offset);
         if (side == 0 || side * slope > 0)
             return false;
     }
     if (far) {
-        int side = triangle_side(&plane, vec3_mad(query->o, query->t_max, query->d), triangle_end_error(query));
+        Vec3 end = vec3_mad(query->o, query->t_max, query->d);
+        int side = triangle_side(&plane, end, triangle_end_error(query), query->offset);
         if (side == 0 || side * slope < 0)
             return false;
     }
