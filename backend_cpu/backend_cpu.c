@@ -1,6 +1,359 @@
 #include "backend_cpu.h"
 
+#include "kernel_list.h"
+#include "kernels.h"
+#include "rays_embree.h"
+#include "state.h"
+
+#include <assert.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Items that a thread carries through the whole list of steps at a time. Large enough that the two clock readings and
+ * the hand-out of a chunk vanish, small enough that its state (about 256 bytes an item) stays in the second-level
+ * cache. bench_rays and the renders differ by less than 2 % between 256 and 1024. */
+#define CHUNK_ITEMS 512u
+
+#define THREADS_MAX 1024
+
+/* What a thread owns. */
+typedef struct Worker {
+    Backend *backend;
+    pthread_t thread;
+    uint index;
+    FrameParams frame; /* the pass's, with first_item, item_count and stride of the chunk */
+    uint *buffers[BUFFER_COUNT]; /* per-item buffers and counters */
+    size_t buffer_words[BUFFER_COUNT];
+    uint64_t diagnostics[DIAGNOSTIC_COUNT];
+    uint64_t closest_rays, shadow_rays, ray_nanoseconds;
+    char padding[64]; /* no two workers' counters on a cache line */
+} Worker;
+
+/* One call of run. */
+typedef struct Job {
+    const FrameParams *frame;
+    const StepList *list;
+    SplatSink sink;
+    void *context;
+    const volatile int *stop;
+} Job;
+
+struct Backend {
+    BackendScene scene;
+    RaysEmbree *rays;
+    double build_seconds;
+    uint worker_count;
+    Worker *workers;
+    /* Workers sleep until `generation` changes, then work on `job`; the caller of run sleeps until none is busy. */
+    pthread_mutex_t mutex;
+    pthread_cond_t begin, end;
+    uint64_t generation;
+    uint busy;
+    bool quit;
+    Job job;
+    atomic_uint next_chunk;
+    atomic_ullong items_done;
+    atomic_bool out_of_memory;
+};
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static uint64_t nanoseconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+/* ---- one chunk --------------------------------------------------------------------------------------------------- */
+
+static bool worker_reserve(Worker *worker, const StepList *list)
+{
+    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id) {
+        size_t words = id == BUFFER_DIAGNOSTICS ? DIAGNOSTIC_COUNT : (size_t)list->words_per_item[id] * CHUNK_ITEMS;
+        if (words <= worker->buffer_words[id])
+            continue;
+        free(worker->buffers[id]);
+        worker->buffer_words[id] = 0;
+        worker->buffers[id] = aligned_alloc(64, (words * sizeof(uint) + 63) / 64 * 64);
+        if (!worker->buffers[id])
+            return false;
+        memset(worker->buffers[id], 0, words * sizeof(uint));
+        worker->buffer_words[id] = words;
+    }
+    return true;
+}
+
+/* What a kernel's BufferIds mean to this worker. */
+static void worker_arguments(Worker *worker, void *arguments[BUFFER_COUNT])
+{
+    const BackendScene *scene = &worker->backend->scene;
+    for (int id = 0; id < BUFFER_COUNT; ++id)
+        arguments[id] = worker->buffers[id];
+    arguments[BUFFER_FRAME] = &worker->frame;
+    /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
+    arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;
+    arguments[BUFFER_TABLES] = (void *)(uintptr_t)scene->tables;
+    arguments[BUFFER_TEXELS] = (void *)(uintptr_t)scene->texels;
+}
+
+static void worker_sum_diagnostics(Worker *worker)
+{
+    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
+        worker->diagnostics[i] += worker->buffers[BUFFER_DIAGNOSTICS][i];
+        worker->buffers[BUFFER_DIAGNOSTICS][i] = 0;
+    }
+}
+
+/* Traces and times; returns how many rays were alive. */
+static uint worker_trace(Worker *worker, StepKind kind, uint count)
+{
+    const RaysEmbree *rays = worker->backend->rays;
+    uint64_t begin = nanoseconds_now();
+    uint traced;
+    if (kind == STEP_TRACE_CLOSEST) {
+        traced = rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], count,
+                                           CHUNK_ITEMS);
+        worker->closest_rays += traced;
+    } else {
+        traced = rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_ITEMS);
+        worker->shadow_rays += traced;
+    }
+    worker->ray_nanoseconds += nanoseconds_now() - begin;
+    return traced;
+}
+
+static bool chunk_is_idle(const Worker *worker, uint count)
+{
+    for (uint t = 0; t < count; ++t)
+        if (state_load_float(worker->buffers[BUFFER_RAYS], CHUNK_ITEMS, RAY_T_MAX, t) > 0.0f)
+            return false;
+    return true;
+}
+
+static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
+{
+    uint first = chunk * CHUNK_ITEMS, left = job->frame->item_count - first;
+    uint count = left < CHUNK_ITEMS ? left : CHUNK_ITEMS;
+    void *arguments[BUFFER_COUNT];
+    worker->frame = *job->frame;
+    worker->frame.first_item = job->frame->first_item + first;
+    worker->frame.item_count = count;
+    worker->frame.stride = CHUNK_ITEMS;
+    worker_arguments(worker, arguments);
+    for (size_t i = 0; i < job->list->count; ++i) {
+        const Step *step = &job->list->steps[i];
+        if (step->kind == STEP_KERNEL)
+            kernel_run(step->kernel, arguments, count);
+        else if (step->kind != STEP_SKIP_IF_IDLE)
+            worker_trace(worker, step->kind, count);
+        else if (chunk_is_idle(worker, count))
+            i = step->target - 1;
+    }
+    if (job->list->words_per_item[BUFFER_SPLATS] > 0)
+        job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_ITEMS);
+    worker_sum_diagnostics(worker);
+    atomic_fetch_add_explicit(&worker->backend->items_done, count, memory_order_relaxed);
+}
+
+/* ---- the pool ---------------------------------------------------------------------------------------------------- */
+
+static void worker_run_job(Worker *worker, const Job *job)
+{
+    Backend *backend = worker->backend;
+    uint chunks = job->frame->item_count / CHUNK_ITEMS + (job->frame->item_count % CHUNK_ITEMS != 0);
+    if (!worker_reserve(worker, job->list)) {
+        atomic_store(&backend->out_of_memory, true);
+        return;
+    }
+    while (!*job->stop) {
+        uint chunk = atomic_fetch_add_explicit(&backend->next_chunk, 1, memory_order_relaxed);
+        if (chunk >= chunks)
+            return;
+        worker_run_chunk(worker, job, chunk);
+    }
+}
+
+/* Denormals are kept: no thread sets flush-to-zero, although Embree's manual advises it. */
+static void *worker_main(void *argument)
+{
+    Worker *worker = argument;
+    Backend *backend = worker->backend;
+    uint64_t seen = 0;
+    pthread_mutex_lock(&backend->mutex);
+    for (;;) {
+        while (!backend->quit && backend->generation == seen)
+            pthread_cond_wait(&backend->begin, &backend->mutex);
+        if (backend->quit)
+            break;
+        seen = backend->generation;
+        Job job = backend->job;
+        pthread_mutex_unlock(&backend->mutex);
+        worker_run_job(worker, &job);
+        pthread_mutex_lock(&backend->mutex);
+        if (--backend->busy == 0)
+            pthread_cond_signal(&backend->end);
+    }
+    pthread_mutex_unlock(&backend->mutex);
+    return NULL;
+}
+
+static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
+                            void *context, const volatile int *stop, uint64_t *items_done, Error *error)
+{
+    pthread_mutex_lock(&backend->mutex);
+    backend->job = (Job){frame, list, sink, context, stop};
+    atomic_store(&backend->next_chunk, 0);
+    atomic_store(&backend->items_done, 0);
+    atomic_store(&backend->out_of_memory, false);
+    backend->busy = backend->worker_count;
+    ++backend->generation;
+    pthread_cond_broadcast(&backend->begin);
+    while (backend->busy > 0)
+        pthread_cond_wait(&backend->end, &backend->mutex);
+    pthread_mutex_unlock(&backend->mutex);
+    if (items_done)
+        *items_done = atomic_load(&backend->items_done);
+    if (atomic_load(&backend->out_of_memory))
+        return error_set(error, "out of memory for the state of %u threads", backend->worker_count);
+    return true;
+}
+
+/* ---- open and close ---------------------------------------------------------------------------------------------- */
+
+static void workers_stop(Backend *backend)
+{
+    pthread_mutex_lock(&backend->mutex);
+    backend->quit = true;
+    pthread_cond_broadcast(&backend->begin);
+    pthread_mutex_unlock(&backend->mutex);
+    for (uint i = 0; i < backend->worker_count; ++i)
+        pthread_join(backend->workers[i].thread, NULL);
+}
+
+static void backend_cpu_close(Backend *backend)
+{
+    if (!backend)
+        return;
+    workers_stop(backend);
+    for (uint i = 0; i < backend->worker_count; ++i)
+        for (int id = 0; id < BUFFER_COUNT; ++id)
+            free(backend->workers[i].buffers[id]);
+    free(backend->workers);
+    rays_embree_destroy(backend->rays);
+    pthread_cond_destroy(&backend->begin);
+    pthread_cond_destroy(&backend->end);
+    pthread_mutex_destroy(&backend->mutex);
+    free(backend);
+}
+
+static uint thread_count(const BackendOptions *options)
+{
+    long count = options && options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1u : count > THREADS_MAX ? THREADS_MAX : (uint)count;
+}
+
+/* worker_count counts those that were started, so that close stops no other. */
+static bool workers_start(Backend *backend, uint count, Error *error)
+{
+    backend->workers = calloc(count, sizeof *backend->workers);
+    if (!backend->workers)
+        return error_memory(error, count * sizeof *backend->workers, "threads");
+    for (uint i = 0; i < count; ++i) {
+        backend->workers[i].backend = backend;
+        backend->workers[i].index = i;
+        if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
+            error_set(error, "thread %u of %u cannot be started", i + 1, count);
+            return error_fix(error, "ask for fewer with --threads");
+        }
+        ++backend->worker_count;
+    }
+    return true;
+}
+
+static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions *options, Error *error)
+{
+    Backend *backend = calloc(1, sizeof *backend);
+    if (!backend) {
+        error_memory(error, sizeof *backend, "the CPU backend");
+        return NULL;
+    }
+    backend->scene = *scene;
+    pthread_mutex_init(&backend->mutex, NULL);
+    pthread_cond_init(&backend->begin, NULL);
+    pthread_cond_init(&backend->end, NULL);
+    uint threads = thread_count(options);
+    double begin = seconds_now();
+    backend->rays = rays_embree_create(scene, (int)threads, error);
+    backend->build_seconds = seconds_now() - begin;
+    if (!backend->rays || !workers_start(backend, threads, error)) {
+        backend_cpu_close(backend);
+        return NULL;
+    }
+    return backend;
+}
+
+/* ---- what happened ----------------------------------------------------------------------------------------------- */
+
+static void backend_cpu_diagnostics(Backend *backend, uint64_t *counters)
+{
+    memset(counters, 0, DIAGNOSTIC_COUNT * sizeof *counters);
+    for (uint i = 0; i < backend->worker_count; ++i)
+        for (int k = 0; k < DIAGNOSTIC_COUNT; ++k)
+            counters[k] += backend->workers[i].diagnostics[k];
+}
+
+static void cpu_name(char *name, size_t size)
+{
+    char line[512];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    snprintf(name, size, "unknown processor");
+    while (file && fgets(line, sizeof line, file)) {
+        char *value = strncmp(line, "model name", 10) == 0 ? strchr(line, ':') : NULL;
+        if (!value)
+            continue;
+        line[strcspn(line, "\n")] = '\0';
+        snprintf(name, size, "%s", value + 1 + strspn(value + 1, " "));
+        break;
+    }
+    if (file)
+        fclose(file);
+}
+
+static void backend_cpu_statistics(Backend *backend, BackendStatistics *statistics)
+{
+    memset(statistics, 0, sizeof *statistics);
+    statistics->bytes = rays_embree_bytes(backend->rays);
+    for (uint i = 0; i < backend->worker_count; ++i) {
+        const Worker *worker = &backend->workers[i];
+        statistics->closest_rays += worker->closest_rays;
+        statistics->shadow_rays += worker->shadow_rays;
+        statistics->ray_seconds += 1e-9 * (double)worker->ray_nanoseconds;
+        for (int id = 0; id < BUFFER_COUNT; ++id)
+            statistics->bytes += worker->buffer_words[id] * sizeof(uint);
+    }
+    statistics->build_seconds = backend->build_seconds;
+    statistics->threads = (int)backend->worker_count;
+    cpu_name(statistics->device, sizeof statistics->device);
+}
+
 const BackendInterface *backend_cpu(void)
 {
-    return NULL;
+    static const BackendInterface interface = {.name = "cpu",
+                                               .open = backend_cpu_open,
+                                               .close = backend_cpu_close,
+                                               .run = backend_cpu_run,
+                                               .diagnostics = backend_cpu_diagnostics,
+                                               .statistics = backend_cpu_statistics};
+    return &interface;
 }

@@ -191,7 +191,7 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
     loop->frame.item_count = items;
     if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
-                              first ? &never : loop->options->stop, &delivered, error))
+                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error))
         return false;
     loop->next += items;
     loop->done += delivered;
@@ -243,10 +243,6 @@ static void result_fill(const PassLoop *loop, RenderResult *result)
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
         result->diagnostics[result->diagnostic_count++] = counters[i];
     }
-    result->diagnostic_names[result->diagnostic_count] = "saturated";
-    result->diagnostics[result->diagnostic_count++] = atomic_load(&loop->film->saturated);
-    result->diagnostic_names[result->diagnostic_count] = "film_not_finite";
-    result->diagnostics[result->diagnostic_count++] = atomic_load(&loop->film->not_finite);
 }
 
 bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *backend, const RenderOptions *options,

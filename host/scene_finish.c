@@ -2,7 +2,7 @@
 #include "scene.h"
 
 #include "camera_setup.h"
-#include "coat.h"
+#include "coat_table.h"
 #include "filter_setup.h"
 #include "light_setup.h"
 
@@ -279,7 +279,8 @@ static bool scene_coat_tables(Scene *scene, Error *error)
                 m->coat_table = other->coat_table;
         }
         if (m->coat_table == NONE &&
-            !coat_table_build(alpha_x, alpha_y, m->eta, textured, &scene->lookup, &m->coat_table, error))
+            !(textured ? coat_table_build_range(m->eta, &scene->lookup, &m->coat_table, error)
+                       : coat_table_build(alpha_x, alpha_y, m->eta, &scene->lookup, &m->coat_table, error)))
             return false;
     }
     return true;

@@ -18,7 +18,6 @@ SHARED_FUNCTION TexturePoint texture_point(const Surface *surface)
 {
     TexturePoint point;
     point.p = surface->p;
-    point.n = surface->ns;
     point.uv = surface->uv;
     return point;
 }
@@ -51,13 +50,13 @@ SHARED_FUNCTION Vec3 vec3_orthogonal_part(Vec3 v, Vec3 n)
 SHARED_FUNCTION void normal_map_apply(const SceneView *scene, uint image, Surface *surface)
 {
     Vec3 rgb = image_lookup(scene, image, surface->uv);
-    Vec3 local = vec3(2.0f * rgb.x - 1.0f, 2.0f * rgb.y - 1.0f, 2.0f * rgb.z - 1.0f);
+    Vec3 mapped = vec3(2.0f * rgb.x - 1.0f, 2.0f * rgb.y - 1.0f, 2.0f * rgb.z - 1.0f);
     Frame frame;
     frame.n = surface->ns;
     frame.t = vec3_normalize(vec3_orthogonal_part(surface->dpdu, surface->ns));
     frame.b = vec3_cross(frame.n, frame.t);
-    if (vec3_length_squared(local) > 0.0f)
-        surface->ns = vec3_normalize(frame_to_world(frame, local));
+    if (vec3_length_squared(mapped) > 0.0f)
+        surface->ns = vec3_normalize(frame_to_world(frame, mapped));
 }
 
 /* Displacement as bump: the normal of the surface p + d(u,v) n (Blinn 1978); the term with dn/du is left out. */

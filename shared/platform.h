@@ -16,6 +16,8 @@
 #define float_sqrt(x) sqrt(x)
 #define float_abs(x) fabs(x)
 #define float_floor(x) floor(x)
+/* Items run at once and share the counters. */
+#define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 
 #else
 
@@ -30,7 +32,7 @@ typedef unsigned char uchar;
 typedef uint32_t uint;
 typedef uint64_t ulong;
 
-#define __kernel static inline
+#define __kernel static inline __attribute__((always_inline))
 #define __global
 #define __constant static const
 #define SHARED_FUNCTION static inline __attribute__((unused))
@@ -56,6 +58,8 @@ SHARED_FUNCTION float bits_float(uint bits)
 #define float_sqrt(x) sqrtf(x)
 #define float_abs(x) fabsf(x)
 #define float_floor(x) floorf(x)
+/* Every thread has its own counters. */
+#define counter_increment(counter) (++*(counter))
 
 #endif
 

@@ -17,9 +17,9 @@
 #define ROULETTE_FIRST_DEPTH 2u
 
 /* From: nothing. To: the path's first ray, throughput 1. */
-__kernel void pt_start_paths(__global const FrameParams *frame, __global const uint *geometry,
-                             __global const uint *tables, __global const uint *texels, __global uint *paths,
-                             __global uint *rays, __global uint *shadows)
+__kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
+                             __global uint *restrict rays, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -32,8 +32,7 @@ __kernel void pt_start_paths(__global const FrameParams *frame, __global const u
     float weight;
     Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     Vec2 film = vec2((float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
-    Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+    Ray ray = camera_ray(&frame->camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     ray_store(rays, stride, t, ray);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
@@ -49,13 +48,13 @@ __kernel void pt_start_paths(__global const FrameParams *frame, __global const u
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
 }
 
-SHARED_FUNCTION void path_end(__global uint *paths, __global uint *rays, uint stride, uint t)
+SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
 {
     state_store(paths, stride, PATH_DEPTH, t, 0u);
     state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
 }
 
-SHARED_FUNCTION void path_add_radiance(__global uint *paths, uint stride, uint t, Vec3 radiance)
+SHARED_FUNCTION void path_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
 {
     Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
@@ -88,9 +87,9 @@ SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flag
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
-__kernel void pt_shade_hits(__global const FrameParams *frame, __global const uint *geometry,
-                            __global const uint *tables, __global const uint *texels, __global uint *paths,
-                            __global uint *rays, __global const uint *hits)
+__kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
+                            __global uint *restrict rays, __global const uint *restrict hits)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -149,9 +148,9 @@ SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
 }
 
 /* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
-__kernel void pt_sample_lights(__global const FrameParams *frame, __global const uint *geometry,
-                               __global const uint *tables, __global const uint *texels, __global uint *paths,
-                               __global uint *shadows)
+__kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                               __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
+                               __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -181,7 +180,7 @@ __kernel void pt_sample_lights(__global const FrameParams *frame, __global const
 }
 
 /* From: traced shadow rays. To: visible light samples gathered. */
-__kernel void pt_add_lights(__global const FrameParams *frame, __global uint *paths, __global const uint *shadows)
+__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths, __global const uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f && state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
@@ -189,9 +188,9 @@ __kernel void pt_add_lights(__global const FrameParams *frame, __global uint *pa
 }
 
 /* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
-__kernel void pt_extend_paths(__global const FrameParams *frame, __global const uint *geometry,
-                              __global const uint *tables, __global const uint *texels, __global uint *paths,
-                              __global uint *rays)
+__kernel void pt_extend_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
+                              __global uint *restrict rays)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -228,8 +227,8 @@ __kernel void pt_extend_paths(__global const FrameParams *frame, __global const 
 }
 
 /* From: the finished path. To: what it adds to its pixel. A sum that is not finite counts as zero and is counted. */
-__kernel void pt_splat(__global const FrameParams *frame, __global const uint *paths, __global uint *splats,
-                       __global uint *diagnostics)
+__kernel void pt_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths, __global uint *restrict splats,
+                       __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     Vec3 radiance =

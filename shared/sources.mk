@@ -1,5 +1,6 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/bilinear.h \
 	shared/bsdf.h \
 	shared/bsdf_coated.h \
 	shared/bsdf_conductor.h \
@@ -9,9 +10,13 @@ SHARED_FILES = \
 	shared/bsdf_thin_dielectric.h \
 	shared/camera.h \
 	shared/coat.h \
+	shared/diagnostics.h \
+	shared/disk.h \
 	shared/distribution.h \
 	shared/elementary.h \
 	shared/fresnel.h \
+	shared/kernel_list.h \
+	shared/kernels.cl \
 	shared/light.h \
 	shared/light_area.h \
 	shared/light_delta.h \
@@ -24,13 +29,19 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/primitive.h \
 	shared/pt.cl \
+	shared/ray.h \
 	shared/rng.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
+	shared/sphere.h \
 	shared/state.h \
+	shared/surface.h \
 	shared/texture.h \
+	shared/triangle.h \
 	shared/vec.h \
+	shared/walk.cl \
 	shared/warp.h
 
 # Installed with the program: OpenCL builds its programs from them.

@@ -1,16 +1,249 @@
+/* Whole pictures: analytic scenes, furnaces, determinism, references. */
+#include "render_fixture.h"
 #include "test_util.h"
 
-START_TEST(test_placeholder)
+#include <string.h>
+
+#define CAMERA_INSIDE                                                                                                 \
+    "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"                                             \
+    "PixelFilter \"box\"\n"                                                                                            \
+    "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
+
+/* ---- analytic scenes (NUMERICS: to 0.5 %) ----------------------------------------------------------------------- */
+
+/* Inside a sphere of emission L and albedo a, light bounces for ever: the radiance is L / (1 - a) everywhere. */
+START_TEST(test_emitting_sphere_inside)
 {
-    ck_assert_int_eq(1, 1);
+    RenderedImage image;
+    RenderSetup setup = {.text = CAMERA_INSIDE "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                               "ReverseOrientation\n"
+                                               "AreaLightSource \"diffuse\" \"rgb L\" [ 0.5 0.5 0.5 ]\n"
+                                               "Shape \"sphere\" \"float radius\" 2\n",
+                         .samples = 512,
+                         .max_depth = 40};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 1.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* The same, cut after d segments: L (1 + a + ... + a^(d-1)), which pins down what a segment is. */
+START_TEST(test_emitting_sphere_depths)
+{
+    double expected = 0.0;
+    for (int depth = 1; depth <= 4; ++depth) {
+        RenderedImage image;
+        RenderSetup setup = {.text = CAMERA_INSIDE "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                                   "ReverseOrientation\n"
+                                                   "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n"
+                                                   "Shape \"sphere\" \"float radius\" 2\n",
+                             .samples = 256,
+                             .max_depth = depth};
+        expected += pow(0.5, depth - 1);
+        fixture_render(&setup, &image);
+        ck_assert_double_eq_tol(fixture_mean(&image), expected, 0.005 * expected);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
+/* A Lambertian sphere of albedo 0.5 with emission 0.5 seen from outside in black space, alone: radiance 0.5 (it does
+ * not see itself); under a constant environment of radiance 1: 0.5 + 0.5 = 1. */
+START_TEST(test_lambert_sphere)
+{
+    RenderedImage image;
+    RenderSetup setup = {.text = "LookAt 0 0 5  0 0 0  0 1 0\n"
+                                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+                                 "PixelFilter \"box\"\n"
+                                 "Camera \"perspective\" \"float fov\" 8\nWorldBegin\n"
+                                 "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n"
+                                 "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                 "AreaLightSource \"diffuse\" \"rgb L\" [ 0.5 0.5 0.5 ]\n"
+                                 "Shape \"sphere\" \"float radius\" 1\n",
+                         .samples = 512,
+                         .max_depth = 10};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 1.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* A point light of intensity I at height h over a Lambertian plane: radiance a / pi * I / h^2 straight below. */
+START_TEST(test_point_light_plane)
+{
+    RenderedImage image;
+    RenderSetup setup = {.text = "LookAt 0 0 5  0 0 0  0 1 0\n"
+                                 "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+                                 "PixelFilter \"box\"\n"
+                                 "Camera \"perspective\" \"float fov\" 0.1\nWorldBegin\n"
+                                 "LightSource \"point\" \"rgb I\" [ 20 20 20 ] \"point3 from\" [ 0 0 2 ]\n"
+                                 "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.6 0.6 ]\n"
+                                 "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 0  9 -9 0  -9 9 0  9 9 0 ]\n",
+                         .samples = 16,
+                         .max_depth = 2};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 0.6 / M_PI * 20.0 / 4.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* ---- furnaces ---------------------------------------------------------------------------------------------------- */
+
+typedef struct FurnaceCase {
+    const char *material;
+    double low, high; /* bounds of the mean, where 1 is all the energy */
+} FurnaceCase;
+
+/* A sphere of a material that absorbs nothing in an environment of radiance 1. Single-scattering microfacet models
+ * lose what would bounce between facets; nothing may gain. */
+static const FurnaceCase FURNACES[] = {
+    {"Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.995, 1.005},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0", 0.995, 1.005},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.2 \"bool remaproughness\" false", 0.97,
+     1.003},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.8 \"bool remaproughness\" false", 0.6,
+     1.003},
+    {"Material \"dielectric\" \"float eta\" 1.5", 0.995, 1.005},
+    {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.2 \"bool remaproughness\" false", 0.9, 1.005},
+    {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.7 \"bool remaproughness\" false", 0.6, 1.005},
+    {"Material \"thindielectric\" \"float eta\" 1.5", 0.995, 1.005},
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.99, 1.005},
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.3 \"bool remaproughness\" false",
+     0.9, 1.005},
+    {"Material \"diffusetransmission\" \"rgb reflectance\" [ 0.4 0.4 0.4 ] \"rgb transmittance\" [ 0.6 0.6 0.6 ]", 0.99,
+     1.005},
+    {"MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+     "MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0\n"
+     "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.3",
+     0.995, 1.005},
+};
+
+START_TEST(test_furnace)
+{
+    char text[1024];
+    RenderedImage image;
+    snprintf(text, sizeof text,
+             "LookAt 0 0 5  0 0 0  0 1 0\n"
+             "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+             "PixelFilter \"box\"\n"
+             "Camera \"perspective\" \"float fov\" 20\nWorldBegin\n"
+             "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n%s\nShape \"sphere\" \"float radius\" 1\n",
+             FURNACES[_i].material);
+    RenderSetup setup = {.text = text, .samples = 256, .max_depth = 60};
+    fixture_render(&setup, &image);
+    double mean = fixture_mean(&image);
+    ck_assert_msg(mean >= FURNACES[_i].low && mean <= FURNACES[_i].high, "%s: mean %g outside [%g, %g]",
+                  FURNACES[_i].material, mean, FURNACES[_i].low, FURNACES[_i].high);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* ---- determinism ------------------------------------------------------------------------------------------------- */
+
+static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
+                                            "coffee/gray.pbrt"};
+#define PUBLIC_SCENE_COUNT ((int)(sizeof PUBLIC_SCENES / sizeof PUBLIC_SCENES[0]))
+
+static bool public_scene_path(int index, char *path, size_t size)
+{
+    const char *folder = fixture_public_scenes();
+    if (folder)
+        snprintf(path, size, "%s/%s", folder, PUBLIC_SCENES[index]);
+    else
+        fprintf(stderr, "public scenes not found: set SCENES to their folder; %s is not tested\n", PUBLIC_SCENES[index]);
+    return folder != NULL;
+}
+
+static void films_equal(const Film *a, const Film *b)
+{
+    size_t pixels = (size_t)(a->crop[2] - a->crop[0]) * (size_t)(a->crop[3] - a->crop[1]);
+    ck_assert_int_eq(a->quantum_exponent, b->quantum_exponent);
+    for (size_t i = 0; i < 3 * pixels; ++i)
+        ck_assert_msg(a->sums[i] == b->sums[i], "sum %zu differs: %lld and %lld", i, (long long)a->sums[i],
+                      (long long)b->sums[i]);
+    for (size_t i = 0; i < pixels; ++i)
+        ck_assert_uint_eq(a->counts[i], b->counts[i]);
+}
+
+START_TEST(test_same_bits_for_any_threads)
+{
+    static const int THREADS[] = {2, 3, 8};
+    char path[1200];
+    if (!public_scene_path(_i, path, sizeof path))
+        return;
+    RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 4, .threads = 1, .seed = 7};
+    RenderedImage one, other;
+    fixture_render(&setup, &one);
+    ck_assert(fixture_mean(&one) > 0.0);
+    for (int i = 0; i < 3; ++i) {
+        setup.threads = THREADS[i];
+        fixture_render(&setup, &other);
+        films_equal(&one.film, &other.film);
+        ck_assert_int_eq(memcmp(one.rgb, other.rgb, sizeof(float) * 3 * 40 * 24), 0);
+        fixture_destroy(&other);
+    }
+    fixture_destroy(&one);
+}
+END_TEST
+
+START_TEST(test_same_bits_in_two_parts)
+{
+    char path[1200];
+    Error error = {0};
+    if (!public_scene_path(_i, path, sizeof path))
+        return;
+    RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 7, .seed = 9};
+    RenderedImage whole, first, second;
+    fixture_render(&setup, &whole);
+    setup.samples = 3;
+    fixture_render(&setup, &first);
+    setup.first_sample = 3;
+    setup.samples = 4;
+    setup.threads = 3;
+    fixture_render(&setup, &second);
+    ck_assert_msg(film_merge(&first.film, &second.film, &error), "%s", error.message);
+    films_equal(&whole.film, &first.film);
+    fixture_destroy(&whole);
+    fixture_destroy(&first);
+    fixture_destroy(&second);
+}
+END_TEST
+
+START_TEST(test_seeds_differ)
+{
+    static const char TEXT[] = CAMERA_INSIDE "Material \"diffuse\"\n"
+                                             "LightSource \"point\" \"point3 from\" [ 0.2 0.9 0.1 ]\n"
+                                             "Shape \"sphere\" \"float radius\" 2\n";
+    RenderedImage a, b;
+    RenderSetup setup = {.text = TEXT, .samples = 4, .seed = 1};
+    fixture_render(&setup, &a);
+    setup.seed = 1ull << 40;
+    fixture_render(&setup, &b);
+    ck_assert_int_ne(memcmp(a.rgb, b.rgb, sizeof(float) * 3 * 16 * 16), 0);
+    fixture_destroy(&a);
+    fixture_destroy(&b);
 }
 END_TEST
 
 int main(void)
 {
     Suite *suite = suite_create("render");
-    TCase *tcase = tcase_create("render");
-    tcase_add_test(tcase, test_placeholder);
-    suite_add_tcase(suite, tcase);
+    TCase *analytic = tcase_create("analytic");
+    tcase_set_timeout(analytic, 120);
+    tcase_add_test(analytic, test_emitting_sphere_inside);
+    tcase_add_test(analytic, test_emitting_sphere_depths);
+    tcase_add_test(analytic, test_lambert_sphere);
+    tcase_add_test(analytic, test_point_light_plane);
+    suite_add_tcase(suite, analytic);
+    TCase *furnace = tcase_create("furnace");
+    tcase_set_timeout(furnace, 120);
+    tcase_add_loop_test(furnace, test_furnace, 0, (int)(sizeof FURNACES / sizeof FURNACES[0]));
+    suite_add_tcase(suite, furnace);
+    TCase *determinism = tcase_create("determinism");
+    tcase_set_timeout(determinism, 120);
+    tcase_add_loop_test(determinism, test_same_bits_for_any_threads, 0, PUBLIC_SCENE_COUNT);
+    tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
+    tcase_add_test(determinism, test_seeds_differ);
+    suite_add_tcase(suite, determinism);
     return test_run(suite);
 }

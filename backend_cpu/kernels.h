@@ -1,0 +1,10 @@
+/* The kernels of shared/, compiled as C. */
+#ifndef TWINLIGHT_KERNELS_H
+#define TWINLIGHT_KERNELS_H
+
+#include "platform.h"
+
+/* Runs kernel `kernel` (KERNEL_* of kernel_list.h) for items 0 ... count - 1. `buffers`: by BufferId. */
+void kernel_run(unsigned kernel, void *const *buffers, uint count);
+
+#endif

@@ -1,0 +1,327 @@
+#include "rays_embree.h"
+
+#include "primitive.h"
+#include "primitive_bounds.h"
+#include "state.h"
+
+#include <embree3/rtcore.h>
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* One Object's hierarchy. */
+typedef struct ObjectRays {
+    const RaysEmbree *rays;
+    RTCScene scene;
+    uint first_primitive;
+    float margin;
+    Box box; /* without margin */
+} ObjectRays;
+
+struct RaysEmbree {
+    RTCDevice device;
+    SceneView view;
+    ObjectRays *objects; /* [0]: the world */
+    size_t object_count;
+    size_t instance_count;
+    atomic_llong bytes;
+    char failure[256]; /* Embree's last complaint */
+};
+
+/* What the callbacks find through the context that Embree hands on. The hit is kept here and not in Embree's record;
+ * Embree is told nothing but the new end of the ray. */
+typedef struct RayWalk {
+    struct RTCIntersectContext context; /* first: Embree's pointer to it is one to the walk */
+    const RaysEmbree *rays;
+    RayQuery query;
+    uint instance;
+    Hit best;
+} RayWalk;
+
+/* ---- callbacks --------------------------------------------------------------------------------------------------- */
+
+static void primitive_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    Box box = box_inflate(primitive_box(&object->rays->view, object->first_primitive + args->primID), object->margin);
+    struct RTCBounds *out = args->bounds_o;
+    *out = (struct RTCBounds){.lower_x = box.low[0],
+                              .lower_y = box.low[1],
+                              .lower_z = box.low[2],
+                              .upper_x = box.high[0],
+                              .upper_y = box.high[1],
+                              .upper_z = box.high[2]};
+}
+
+static void primitive_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    RayWalk *walk = (RayWalk *)args->context;
+    if (primitive_intersect(&object->rays->view, object->first_primitive + args->primID, walk->instance, &walk->query,
+                            &walk->best))
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t;
+}
+
+static void primitive_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    const RayWalk *walk = (const RayWalk *)args->context;
+    if (primitive_occludes(&object->rays->view, object->first_primitive + args->primID, &walk->query))
+        ((struct RTCRay *)args->ray)->tfar = -INFINITY;
+}
+
+static struct RTCRay ray_for_embree(const RayQuery *query, float t_max)
+{
+    return (struct RTCRay){.org_x = query->o.x,
+                           .org_y = query->o.y,
+                           .org_z = query->o.z,
+                           .dir_x = query->d.x,
+                           .dir_y = query->d.y,
+                           .dir_z = query->d.z,
+                           .tnear = 0.0f,
+                           .tfar = t_max,
+                           .mask = 0xffffffffu};
+}
+
+static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+{
+    const RaysEmbree *rays = args->geometryUserPtr;
+    const Instance *instance = &rays->view.instances[args->primID];
+    const ObjectRays *object = &rays->objects[instance->object];
+    Box box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    if (object->scene) {
+        Box inner = box_inflate(object->box, object->margin);
+        box = box_inflate(box_transform(&inner, &instance->world_from_object), rays->objects[0].margin);
+    }
+    *args->bounds_o = (struct RTCBounds){.lower_x = box.low[0],
+                                         .lower_y = box.low[1],
+                                         .lower_z = box.low[2],
+                                         .upper_x = box.high[0],
+                                         .upper_y = box.high[1],
+                                         .upper_z = box.high[2]};
+}
+
+/* The walk through an instance's object: the ray in its space, the best hit so far taken along. */
+static RayWalk walk_enter(const RayWalk *outer, uint instance)
+{
+    RayWalk inner;
+    rtcInitIntersectContext(&inner.context);
+    inner.rays = outer->rays;
+    inner.query = ray_query_transform(outer->rays->view.instances[instance].object_from_world, &outer->query);
+    inner.instance = instance;
+    inner.best = outer->best;
+    return inner;
+}
+
+static void instance_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
+{
+    const RaysEmbree *rays = args->geometryUserPtr;
+    const ObjectRays *object = &rays->objects[rays->view.instances[args->primID].object];
+    RayWalk *outer = (RayWalk *)args->context;
+    if (!object->scene)
+        return;
+    RayWalk inner = walk_enter(outer, args->primID);
+    struct RTCRayHit rayhit = {.ray = ray_for_embree(&inner.query, inner.best.t)};
+    rtcIntersect1(object->scene, &inner.context, &rayhit);
+    outer->best = inner.best;
+    ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t;
+}
+
+static void instance_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
+{
+    const RaysEmbree *rays = args->geometryUserPtr;
+    const ObjectRays *object = &rays->objects[rays->view.instances[args->primID].object];
+    if (!object->scene)
+        return;
+    RayWalk inner = walk_enter((const RayWalk *)args->context, args->primID);
+    struct RTCRay ray = ray_for_embree(&inner.query, inner.query.t_max);
+    rtcOccluded1(object->scene, &inner.context, &ray);
+    if (ray.tfar < 0.0f)
+        ((struct RTCRay *)args->ray)->tfar = -INFINITY;
+}
+
+/* ---- building ---------------------------------------------------------------------------------------------------- */
+
+static void embree_error_callback(void *context, enum RTCError code, const char *text)
+{
+    RaysEmbree *rays = context;
+    (void)code;
+    if (rays->failure[0] == '\0')
+        snprintf(rays->failure, sizeof rays->failure, "%s", text ? text : "unknown error");
+}
+
+static bool embree_memory_callback(void *context, ssize_t bytes, bool post)
+{
+    RaysEmbree *rays = context;
+    (void)post;
+    atomic_fetch_add(&rays->bytes, (long long)bytes);
+    return true;
+}
+
+static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *user, RTCBoundsFunction bounds,
+                            RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded)
+{
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, count);
+    rtcSetGeometryUserData(geometry, user);
+    rtcSetGeometryBoundsFunction(geometry, bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry, intersect);
+    rtcSetGeometryOccludedFunction(geometry, occluded);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+/* The largest coordinate that a ray's origin or the object's geometry takes in the object's space. */
+static float object_reach(const RaysEmbree *rays, size_t object)
+{
+    float world = rays->view.frame->ray_epsilon_scale;
+    float reach = world;
+    for (size_t i = 0; object > 0 && i < rays->instance_count; ++i)
+        if (rays->view.instances[i].object == object)
+            reach = float_max(reach, vec3_max_abs(affine_magnitude(rays->view.instances[i].object_from_world,
+                                                                   vec3(world, world, world))));
+    return reach;
+}
+
+static void object_build(RaysEmbree *rays, size_t index)
+{
+    ObjectRays *object = &rays->objects[index];
+    Object record = rays->view.objects[index];
+    object->rays = rays;
+    object->first_primitive = record.first_primitive;
+    object->margin = box_margin(object_reach(rays, index));
+    object->box = box_empty();
+    for (uint i = 0; i < record.primitive_count; ++i) {
+        Box box = primitive_box(&rays->view, record.first_primitive + i);
+        box_join(&object->box, &box);
+    }
+    uint instances = index == 0 ? (uint)rays->instance_count : 0u;
+    if (record.primitive_count == 0 && instances == 0)
+        return;
+    object->scene = rtcNewScene(rays->device);
+    rtcSetSceneBuildQuality(object->scene, RTC_BUILD_QUALITY_MEDIUM);
+    if (record.primitive_count > 0)
+        geometry_attach(rays->device, object->scene, record.primitive_count, object, primitive_bounds_callback,
+                        primitive_intersect_callback, primitive_occluded_callback);
+    if (instances > 0)
+        geometry_attach(rays->device, object->scene, instances, rays, instance_bounds_callback,
+                        instance_intersect_callback, instance_occluded_callback);
+    rtcCommitScene(object->scene);
+}
+
+static bool rays_build(RaysEmbree *rays, int threads, Error *error)
+{
+    char config[64];
+    snprintf(config, sizeof config, "threads=%d,set_affinity=0", threads);
+    rays->device = rtcNewDevice(config);
+    if (!rays->device)
+        return error_set(error, "Embree cannot be started (error %d)", (int)rtcGetDeviceError(NULL));
+    rtcSetDeviceErrorFunction(rays->device, embree_error_callback, rays);
+    rtcSetDeviceMemoryMonitorFunction(rays->device, embree_memory_callback, rays);
+    rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);
+    if (!rays->objects)
+        return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
+    /* The world last: its instances need their objects' bounds. */
+    for (size_t i = rays->object_count; i-- > 0;)
+        object_build(rays, i);
+    if (rays->failure[0] != '\0')
+        return error_set(error, "Embree cannot build its hierarchy: %s", rays->failure);
+    return true;
+}
+
+RaysEmbree *rays_embree_create(const BackendScene *scene, int threads, Error *error)
+{
+    RaysEmbree *rays = calloc(1, sizeof *rays);
+    if (!rays) {
+        error_memory(error, sizeof *rays, "ray queries");
+        return NULL;
+    }
+    rays->view = scene_view(scene->frame, scene->geometry, scene->tables, scene->texels);
+    rays->object_count = scene->object_count;
+    rays->instance_count = scene->instance_count;
+    if (!rays_build(rays, threads, error)) {
+        rays_embree_destroy(rays);
+        return NULL;
+    }
+    return rays;
+}
+
+void rays_embree_destroy(RaysEmbree *rays)
+{
+    if (!rays)
+        return;
+    for (size_t i = 0; rays->objects && i < rays->object_count; ++i)
+        if (rays->objects[i].scene)
+            rtcReleaseScene(rays->objects[i].scene);
+    if (rays->device)
+        rtcReleaseDevice(rays->device);
+    free(rays->objects);
+    free(rays);
+}
+
+/* ---- asking ------------------------------------------------------------------------------------------------------ */
+
+static void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *ray)
+{
+    rtcInitIntersectContext(&walk->context);
+    walk->rays = rays;
+    walk->query = ray_query(*ray);
+    walk->instance = NONE;
+    walk->best = hit_none(ray->t_max);
+}
+
+Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
+{
+    RayWalk walk;
+    walk_begin(&walk, rays, ray);
+    if (rays->object_count == 0 || !rays->objects[0].scene)
+        return walk.best;
+    struct RTCRayHit rayhit = {.ray = ray_for_embree(&walk.query, ray->t_max)};
+    rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
+    return walk.best;
+}
+
+bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
+{
+    RayWalk walk;
+    if (rays->object_count == 0 || !rays->objects[0].scene)
+        return false;
+    walk_begin(&walk, rays, ray);
+    struct RTCRay embree_ray = ray_for_embree(&walk.query, ray->t_max);
+    rtcOccluded1(rays->objects[0].scene, &walk.context, &embree_ray);
+    return embree_ray.tfar < 0.0f;
+}
+
+uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint count, uint stride)
+{
+    uint traced = 0;
+    for (uint t = 0; t < count; ++t) {
+        Ray ray = ray_load(ray_words, stride, t);
+        if (!(ray.t_max > 0.0f))
+            continue;
+        hit_store(hit_words, stride, t, rays_embree_closest(rays, &ray));
+        ++traced;
+    }
+    return traced;
+}
+
+uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride)
+{
+    uint traced = 0;
+    for (uint t = 0; t < count; ++t) {
+        Ray ray = ray_load(shadow_words, stride, t);
+        if (!(ray.t_max > 0.0f))
+            continue;
+        state_store(shadow_words, stride, SHADOW_OCCLUDED, t, rays_embree_occluded(rays, &ray) ? 1u : 0u);
+        ++traced;
+    }
+    return traced;
+}
+
+size_t rays_embree_bytes(const RaysEmbree *rays)
+{
+    long long bytes = atomic_load(&((RaysEmbree *)(uintptr_t)rays)->bytes);
+    return bytes > 0 ? (size_t)bytes : 0;
+}

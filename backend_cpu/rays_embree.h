@@ -1,0 +1,28 @@
+/* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. */
+#ifndef TWINLIGHT_RAYS_EMBREE_H
+#define TWINLIGHT_RAYS_EMBREE_H
+
+#include "backend.h"
+#include "path_types.h"
+
+typedef struct RaysEmbree RaysEmbree;
+
+/* Builds the hierarchies with `threads` threads. NULL on failure. The scene's words are borrowed. */
+RaysEmbree *rays_embree_create(const BackendScene *scene, int threads, Error *error);
+void rays_embree_destroy(RaysEmbree *rays);
+
+/* The closest hit, primitive NONE for a miss; ray.t_max > 0. Any number of threads may ask at once. */
+Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray);
+
+/* Whether anything lies within the ray. */
+bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray);
+
+/* The same over state buffers (state.h) of `count` items at `stride`. Rays with t_max <= 0 are not traced; what is
+ * returned is the number of the others. */
+uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint count, uint stride);
+uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride);
+
+/* Bytes that Embree holds. */
+size_t rays_embree_bytes(const RaysEmbree *rays);
+
+#endif

@@ -1,0 +1,23 @@
+/* Things that should not happen inside kernels, counted rather than hidden (BUFFER_DIAGNOSTICS: one 32-bit counter
+ * each, which a backend sums into 64 bits before it can overflow). */
+#ifndef TWINLIGHT_DIAGNOSTICS_H
+#define TWINLIGHT_DIAGNOSTICS_H
+
+#include "platform.h"
+
+/* X(constant, name in reports) */
+#define DIAGNOSTIC_LIST(X)                                                                                             \
+    X(DIAGNOSTIC_NOT_FINITE, "not_finite") /* contributions that were NaN or infinite and counted as zero */           \
+    X(DIAGNOSTIC_ZERO_DIRECTION, "zero_direction") /* rays without direction, which were not traced */
+
+#define DIAGNOSTIC_ENUMERATE(constant, name) constant,
+enum { DIAGNOSTIC_LIST(DIAGNOSTIC_ENUMERATE) DIAGNOSTIC_COUNT };
+#undef DIAGNOSTIC_ENUMERATE
+
+/* One more of `which`. */
+SHARED_FUNCTION void diagnostic_count(__global uint *diagnostics, uint which)
+{
+    counter_increment(diagnostics + which);
+}
+
+#endif

@@ -1,0 +1,34 @@
+/* Every kernel with its arguments, for the backends: the CPU makes a loop for each, a device looks them up by name.
+ * Kernels themselves never include this file. */
+#ifndef TWINLIGHT_KERNEL_LIST_H
+#define TWINLIGHT_KERNEL_LIST_H
+
+#include "diagnostics.h"
+
+/* X(name, number of arguments, the BufferId of each in order) */
+#define KERNEL_LIST(X)                                                                                                 \
+    X(pt_start_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_SHADOWS)                                                                                                  \
+    X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
+      BUFFER_HITS)                                                                                                     \
+    X(pt_sample_lights, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS)  \
+    X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
+    X(pt_extend_paths, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS)      \
+    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
+    X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
+      BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
+    X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+
+/* KERNEL_pt_start_paths ...: what Step.kernel holds. */
+#define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,
+enum { KERNEL_LIST(KERNEL_ENUMERATE) KERNEL_COUNT };
+#undef KERNEL_ENUMERATE
+
+/* Names of the counters in reports. */
+#define DIAGNOSTIC_NAME(constant, name) name,
+static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT]
+    __attribute__((unused)) = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
+#undef DIAGNOSTIC_NAME
+
+#endif

@@ -1,0 +1,3 @@
+/* All kernels, as one translation unit. */
+#include "pt.cl"
+#include "walk.cl"

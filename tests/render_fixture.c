@@ -1,0 +1,124 @@
+#include "render_fixture.h"
+
+#include "backend_cpu.h"
+#include "pbrt_import.h"
+
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void require(bool done, const Error *error)
+{
+    if (!done)
+        ck_abort_msg("%s (%s)", error->message, error->fix);
+}
+
+static void scene_load(const RenderSetup *setup, Scene *scene)
+{
+    Error error = {0};
+    ImportOptions options = {0};
+    scene_init(scene);
+    if (setup->text)
+        require(pbrt_import_text(setup->text, strlen(setup->text), "test.pbrt", ".", &options, scene, &error), &error);
+    else
+        require(pbrt_import(setup->path, &options, scene, &error), &error);
+    require(scene_finish(scene, &error), &error);
+    if (setup->width > 0) {
+        int crop[4] = {0, 0, setup->width, setup->height};
+        require(scene_film_set(scene, setup->width, setup->height, crop, &error), &error);
+    }
+}
+
+static Backend *backend_open(const Scene *scene, int threads)
+{
+    Error error = {0};
+    BackendScene view = {.frame = &scene->frame,
+                         .geometry = scene->geometry_words.data,
+                         .geometry_words = scene->geometry_words.count,
+                         .tables = scene->tables_words.data,
+                         .tables_words = scene->tables_words.count,
+                         .texels = scene->texels.data,
+                         .texel_words = scene->texels.count,
+                         .primitive_count = scene->primitive_count,
+                         .object_count = scene->objects.count,
+                         .instance_count = scene->instances.count};
+    BackendOptions options = {.threads = threads};
+    Backend *backend = backend_cpu()->open(&view, &options, &error);
+    require(backend != NULL, &error);
+    return backend;
+}
+
+void fixture_render(const RenderSetup *setup, RenderedImage *image)
+{
+    Error error = {0};
+    Scene scene;
+    memset(image, 0, sizeof *image);
+    scene_load(setup, &scene);
+    image->width = scene.settings.width;
+    image->height = scene.settings.height;
+    Backend *backend = backend_open(&scene, setup->threads > 0 ? setup->threads : 2);
+    require(film_init(&image->film, image->width, image->height, scene.settings.crop, &error), &error);
+    if (setup->quantum_of)
+        image->film.quantum_exponent = setup->quantum_of->quantum_exponent;
+    RenderOptions options = {.first_sample = setup->first_sample,
+                             .samples = setup->samples,
+                             .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
+                             .seed = setup->seed};
+    require(render_pt(&scene, backend_cpu(), backend, &options, setup->quantum_of != NULL, NULL, &image->film,
+                      &image->result, &error),
+            &error);
+    backend_cpu()->close(backend);
+    image->rgb = malloc((size_t)image->width * (size_t)image->height * 3 * sizeof *image->rgb);
+    ck_assert_ptr_nonnull(image->rgb);
+    film_resolve(&image->film, scene.settings.film_scale, image->rgb);
+    scene_destroy(&scene);
+}
+
+void fixture_destroy(RenderedImage *image)
+{
+    film_destroy(&image->film);
+    free(image->rgb);
+    memset(image, 0, sizeof *image);
+}
+
+double fixture_block_mean(const float *rgb, int width, int x0, int y0, int x1, int y1)
+{
+    double sum = 0.0;
+    for (int y = y0; y < y1; ++y)
+        for (int i = 3 * (y * width + x0); i < 3 * (y * width + x1); ++i)
+            sum += (double)rgb[i];
+    return sum / (3.0 * (x1 - x0) * (y1 - y0));
+}
+
+double fixture_mean(const RenderedImage *image)
+{
+    return fixture_block_mean(image->rgb, image->width, 0, 0, image->width, image->height);
+}
+
+double fixture_block_difference(const float *rgb, const float *reference, int width, int height, int grid)
+{
+    double floor_value = 0.01 * fixture_block_mean(reference, width, 0, 0, width, height), sum = 0.0;
+    for (int j = 0; j < grid; ++j)
+        for (int i = 0; i < grid; ++i) {
+            int x0 = (int)lrint((double)width * i / grid), x1 = (int)lrint((double)width * (i + 1) / grid);
+            int y0 = (int)lrint((double)height * j / grid), y1 = (int)lrint((double)height * (j + 1) / grid);
+            double a = fixture_block_mean(rgb, width, x0, y0, x1, y1);
+            double b = fixture_block_mean(reference, width, x0, y0, x1, y1);
+            sum += fabs(a - b) / (b + floor_value);
+        }
+    return sum / (grid * grid);
+}
+
+const char *fixture_public_scenes(void)
+{
+    static char path[1024];
+    const char *given = getenv("SCENES"), *source = getenv("srcdir");
+    if (given)
+        snprintf(path, sizeof path, "%s", given);
+    else
+        snprintf(path, sizeof path, "%s/../shared/scenes", source ? source : ".");
+    return access(path, R_OK) == 0 ? path : NULL;
+}

@@ -1,0 +1,43 @@
+/* Renders scenes given as text or file on the CPU backend, for tests of whole pictures. */
+#ifndef TWINLIGHT_RENDER_FIXTURE_H
+#define TWINLIGHT_RENDER_FIXTURE_H
+
+#include "film.h"
+#include "render.h"
+#include "scene.h"
+
+typedef struct RenderSetup {
+    const char *text; /* scene in pbrt's format; NULL: read `path` */
+    const char *path;
+    int width, height; /* 0: the scene's */
+    unsigned first_sample, samples;
+    int max_depth; /* 0: the scene's */
+    int threads;
+    uint64_t seed;
+    const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */
+} RenderSetup;
+
+typedef struct RenderedImage {
+    Film film;
+    RenderResult result;
+    int width, height;
+    float *rgb; /* 3 a pixel */
+} RenderedImage;
+
+/* Fails the Check test, with the error's text, when anything goes wrong. */
+void fixture_render(const RenderSetup *setup, RenderedImage *image);
+void fixture_destroy(RenderedImage *image);
+
+/* Mean over all pixels and channels. */
+double fixture_mean(const RenderedImage *image);
+
+/* Mean over channels of the block of pixels [x0, x1) x [y0, y1). */
+double fixture_block_mean(const float *rgb, int width, int x0, int y0, int x1, int y1);
+
+/* Mean over a grid x grid of blocks of |a - b| / (b + 0.01 mean b), b the blocks of `reference`. */
+double fixture_block_difference(const float *rgb, const float *reference, int width, int height, int grid);
+
+/* Folder of the public scenes: $SCENES, else scenes/ beside the checkout. NULL when it is not there. */
+const char *fixture_public_scenes(void);
+
+#endif
