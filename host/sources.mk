@@ -15,6 +15,7 @@ libtwinlight_host_la_SOURCES = \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
 	host/exr.c host/exr.h \
+	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \
 	host/filter_setup.c host/filter_setup.h \
 	host/image.c host/image.h \
@@ -27,10 +28,12 @@ libtwinlight_host_la_SOURCES = \
 	host/json.c host/json.h \
 	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
-	host/arena.c host/arena.h \
-	host/file_read.c host/file_read.h \
 	host/matrix.c host/matrix.h \
+	host/metrics.c host/metrics.h \
 	host/name_table.c host/name_table.h \
+	host/option_values.c host/option_values.h \
+	host/options.c host/options.h \
+	host/output_file.c host/output_file.h \
 	host/pbrt_context.h \
 	host/pbrt_directives.c host/pbrt_directives.h \
 	host/pbrt_film_camera.c \
@@ -49,20 +52,8 @@ libtwinlight_host_la_SOURCES = \
 	host/pbrt_textures.c \
 	host/pbrt_values.c host/pbrt_values.h \
 	host/ply.c host/ply.h \
-	host/ply_header.c host/ply_internal.h \
-	host/text_number.c host/text_number.h \
-	host/matrix.c host/matrix.h \
-	host/metrics.c host/metrics.h \
-	host/name_table.c host/name_table.h \
-	host/option_values.c host/option_values.h \
-	host/options.c host/options.h \
-	host/output_file.c host/output_file.h \
-	host/pbrt_context.h \
-	host/pbrt_import.h \
-	host/pbrt_lexer.c host/pbrt_lexer.h \
-	host/pbrt_param_list.c \
-	host/pbrt_params.c host/pbrt_params.h \
-	host/pbrt_values.h \
+	host/ply_header.c \
+	host/ply_internal.h \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
 	host/render.h \
