@@ -190,6 +190,24 @@ START_TEST(test_orientation)
 }
 END_TEST
 
+/* The top row of a latitude-longitude image does not shine out of the bottom, though the image repeats. */
+START_TEST(test_poles)
+{
+    static const double IDENTITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    float texels[3 * 32] = {0.0f};
+    for (int i = 0; i < 24; ++i)
+        texels[i] = 1.0f;
+    LightFixture f;
+    fixture_init(&f);
+    fixture_add_environment(&f, texels, 8, 4, LIGHT_EQUIRECTANGULAR, IDENTITY);
+    fixture_finish(&f);
+    Vec3 down = vec3_normalize(vec3(0.1f, 0.0f, -1.0f)), up = vec3_negate(down);
+    ck_assert((environment_radiance(&f.view, down).x == 0.0f) && (environment_pdf_w(&f.view, 0, down) == 0.0f));
+    ck_assert((environment_radiance(&f.view, up).x == 1.0f) && (environment_pdf_w(&f.view, 0, up) > 0.0f));
+    fixture_destroy(&f);
+}
+END_TEST
+
 /* Several environments add up; a black one is not listed. */
 START_TEST(test_sum)
 {
@@ -214,6 +232,7 @@ TCase *light_environment_case(void)
     tcase_add_test(tcase, test_images);
     tcase_add_test(tcase, test_hot_texel);
     tcase_add_test(tcase, test_orientation);
+    tcase_add_test(tcase, test_poles);
     tcase_add_test(tcase, test_sum);
     return tcase;
 }
