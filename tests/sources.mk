@@ -82,6 +82,7 @@ tests_test_import_CFLAGS = $(TEST_CFLAGS)
 tests_test_import_LDADD = $(TEST_LIBS)
 
 tests_test_light_SOURCES = tests/test_light.c \
+	tests/test_camera.c \
 	tests/test_light_area.c \
 	tests/test_light_camera.c \
 	tests/test_light_environment.c \
@@ -89,6 +90,9 @@ tests_test_light_SOURCES = tests/test_light.c \
 	tests/test_light_irradiance.c \
 	tests/test_light_mis.c \
 	tests/test_light_select.c
+	tests/test_light_select.c \
+	tests/test_mis.c \
+	tests/test_pixel_filter.c
 tests_test_light_CFLAGS = $(TEST_CFLAGS)
 tests_test_light_LDADD = $(TEST_LIBS)
 
