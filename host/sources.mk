@@ -5,33 +5,6 @@ libtwinlight_host_la_SOURCES = \
 	host/backend.h \
 	host/camera_setup.c host/camera_setup.h \
 	host/cmd_compare.c host/cmd_compare.h \
-	host/coat_table.c host/coat_table.h \
-	host/color.c host/color.h \
-	host/color_named.c host/color_tables.h \
-	host/distribution.c host/distribution.h \
-	host/error.c host/error.h \
-	host/error_image.c host/error_image.h \
-	host/exr.c host/exr.h \
-	host/film.c host/film.h \
-	host/filter_setup.c host/filter_setup.h \
-	host/image.c host/image.h \
-	host/image_exr.c \
-	host/image_formats.h \
-	host/image_pfm.c \
-	host/image_stb.c \
-	host/integrator_pt.c \
-	host/light_setup.c host/light_setup.h \
-	host/log.c host/log.h \
-	host/metrics.c host/metrics.h \
-	host/output_file.c host/output_file.h \
-	host/png_write.c host/png_write.h \
-	host/render.h \
-	host/scene.c host/scene.h \
-	host/scene_finish.c \
-	host/texture_image.c host/texture_image.h
-# The command line.
-libtwinlight_host_la_SOURCES += \
-	host/cmd_compare.h \
 	host/cmd_info.c \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
@@ -41,6 +14,7 @@ libtwinlight_host_la_SOURCES += \
 	host/command.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
+	host/error_image.c host/error_image.h \
 	host/exr.c host/exr.h \
 	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \

@@ -2,9 +2,6 @@
 TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
 TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 
-# Check's float macros print what they compare, as double.
-CHECK_FLOAT_CFLAGS = -Wno-double-promotion
-
 if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_bsdf \
@@ -21,26 +18,6 @@ check_PROGRAMS += \
 TESTS += $(check_PROGRAMS)
 endif
 
-tests_test_bsdf_SOURCES = tests/test_bsdf.c tests/test_util.h
-tests_test_film_SOURCES = tests/test_film.c tests/test_film_output.c tests/test_files.h tests/test_util.h
-tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
-tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
-tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
-tests_test_metrics_SOURCES = tests/test_metrics.c tests/test_files.h tests/test_util.h
-tests_test_render_SOURCES = tests/test_render.c tests/test_util.h
-tests_test_texture_SOURCES = tests/test_texture.c tests/test_texture_color.c tests/test_texture_files.c \
-	tests/test_texture_image.c tests/test_files.h tests/test_util.h
-
-tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_film_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) $(CHECK_FLOAT_CFLAGS)
-tests_test_geometry_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_import_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_light_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_math_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_metrics_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) $(CHECK_FLOAT_CFLAGS)
-tests_test_render_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_texture_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) $(CHECK_FLOAT_CFLAGS)
 EXTRA_DIST += \
 	tests/bsdf_cases.h \
 	tests/geometry_fixture.h \
@@ -48,6 +25,7 @@ EXTRA_DIST += \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
+	tests/test_files.h \
 	tests/test_light.h \
 	tests/test_math.h \
 	tests/test_util.h \
@@ -59,16 +37,9 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_sampling.c
 tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
-tests_test_film_LDADD = $(TEST_LIBS)
-tests_test_geometry_LDADD = $(TEST_LIBS)
-tests_test_import_LDADD = $(TEST_LIBS)
-tests_test_light_LDADD = $(TEST_LIBS)
-tests_test_math_LDADD = $(TEST_LIBS)
-tests_test_metrics_LDADD = $(TEST_LIBS)
-tests_test_render_LDADD = $(TEST_LIBS)
-tests_test_texture_LDADD = $(TEST_LIBS)
 
-tests_test_film_SOURCES = tests/test_film.c
+tests_test_film_SOURCES = tests/test_film.c \
+	tests/test_film_output.c
 tests_test_film_CFLAGS = $(TEST_CFLAGS)
 tests_test_film_LDADD = $(TEST_LIBS)
 
@@ -82,7 +53,6 @@ tests_test_import_CFLAGS = $(TEST_CFLAGS)
 tests_test_import_LDADD = $(TEST_LIBS)
 
 tests_test_light_SOURCES = tests/test_light.c \
-	tests/test_camera.c \
 	tests/test_light_area.c \
 	tests/test_light_camera.c \
 	tests/test_light_environment.c \
@@ -90,9 +60,6 @@ tests_test_light_SOURCES = tests/test_light.c \
 	tests/test_light_irradiance.c \
 	tests/test_light_mis.c \
 	tests/test_light_select.c
-	tests/test_light_select.c \
-	tests/test_mis.c \
-	tests/test_pixel_filter.c
 tests_test_light_CFLAGS = $(TEST_CFLAGS)
 tests_test_light_LDADD = $(TEST_LIBS)
 
@@ -106,6 +73,10 @@ tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_warp.c
 tests_test_math_CFLAGS = $(TEST_CFLAGS)
 tests_test_math_LDADD = $(TEST_LIBS)
+
+tests_test_metrics_SOURCES = tests/test_metrics.c
+tests_test_metrics_CFLAGS = $(TEST_CFLAGS)
+tests_test_metrics_LDADD = $(TEST_LIBS)
 
 tests_test_options_SOURCES = tests/test_options.c
 tests_test_options_CFLAGS = $(TEST_CFLAGS)
@@ -126,7 +97,10 @@ tests_test_render_SOURCES = tests/test_render.c \
 tests_test_render_CFLAGS = $(TEST_CFLAGS)
 tests_test_render_LDADD = $(TEST_LIBS)
 
-tests_test_texture_SOURCES = tests/test_texture.c
+tests_test_texture_SOURCES = tests/test_texture.c \
+	tests/test_texture_color.c \
+	tests/test_texture_files.c \
+	tests/test_texture_image.c
 tests_test_texture_CFLAGS = $(TEST_CFLAGS)
 tests_test_texture_LDADD = $(TEST_LIBS)
 
