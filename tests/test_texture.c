@@ -113,9 +113,9 @@ static void lookups_check(const Image *image, uint wrap, uint filter)
         Vec3 c = image_lookup(&view, index, vec2(u, v));
         const float got[3] = {c.x, c.y, c.z};
         for (int k = 0; k < 3; ++k)
-            ck_assert_double_eq_tol((double)got[k], model_lookup(image, wrap, filter, (double)u, (double)v, k), 2e-4);
+            TEST_NEAR(got[k], model_lookup(image, wrap, filter, (double)u, (double)v, k), 2e-4);
         double alpha = image->channels == 4 ? model_lookup(image, wrap, filter, (double)u, (double)v, 3) : 1.0;
-        ck_assert_double_eq_tol((double)image_lookup_alpha(&view, index, vec2(u, v)), alpha, 2e-4);
+        TEST_NEAR(image_lookup_alpha(&view, index, vec2(u, v)), alpha, 2e-4);
     }
     scene_destroy(&scene);
 }
@@ -158,8 +158,8 @@ START_TEST(test_lookups_of_any_float)
         for (uint k = 0; k < 8; ++k) {
             Vec3 c = image_lookup(&view, first + k, vec2(u, v));
             float a = image_lookup_float(&view, first + k, vec2(u, v));
-            ck_assert(c.x >= 0.0f && c.x <= 1.0f && c.y >= 0.0f && c.y <= 1.0f && c.z >= 0.0f && c.z <= 1.0f);
-            ck_assert(a >= 0.0f && a <= 1.0f);
+            TEST_TRUE(c.x >= 0.0f && c.x <= 1.0f && c.y >= 0.0f && c.y <= 1.0f && c.z >= 0.0f && c.z <= 1.0f);
+            TEST_TRUE(a >= 0.0f && a <= 1.0f);
         }
     }
     scene_destroy(&scene);
@@ -204,8 +204,7 @@ static Vec3 program_run(const TextureOp *ops, size_t count, Scene *scene, const 
 {
     SceneView view = view_make(scene);
     view.texture_ops = ops;
-    ck_assert_uint_ge(texture_program_depth(ops, count), 1);
-    ck_assert_uint_le(texture_program_depth(ops, count), TEXTURE_STACK);
+    TEST_TRUE(texture_program_depth(ops, count) - 1u < TEXTURE_STACK);
     *number = texture_eval_float(&view, 0, point);
     return texture_eval(&view, 0, point);
 }
@@ -309,8 +308,8 @@ START_TEST(test_mappings)
                            (float)(test_random_unit(&state) * 8.0 - 4.0));
             model_map(mapping, point.p, st);
             Vec2 got = texture_map(&op, &point);
-            ck_assert_double_eq_tol((double)got.x, st[0], 3e-5);
-            ck_assert_double_eq_tol((double)got.y, st[1], 3e-5);
+            TEST_NEAR(got.x, st[0], 3e-5);
+            TEST_NEAR(got.y, st[1], 3e-5);
         }
     }
     /* The origin, where directions have no meaning, is some point of the map. */
@@ -349,8 +348,8 @@ START_TEST(test_checkerboards)
         if (near)
             continue;
         Vec3 got = program_run(ops, 4, &scene, &point, &number);
-        ck_assert_float_eq(got.x, model_checker(st, solid ? 3 : 2) ? 4.0f : 1.0f);
-        ck_assert_float_eq(number, got.x);
+        TEST_NEAR(got.x, model_checker(st, solid ? 3 : 2) ? 4.0 : 1.0, 0.0);
+        TEST_NEAR(number, got.x, 0.0);
     }
     const float odd[] = {NAN, INFINITY, FLOAT_MAX, -FLOAT_MAX, 1e20f};
     for (int i = 0; i < 5; ++i)
