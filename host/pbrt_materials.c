@@ -96,14 +96,15 @@ static void diffuse_read(MaterialReader *r)
 
 static void coated_diffuse_read(MaterialReader *r)
 {
-    FloatParam ignored = float_constant(0.0f);
+    FloatParam ignored = float_constant(0.0f), thickness = float_constant(0.01f);
     ColorParam albedo = color_constant(0.0f);
     diffuse_read(r);
     roughness_read(r, ROUGHNESS);
     r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
-    if (value_float_param(r->im, r->list, "thickness", &ignored))
-        log_message_at(LOG_INFO, param_place(r->list, "thickness"),
-                       "the coat's thickness is not used: it absorbs nothing");
+    if (value_float_param(r->im, r->list, "thickness", &thickness) && !r->list->failed &&
+        (thickness.program != NONE || thickness.value < 0.0f))
+        param_error(r->list, "thickness", "the thickness of a coat must be a number that is not negative");
+    r->material.color1.value.x = thickness.value;
     value_float_param(r->im, r->list, "g", &ignored);
     param_integer(r->list, "maxdepth", 10);
     param_integer(r->list, "nsamples", 1);

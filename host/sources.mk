@@ -4,7 +4,7 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/camera_setup.c host/camera_setup.h \
-	host/cmd_compare.h \
+	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_info.c \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
@@ -14,6 +14,7 @@ libtwinlight_host_la_SOURCES = \
 	host/command.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
+	host/error_image.c host/error_image.h \
 	host/exr.c host/exr.h \
 	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \

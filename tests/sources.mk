@@ -11,6 +11,7 @@ check_PROGRAMS += \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
+	tests/test_metrics \
 	tests/test_options \
 	tests/test_platform_bits \
 	tests/test_render \
@@ -25,6 +26,7 @@ EXTRA_DIST += \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
+	tests/test_files.h \
 	tests/test_light.h \
 	tests/test_math.h \
 	tests/test_util.h \
@@ -37,7 +39,8 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
 
-tests_test_film_SOURCES = tests/test_film.c
+tests_test_film_SOURCES = tests/test_film.c \
+	tests/test_film_output.c
 tests_test_film_CFLAGS = $(TEST_CFLAGS)
 tests_test_film_LDADD = $(TEST_LIBS)
 
@@ -51,13 +54,13 @@ tests_test_import_CFLAGS = $(TEST_CFLAGS)
 tests_test_import_LDADD = $(TEST_LIBS)
 
 tests_test_light_SOURCES = tests/test_light.c \
-	tests/test_camera.c \
 	tests/test_light_area.c \
+	tests/test_light_camera.c \
 	tests/test_light_environment.c \
+	tests/test_light_filter.c \
 	tests/test_light_irradiance.c \
-	tests/test_light_select.c \
-	tests/test_mis.c \
-	tests/test_pixel_filter.c
+	tests/test_light_mis.c \
+	tests/test_light_select.c
 tests_test_light_CFLAGS = $(TEST_CFLAGS)
 tests_test_light_LDADD = $(TEST_LIBS)
 
@@ -71,6 +74,10 @@ tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_warp.c
 tests_test_math_CFLAGS = $(TEST_CFLAGS)
 tests_test_math_LDADD = $(TEST_LIBS)
+
+tests_test_metrics_SOURCES = tests/test_metrics.c
+tests_test_metrics_CFLAGS = $(TEST_CFLAGS)
+tests_test_metrics_LDADD = $(TEST_LIBS)
 
 tests_test_options_SOURCES = tests/test_options.c
 tests_test_options_CFLAGS = $(TEST_CFLAGS)
@@ -91,7 +98,10 @@ tests_test_render_SOURCES = tests/test_render.c \
 tests_test_render_CFLAGS = $(TEST_CFLAGS)
 tests_test_render_LDADD = $(TEST_LIBS)
 
-tests_test_texture_SOURCES = tests/test_texture.c
+tests_test_texture_SOURCES = tests/test_texture.c \
+	tests/test_texture_color.c \
+	tests/test_texture_files.c \
+	tests/test_texture_image.c
 tests_test_texture_CFLAGS = $(TEST_CFLAGS)
 tests_test_texture_LDADD = $(TEST_LIBS)
 

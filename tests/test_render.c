@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#define CAMERA_INSIDE                                                                                                 \
+#define CAMERA_INSIDE                                                                                                  \
     "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"                                             \
     "PixelFilter \"box\"\n"                                                                                            \
     "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
@@ -107,8 +107,10 @@ static const FurnaceCase FURNACES[] = {
     {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.2 \"bool remaproughness\" false", 0.9, 1.005},
     {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.7 \"bool remaproughness\" false", 0.6, 1.005},
     {"Material \"thindielectric\" \"float eta\" 1.5", 0.995, 1.005},
-    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.99, 1.005},
-    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.3 \"bool remaproughness\" false",
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float thickness\" 0", 0.99, 1.005},
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.85, 0.98}, /* the coat absorbs */
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float thickness\" 0 \"float roughness\" 0.3 "
+     "\"bool remaproughness\" false",
      0.9, 1.005},
     {"Material \"diffusetransmission\" \"rgb reflectance\" [ 0.4 0.4 0.4 ] \"rgb transmittance\" [ 0.6 0.6 0.6 ]", 0.99,
      1.005},
@@ -150,7 +152,8 @@ static bool public_scene_path(int index, char *path, size_t size)
     if (folder)
         snprintf(path, size, "%s/%s", folder, PUBLIC_SCENES[index]);
     else
-        fprintf(stderr, "public scenes not found: set SCENES to their folder; %s is not tested\n", PUBLIC_SCENES[index]);
+        fprintf(stderr, "public scenes not found: set SCENES to their folder; %s is not tested\n",
+                PUBLIC_SCENES[index]);
     return folder != NULL;
 }
 

@@ -198,7 +198,7 @@ START_TEST(test_bad_settings)
     s.focal_distance = 0.0f;
     assert_refused(s, "focal distance");
     s = good;
-    s.world_from_camera[3] = INFINITY;
+    s.world_from_camera[3] = (double)INFINITY;
     assert_refused(s, "transformation");
 }
 END_TEST
