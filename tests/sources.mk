@@ -14,7 +14,15 @@ check_PROGRAMS += \
 TESTS += $(check_PROGRAMS)
 endif
 
-tests_test_bsdf_SOURCES = tests/test_bsdf.c tests/test_util.h
+tests_test_bsdf_SOURCES = \
+	tests/bsdf_cases.h \
+	tests/test_bsdf.c \
+	tests/test_bsdf_coated.c \
+	tests/test_bsdf_energy.c \
+	tests/test_bsdf_formulas.c \
+	tests/test_bsdf_identities.c \
+	tests/test_bsdf_sampling.c \
+	tests/test_util.h
 tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h

@@ -60,7 +60,8 @@ static Double3 double3_face(Double3 m)
 }
 
 /* Walter et al. 2007, eq. 20 and 14, with the sampling of visible normals. `index` is relative to wo's side. */
-static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, double ay, double complex index, bool choose)
+static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, double ay, double complex index,
+                                         bool choose)
 {
     Double3 m = double3_face((Double3){wo.x + wi.x, wo.y + wi.y, wo.z + wi.z});
     double fresnel = textbook_fresnel(fabs(dot3(wo, m)), index);

@@ -203,12 +203,11 @@ START_TEST(test_extreme_inputs)
         Vec2 u2 = vec2(u < 1.0f ? u : 0.5f, random_float24(&random));
         if (!bsdf_sample(&scene.view, &bsdf, wo, u_lobe < 1.0f ? u_lobe : 0.5f, u2, TRANSPORT_IMPORTANCE, &sample))
             continue;
-        ck_assert_msg(sane(sample.weight) && sane(vec3(sample.pdf_w, sample.pdf_rev_w, sample.eta)) &&
-                          sample.pdf_w > 0.0f && vec3_finite(sample.wi) &&
-                          fabs((double)vec3_length(sample.wi) - 1.0) < 1e-5,
-                      "kind %u alpha %g %g eta %g: weight %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x,
-                      (double)bsdf.alpha_y, (double)bsdf.eta, (double)sample.weight.x, (double)sample.pdf_w,
-                      (double)sample.pdf_rev_w);
+        ck_assert_msg(
+            sane(sample.weight) && sane(vec3(sample.pdf_w, sample.pdf_rev_w, sample.eta)) && sample.pdf_w > 0.0f &&
+                vec3_finite(sample.wi) && fabs((double)vec3_length(sample.wi) - 1.0) < 1e-5,
+            "kind %u alpha %g %g eta %g: weight %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x, (double)bsdf.alpha_y,
+            (double)bsdf.eta, (double)sample.weight.x, (double)sample.pdf_w, (double)sample.pdf_rev_w);
         if (bsdf.eta >= 0.5f) /* below, a coat lets light out in a narrow cone that is not sampled as such */
             largest_weight = fmax(largest_weight, (double)vec3_max_component(sample.weight));
     }

@@ -32,7 +32,8 @@ static Vec3 grid_direction(const LobeGrid *grid, double a, double b, double side
     double t = sinh(grid->z_low + a * grid->z_range), p = sinh((2.0 * b - 1.0) * grid->phi_range);
     double z = fmin(fmax(grid->z0 + grid->z_scale * t, 0.0), 1.0), phi = grid->phi0 + grid->phi_scale * p;
     double sine = sqrt((1.0 - z) * (1.0 + z));
-    *jacobian = grid->z_scale * grid->z_range * sqrt(1.0 + t * t) * grid->phi_scale * 2.0 * grid->phi_range * sqrt(1.0 + p * p);
+    *jacobian =
+        grid->z_scale * grid->z_range * sqrt(1.0 + t * t) * grid->phi_scale * 2.0 * grid->phi_range * sqrt(1.0 + p * p);
     return vec3((float)(sine * cos(phi)), (float)(sine * sin(phi)), (float)(side * z));
 }
 
@@ -121,7 +122,8 @@ static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral
     *integral = 0.0;
     for (int s = 0; s < 2; ++s)
         for (int c = 0; c < CELLS * CELLS; ++c) {
-            double part = lobe_integrate(lobe, s, (double)(c / CELLS) / CELLS, (double)(c % CELLS) / CELLS, 1.0 / CELLS, 7);
+            double part =
+                lobe_integrate(lobe, s, (double)(c / CELLS) / CELLS, (double)(c % CELLS) / CELLS, 1.0 / CELLS, 7);
             expected[s * CELLS * CELLS + c] = part * SAMPLES;
             *integral += part;
         }
@@ -155,8 +157,8 @@ START_TEST(test_samples_follow_density)
     double least = 1.0;
     const struct SamplingKind *kind = &KINDS[_i];
     for (int a = kind->alphas > 1; a < kind->alphas; ++a) {
-        Bsdf bsdf = test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0,
-                              kind->color1);
+        Bsdf bsdf =
+            test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0, kind->color1);
         for (int d = 0; d < TEST_WO_COUNT; ++d, ++cases) {
             LobeCase lobe = lobe_make(&scene, bsdf, test_wo(d));
             double integral, succeeded;
