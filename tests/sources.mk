@@ -9,6 +9,7 @@ check_PROGRAMS += \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
+	tests/test_platform_bits \
 	tests/test_render \
 	tests/test_texture
 TESTS += $(check_PROGRAMS)
@@ -27,9 +28,27 @@ tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
 tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
+tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
+	tests/test_math_alias.c \
+	tests/test_math_distribution2d.c \
+	tests/test_math_elementary.c \
+	tests/test_math_elementary_pairs.c \
+	tests/test_math_rng.c \
+	tests/test_math_sphere_maps.c \
+	tests/test_math_warp.c
 tests_test_render_SOURCES = tests/test_render.c tests/test_util.h
 tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
+
+tests_test_platform_bits_SOURCES = tests/test_platform_bits.c tests/test_math.h tests/test_util.h \
+	tests/opencl_probe.h tests/platform_layout.h tests/platform_probe.cl
+if HAVE_OPENCL
+tests_test_platform_bits_SOURCES += tests/opencl_probe.c
+else
+tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
+endif
+tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
+tests_test_platform_bits_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 
 tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 tests_test_film_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
@@ -48,3 +67,7 @@ tests_test_light_LDADD = $(TEST_LIBS)
 tests_test_math_LDADD = $(TEST_LIBS)
 tests_test_render_LDADD = $(TEST_LIBS)
 tests_test_texture_LDADD = $(TEST_LIBS)
+
+# Rules of the tree itself.
+dist_check_SCRIPTS += tests/check_layers.sh tests/check_opencl.sh
+TESTS += tests/check_layers.sh tests/check_opencl.sh
