@@ -19,13 +19,13 @@ START_TEST(test_smooth_escape)
 {
     for (float eta = 1.0f; eta <= COAT_ETA_MAX; eta += 0.01f) {
         double exact = mean_transmission(eta);
-        ck_assert_msg(fabs((double)coat_smooth_mean(eta) / exact - 1.0) < 1.5e-4, "eta %g: %g instead of %g",
-                      (double)eta, (double)coat_smooth_mean(eta), exact);
+        REQUIRE_MSG(fabs((double)coat_smooth_mean(eta) / exact - 1.0) < 1.5e-4, "eta %g: %g instead of %g", (double)eta,
+                    (double)coat_smooth_mean(eta), exact);
         double inside = mean_transmission(1.0f / eta);
-        ck_assert_double_lt(fabs((double)coat_smooth_escape(eta) / inside - 1.0), 1e-3);
-        ck_assert_double_lt(fabs((double)coat_smooth_escape(1.0f / eta) / exact - 1.0), 1e-3);
+        REQUIRE(fabs((double)coat_smooth_escape(eta) / inside - 1.0) < 1e-3);
+        REQUIRE(fabs((double)coat_smooth_escape(1.0f / eta) / exact - 1.0) < 1e-3);
     }
-    ck_assert(coat_smooth_escape(6.0f) > 0.0f && coat_smooth_escape(6.0f) < 1.0f);
+    REQUIRE(coat_smooth_escape(6.0f) > 0.0f && coat_smooth_escape(6.0f) < 1.0f);
 }
 END_TEST
 
@@ -89,11 +89,11 @@ START_TEST(test_smooth_coat_is_the_layers)
             expected[BINS + 1] = PHOTONS * (double)fresnel_dielectric(wo.z, 1.5f);
             expected[BINS] = fmax(0.0, expected[BINS] - expected[BINS + 1]);
             if (r == 2) { /* rho = 1: nothing is absorbed; a handful of walks fail at grazing angles */
-                ck_assert_double_lt(observed[BINS] + expected[BINS], 1e-3 * PHOTONS);
+                REQUIRE(observed[BINS] + expected[BINS] < 1e-3 * PHOTONS);
                 observed[BINS] = expected[BINS] = 0.0;
             }
             double p = test_chi_square(observed, expected, BINS + 2);
-            ck_assert_msg(p > 1.0 - pow(1.0 - 1e-3, 1.0 / 9.0), "rho %g, %g degrees: p = %g", rhos[r], degrees[d], p);
+            REQUIRE_MSG(p > 1.0 - pow(1.0 - 1e-3, 1.0 / 9.0), "rho %g, %g degrees: p = %g", rhos[r], degrees[d], p);
         }
     test_scene_destroy(&scene);
 }
@@ -144,8 +144,8 @@ START_TEST(test_rough_coat_is_the_layers)
         double predicted = outside / PHOTONS + t * rho * (double)escape / (1.0 - rho * inside);
         printf("# coat alpha %g, rho %g: albedo %.4f, layers %.4f, R_i %.4f, of the layers %.4f\n", (double)alphas[a],
                rho, closed / PHOTONS, walk / PHOTONS, 1.0 - (double)escape, inside);
-        ck_assert_msg(fabs(predicted - walk / PHOTONS) < 5e-3, "alpha %g: albedo %g instead of %g", (double)alphas[a],
-                      predicted, walk / PHOTONS);
+        REQUIRE_MSG(fabs(predicted - walk / PHOTONS) < 5e-3, "alpha %g: albedo %g instead of %g", (double)alphas[a],
+                    predicted, walk / PHOTONS);
         ck_assert_double_gt(closed / PHOTONS, walk / PHOTONS - 5e-3);
     }
     test_scene_destroy(&scene);
@@ -173,7 +173,7 @@ START_TEST(test_table_is_transmission)
     TestRandom random = {23};
     Error error;
     uint32_t range;
-    ck_assert(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
+    REQUIRE(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
     for (int a = 1; a < TEST_ALPHA_COUNT; ++a) {
         float ax = TEST_ALPHAS[a].x, ay = TEST_ALPHAS[a].y;
         Bsdf coat = test_bsdf(&scene, MATERIAL_DIELECTRIC, ax, ay, 1.5f, 0.0f, 0.0f);
@@ -184,13 +184,13 @@ START_TEST(test_table_is_transmission)
             float escape;
             double exact = transmitted_share(&scene, &coat, wo, &random);
             double table = (double)coated_transmission(&scene.view, &bsdf, wo, &escape);
-            ck_assert_msg(fabs(table - exact) < 6e-3, "alpha %g %g, %g degrees: T %g instead of %g", (double)ax,
-                          (double)ay, degrees[d], table, exact);
+            REQUIRE_MSG(fabs(table - exact) < 6e-3, "alpha %g %g, %g degrees: T %g instead of %g", (double)ax,
+                        (double)ay, degrees[d], table, exact);
             if (ax != ay)
                 continue;
             double from_range = (double)coat_table_lookup(scene.view.lookup + range, ax, ay, wo, &escape);
-            ck_assert_msg(fabs(from_range - exact) < 0.02, "range, alpha %g, %g degrees: T %g instead of %g",
-                          (double)ax, degrees[d], from_range, exact);
+            REQUIRE_MSG(fabs(from_range - exact) < 0.02, "range, alpha %g, %g degrees: T %g instead of %g", (double)ax,
+                        degrees[d], from_range, exact);
         }
     }
     test_scene_destroy(&scene);
@@ -205,7 +205,7 @@ START_TEST(test_range_table_furnace)
     TestRandom random = {24};
     Error error;
     uint32_t range;
-    ck_assert(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
+    REQUIRE(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
     double high = 0.0, low = 2.0;
     for (int n = 0; n < 60; ++n) {
         float ax = (float)pow(10.0, -2.9 + 2.9 * random_double(&random));
@@ -225,11 +225,11 @@ START_TEST(test_range_table_furnace)
         }
         double a = sum / (PHOTONS / 4);
         if (ax == ay) {
-            ck_assert_msg(a < 1.003, "alpha %g, cos %g: albedo %g", (double)ax, (double)wo.z, a);
+            REQUIRE_MSG(a < 1.003, "alpha %g, cos %g: albedo %g", (double)ax, (double)wo.z, a);
             high = fmax(high, a);
             low = fmin(low, a);
         } else {
-            ck_assert_msg(a < 1.1, "alpha %g %g, cos %g: albedo %g", (double)ax, (double)ay, (double)wo.z, a);
+            REQUIRE_MSG(a < 1.1, "alpha %g %g, cos %g: albedo %g", (double)ax, (double)ay, (double)wo.z, a);
         }
     }
     printf("# textured roughness: albedo %.4f ... %.4f\n", low, high);
@@ -246,24 +246,24 @@ START_TEST(test_table_build)
     array_init(&b, sizeof(float));
     uint32_t first[3];
     clock_t start = clock();
-    ck_assert(coat_table_build(0.3f, 0.3f, 1.5f, &a, &first[0], &error));
+    REQUIRE(coat_table_build(0.3f, 0.3f, 1.5f, &a, &first[0], &error));
     clock_t isotropic = clock();
-    ck_assert(coat_table_build(0.05f, 0.4f, 1.5f, &a, &first[1], &error));
+    REQUIRE(coat_table_build(0.05f, 0.4f, 1.5f, &a, &first[1], &error));
     clock_t anisotropic = clock();
-    ck_assert(coat_table_build_range(1.5f, &a, &first[2], &error));
+    REQUIRE(coat_table_build_range(1.5f, &a, &first[2], &error));
     clock_t done = clock();
     printf("# coat tables: %.1f ms, anisotropic %.1f ms, range %.1f ms\n",
            1e3 * (double)(isotropic - start) / CLOCKS_PER_SEC, 1e3 * (double)(anisotropic - isotropic) / CLOCKS_PER_SEC,
            1e3 * (double)(done - anisotropic) / CLOCKS_PER_SEC);
-    ck_assert(coat_table_build(0.3f, 0.3f, 1.5f, &b, &first[0], &error));
-    ck_assert_uint_eq(first[0], 0);
-    ck_assert_uint_eq(first[1], 1 + COAT_ROW);
-    ck_assert_uint_eq(first[2], 2 + COAT_ROW + COAT_AZIMUTH_ROWS * COAT_ROW);
+    REQUIRE(coat_table_build(0.3f, 0.3f, 1.5f, &b, &first[0], &error));
+    REQUIRE(first[0] == (0));
+    REQUIRE(first[1] == (1 + COAT_ROW));
+    REQUIRE(first[2] == (2 + COAT_ROW + COAT_AZIMUTH_ROWS * COAT_ROW));
     ck_assert_int_eq(memcmp(a.data, b.data, b.count * sizeof(float)), 0);
     for (size_t k = 0; k < a.count; ++k) {
         float value = ARRAY_AT(&a, float, k);
-        ck_assert(value == 1.0f || value == (float)COAT_AZIMUTH_ROWS || value == (float)COAT_ALPHA_ROWS ||
-                  (value >= 0.0f && value < 1.0f));
+        REQUIRE(value == 1.0f || value == (float)COAT_AZIMUTH_ROWS || value == (float)COAT_ALPHA_ROWS ||
+                (value >= 0.0f && value < 1.0f));
     }
     array_destroy(&a);
     array_destroy(&b);
@@ -281,9 +281,9 @@ START_TEST(test_coat_is_two_sided)
              i = random_direction(&random, random_double(&random));
         BsdfValue a = bsdf_eval(&scene.view, &bsdf, o, i, TRANSPORT_RADIANCE);
         BsdfValue b = bsdf_eval(&scene.view, &bsdf, vec3_negate(o), vec3_negate(i), TRANSPORT_RADIANCE);
-        ck_assert(a.f_cos.x == b.f_cos.x && a.pdf_w == b.pdf_w && a.pdf_rev_w == b.pdf_rev_w);
+        REQUIRE(a.f_cos.x == b.f_cos.x && a.pdf_w == b.pdf_w && a.pdf_rev_w == b.pdf_rev_w);
         BsdfValue across = bsdf_eval(&scene.view, &bsdf, o, vec3_negate(i), TRANSPORT_RADIANCE);
-        ck_assert(across.f_cos.x == 0.0f && across.pdf_w == 0.0f);
+        REQUIRE(across.f_cos.x == 0.0f && across.pdf_w == 0.0f);
     }
     test_scene_destroy(&scene);
 }

@@ -165,11 +165,11 @@ START_TEST(test_samples_follow_density)
             double p = lobe_p_value(&lobe, (uint64_t)(1000 * _i + 10 * a + d), &integral, &succeeded);
             double deviation = sqrt(succeeded * (1.0 - succeeded) / SAMPLES);
             least = fmin(least, p);
-            ck_assert_msg(p > 1.0 - pow(1.0 - 1e-3, 1.0 / TOTAL_CASES), "%s, alpha %g %g, direction %d: p = %g",
-                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
-            ck_assert_msg(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
-                          "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
-                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
+            REQUIRE_MSG(p > 1.0 - pow(1.0 - 1e-3, 1.0 / TOTAL_CASES), "%s, alpha %g %g, direction %d: p = %g",
+                        kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
+            REQUIRE_MSG(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
+                        "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
+                        kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
         }
     }
     printf("# %s: %d chi-square tests, least p = %.3g\n", kind->name, cases, least);
@@ -197,14 +197,14 @@ START_TEST(test_delta_lobes_follow_probability)
                     sample.delta) {
                     count[sample.transmitted] += 1.0;
                     probability[sample.transmitted] = (double)sample.pdf_w;
-                    ck_assert(sample.pdf_rev_w == sample.pdf_w);
+                    REQUIRE(sample.pdf_rev_w == sample.pdf_w);
                     BsdfValue value = bsdf_eval(&scene.view, &bsdf, test_wo(d), sample.wi, TRANSPORT_RADIANCE);
-                    ck_assert(DELTA_KINDS[k] == MATERIAL_COATED_DIFFUSE || value.pdf_w == 0.0f);
+                    REQUIRE(DELTA_KINDS[k] == MATERIAL_COATED_DIFFUSE || value.pdf_w == 0.0f);
                 }
             }
             for (int s = 0; s < 2; ++s) {
                 double deviation = sqrt(probability[s] * (1.0 - fmin(probability[s], 1.0)) / SAMPLES);
-                ck_assert_double_lt(fabs(count[s] / SAMPLES - probability[s]), 5.0 * deviation + 1e-6);
+                REQUIRE(fabs(count[s] / SAMPLES - probability[s]) < 5.0 * deviation + 1e-6);
             }
         }
     test_scene_destroy(&scene);
