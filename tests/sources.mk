@@ -64,6 +64,20 @@ tests_test_light_CFLAGS = $(TEST_CFLAGS)
 tests_test_light_LDADD = $(TEST_LIBS)
 
 tests_test_math_SOURCES = tests/test_math.c \
+tests_test_bsdf_SOURCES = \
+	tests/bsdf_cases.h \
+	tests/test_bsdf.c \
+	tests/test_bsdf_coated.c \
+	tests/test_bsdf_energy.c \
+	tests/test_bsdf_formulas.c \
+	tests/test_bsdf_identities.c \
+	tests/test_bsdf_sampling.c \
+	tests/test_util.h
+tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
+tests_test_geometry_SOURCES = tests/test_geometry.c tests/test_util.h
+tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
+tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
+tests_test_math_SOURCES = tests/test_math.c tests/test_math.h tests/test_util.h \
 	tests/test_math_alias.c \
 	tests/test_math_distribution2d.c \
 	tests/test_math_elementary.c \
