@@ -17,7 +17,12 @@ endif
 tests_test_bsdf_SOURCES = tests/test_bsdf.c tests/test_util.h
 tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
 tests_test_geometry_SOURCES = \
-	tests/geometry_fixture.c tests/geometry_fixture.h tests/test_geometry.c tests/test_util.h
+	tests/geometry_fixture.c tests/geometry_fixture.h tests/geometry_suites.h \
+	tests/test_geometry.c \
+	tests/test_geometry_backend.c \
+	tests/test_geometry_quadrics.c \
+	tests/test_geometry_rays.c \
+	tests/test_util.h
 tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
 tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
 tests_test_math_SOURCES = tests/test_math.c tests/test_util.h

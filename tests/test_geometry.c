@@ -1,5 +1,8 @@
 /* Rays and triangles by themselves: watertightness, accuracy, offsets, symmetry. */
 #include "geometry_fixture.h"
+#include "geometry_suites.h"
+
+#include <string.h>
 
 /* A point of a triangle of the mesh that is as hard as can be: exactly a corner, or on an edge up to rounding. */
 static Vec3 mesh_hard_point(const TestMesh *mesh, TestRandom *random, bool corner)
@@ -253,5 +256,8 @@ int main(void)
     tcase_add_test(tcase, test_ray_between_symmetric);
     tcase_add_test(tcase, test_float_step);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, geometry_quadrics_tcase());
+    suite_add_tcase(suite, geometry_rays_tcase());
+    suite_add_tcase(suite, geometry_backend_tcase());
     return test_run(suite);
 }

@@ -59,7 +59,8 @@ static void mesh_compare(TestMesh mesh, float scale, Vec3 shift, uint walks, uin
     test_scene_mesh(&test, &mesh, 0);
     test_scene_finish(&test);
     RaysEmbree *rays = rays_open(&test);
-    Differences count = walks_compare(&test, rays, walks, 3, vec3_mad(shift, 0.1f * scale, vec3(0.3f, 0.2f, 0.1f)), seed);
+    Differences count =
+        walks_compare(&test, rays, walks, 3, vec3_mad(shift, 0.1f * scale, vec3(0.3f, 0.2f, 0.1f)), seed);
     rays_embree_destroy(rays);
     test_scene_destroy(&test);
     mesh_destroy(&mesh);
