@@ -1,1 +1,12 @@
-# Nothing here yet.
+# `make bench`: speed of the program on BENCH_SCENES, one table on standard output. Not part of `make check`.
+BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
+
+EXTRA_PROGRAMS += bench/make_ply
+bench_make_ply_SOURCES = bench/make_ply.c
+bench_make_ply_LDADD = -lm
+CLEANFILES += bench/make_ply$(EXEEXT)
+EXTRA_DIST += bench/bench_render.sh
+
+.PHONY: bench
+bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT)
+	$(srcdir)/bench/bench_render.sh ./twinlight$(EXEEXT) ./bench/make_ply$(EXEEXT) $(BENCH_SCENES)

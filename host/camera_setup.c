@@ -66,9 +66,8 @@ bool camera_setup(const CameraSettings *settings, int width, int height, Camera 
     double scale = 1.0;
     if (settings->kind == CAMERA_PERSPECTIVE)
         scale = tan((double)settings->fov * (3.14159265358979323846 / 360.0));
-    *out = (Camera){.kind = settings->kind,
-                    .lens_radius = settings->lens_radius,
-                    .focal_distance = settings->focal_distance};
+    *out = (Camera){
+        .kind = settings->kind, .lens_radius = settings->lens_radius, .focal_distance = settings->focal_distance};
     for (int i = 0; i < 4; ++i)
         out->screen[i] = (float)(scale * window[i]);
     return affine_set(settings->world_from_camera, &out->world_from_camera, error) &&

@@ -2,8 +2,10 @@
 #ifndef TWINLIGHT_CMD_COMPARE_H
 #define TWINLIGHT_CMD_COMPARE_H
 
+#include "error.h"
+
 /* argv[0] is the subcommand's name. Returns the exit status: 0; 1 when an image cannot be read or written or the sizes
- * differ; 2 for wrong usage. */
-int cmd_compare(int argc, char **argv);
+ * differ; 2 for wrong usage. For 1 and 2 `error` says why. */
+int cmd_compare(int argc, char **argv, Error *error);
 
 #endif

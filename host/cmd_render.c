@@ -179,7 +179,7 @@ static void diagnostics_report(const RenderJob *job)
     const RenderResult *result = &job->result;
     for (int i = 0; i < result->diagnostic_count; ++i)
         if (result->diagnostics[i] > 0)
-            log_message(LOG_WARNING, "%s: %llu", result->diagnostic_names[i],
+            log_message(LOG_WARNING, "inside the kernels: %s, %llu times", result->diagnostic_names[i],
                         (unsigned long long)result->diagnostics[i]);
     if (job->film.saturated > 0)
         log_message(LOG_WARNING, "%llu contributions were too bright for the film and were clamped",

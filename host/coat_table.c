@@ -2,6 +2,8 @@
 
 #include "bsdf.h"
 
+#include <math.h>
+
 /* The square of canonical numbers is covered by QUADRATURE_PHI x QUADRATURE_HEIGHT midpoints; both axes of the visible
  * normals' density are then smooth functions, for any alpha. */
 #define QUADRATURE_PHI 16
@@ -110,4 +112,19 @@ bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *er
         row_fill(alpha, alpha, eta, table + 1 + r * COAT_ROW);
     }
     return true;
+}
+
+float coat_round_trip(float eta, float thickness)
+{
+    enum { STEPS = 4096 };
+    double kept = 0.0, all = 0.0;
+    if (!(thickness > 0.0f))
+        return 1.0f;
+    for (int i = 0; i < STEPS; ++i) {
+        double c = (i + 0.5) / STEPS;
+        double reflected = (double)fresnel_dielectric((float)c, 1.0f / eta) * c;
+        all += reflected;
+        kept += reflected * exp(-2.0 * (double)thickness / c);
+    }
+    return all > 0.0 ? (float)(kept / all) : 1.0f;
 }

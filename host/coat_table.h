@@ -17,4 +17,9 @@ bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, ui
  * anisotropic ones sqrt(alpha_x alpha_y). */
 bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *error);
 
+/* Mean transmittance of a round trip between the base and a smooth interface of index eta through a medium of the given
+ * optical thickness: integral of R(c) exp(-2 thickness / c) 2 c dc over that of R(c) 2 c dc, R the reflectance from the
+ * inside. 1 when nothing absorbs or nothing is reflected. */
+float coat_round_trip(float eta, float thickness);
+
 #endif

@@ -2,7 +2,9 @@
  *
  * The numbers were computed once, at 1 nm over 360-830 nm, from the measurements that pbrt-v4 distributes under these
  * names (illuminants of CIE 15:2004 and the ACES D60; metals' n and k; glasses' n from refractiveindex.info), by the
- * rules of color.h: index = average over what each channel sees, light = colour at luminance 1.
+ * rules of color.h: index = average over what each channel sees, light = colour at luminance 1. The exception is D50:
+ * the table under that name has the chromaticity (0.3368, 0.3540), not that of D50, (0.3457, 0.3585), so the CIE's
+ * daylight formula at 5003 K was taken instead.
  *
  * Metals: with n and k averaged apart, the RGB reflectance would miss the metal's colour, which is what is seen of it.
  * So n is the average, and k solves F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2), where F0 is the colour under D65 of the
@@ -44,7 +46,7 @@ static const NamedSpectrum NAMED_SPECTRA[] = {
     {"glass-SF11", COLOR_INDEX, {1.784f, 1.7938f, 1.8185f}},
     {"glass-F11", COLOR_INDEX, {1.784f, 1.7938f, 1.8185f}},
     {"stdillum-A", COLOR_ILLUMINANT, {1.845f, 0.82607f, 0.23337f}},
-    {"stdillum-D50", COLOR_ILLUMINANT, {1.0866f, 0.99951f, 0.74971f}},
+    {"stdillum-D50", COLOR_ILLUMINANT, {1.176f, 0.97571f, 0.722f}},
     {"stdillum-D65", COLOR_ILLUMINANT, {1.0f, 1.0f, 1.0f}},
     {"stdillum-F1", COLOR_ILLUMINANT, {0.95426f, 1.0193f, 0.94367f}},
     {"stdillum-F2", COLOR_ILLUMINANT, {1.3401f, 0.94299f, 0.56285f}},

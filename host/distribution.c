@@ -14,23 +14,28 @@ typedef struct AliasWork {
     double rounding; /* sum of (q as float32 - q) so far, kept below 2^-24 by choosing the direction of each rounding */
 } AliasWork;
 
+/* The sum carries the rounding error of every addition (Neumaier 1974): an error of 1e-11 in the mean, times a million
+ * buckets, would be seen in the last of them. */
 static bool alias_sum(const double *weights, size_t n, double *sum, uint *heaviest, Error *error)
 {
-    *sum = 0.0;
+    double total = 0.0, lost = 0.0;
     *heaviest = 0;
     for (size_t i = 0; i < n; ++i) {
         if (!(weights[i] >= 0.0) || isinf(weights[i])) {
             error_set(error, "weight %zu of a distribution is %g", i, weights[i]);
             return error_fix(error, "weights must be finite and not negative");
         }
-        *sum += weights[i];
+        double next = total + weights[i];
+        lost += total >= weights[i] ? (total - next) + weights[i] : (weights[i] - next) + total;
+        total = next;
         if (weights[i] > weights[*heaviest])
             *heaviest = (uint)i;
     }
-    if (*sum > 0.0 && !isinf(*sum))
+    *sum = total + lost;
+    if (total > 0.0 && !isinf(total))
         return true;
-    error_set(error, *sum > 0.0 ? "the weights of a distribution have an infinite sum"
-                                : "no weight of a distribution is positive");
+    error_set(error, total > 0.0 ? "the weights of a distribution have an infinite sum"
+                                 : "no weight of a distribution is positive");
     return error_fix(error, "give at least one entry a positive, finite weight");
 }
 
@@ -82,7 +87,7 @@ bool alias_build(const double *weights, size_t n, AliasBucket *out, Error *error
 {
     if (n == 0 || n >= NONE)
         return error_set(error, "a distribution of %zu entries", n);
-    double sum;
+    double sum = 0.0;
     uint heaviest;
     if (!alias_sum(weights, n, &sum, &heaviest, error))
         return false;

@@ -32,19 +32,21 @@ static void exr_message(exr_const_context_t context, exr_result_t code, const ch
     }
 }
 
-/* pwrite for the library, all of it or an error. */
+/* pwrite for the library, all of it or -1. `report` is not called: the library holds its own lock while it writes the
+ * header, and reporting takes that lock again. */
 static int64_t exr_write_bytes(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
                                uint64_t offset, exr_stream_error_func_ptr_t report)
 {
     ExrWriter *writer = user;
     uint64_t done = 0;
+    (void)context;
+    (void)report;
     while (done < size) {
         ssize_t n = pwrite(writer->file.descriptor, (const char *)buffer + done, size - done, (off_t)(offset + done));
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0) {
             writer->write_errno = n < 0 ? errno : EIO;
-            report(context, EXR_ERR_WRITE_IO, "%s", strerror(writer->write_errno));
             return -1;
         }
         done += (uint64_t)n;

@@ -31,17 +31,20 @@ static void exr_message(exr_const_context_t context, exr_result_t code, const ch
                  message ? message : exr_get_default_error_message(code));
 }
 
+/* pread for the library. Fewer bytes than asked for are its business; `report` is left alone, see exr.c. */
 static int64_t exr_read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                               exr_stream_error_func_ptr_t report)
 {
     ExrReader *reader = user;
     uint64_t done = 0;
+    (void)context;
+    (void)report;
     while (done < size) {
         ssize_t n = pread(fileno(reader->file), (char *)buffer + done, size - done, (off_t)(offset + done));
         if (n < 0 && errno == EINTR)
             continue;
         if (n < 0) {
-            report(context, EXR_ERR_READ_IO, "%s", strerror(errno));
+            snprintf(reader->message, sizeof reader->message, "%s", strerror(errno));
             return -1;
         }
         if (n == 0)
@@ -177,7 +180,8 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
     exr_result_t result = storage == EXR_STORAGE_TILED ? tiles_read(reader, image) : scanlines_read(reader, image);
     if (result == EXR_ERR_SUCCESS)
         return true;
-    return image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
+    image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
+    return result == EXR_ERR_FEATURE_NOT_IMPLEMENTED && error_fix(error, "save it with ZIP or PIZ compression");
 }
 
 bool image_read_exr(FILE *file, const char *path, Image *image, Error *error)

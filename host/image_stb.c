@@ -4,10 +4,14 @@
 #include <stb_image.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* stb_image takes a file's end for a run of zeros in places; a read that gets nothing tells a truncated file. */
+/* stb_image takes a file's end for a run of zeros in places; a read that gets nothing tells a truncated file. Its HDR
+ * decoder would then never end: it waits for a header's empty line, and zeros are runs of length 0. Newlines without
+ * end finish both. */
 typedef struct StbSource {
     FILE *file;
+    StbKind kind;
     bool truncated;
 } StbSource;
 
@@ -15,9 +19,13 @@ static int source_read(void *user, char *data, int size)
 {
     StbSource *source = user;
     size_t n = fread(data, 1, (size_t)size, source->file);
-    if (n == 0 && size > 0)
-        source->truncated = true;
-    return (int)n;
+    if (n > 0 || size <= 0)
+        return (int)n;
+    source->truncated = true;
+    if (source->kind != STB_HDR)
+        return 0;
+    memset(data, '\n', (size_t)size);
+    return size;
 }
 
 static void source_skip(void *user, int n)
@@ -80,7 +88,7 @@ static int channels_wanted(StbKind kind, int present)
 
 bool image_read_stb(FILE *file, const char *path, StbKind kind, bool sixteen_bits, Image *image, Error *error)
 {
-    StbSource source = {.file = file};
+    StbSource source = {.file = file, .kind = kind};
     int present = 0;
     if (!stbi_info_from_callbacks(&SOURCE_CALLBACKS, &source, &image->width, &image->height, &present))
         return image_error(error, path, source.truncated ? "the file is truncated" : stbi_failure_reason());

@@ -20,6 +20,11 @@
 #define PASS_ITEMS_MIN 16384u
 #define PASS_ITEMS_MAX (1u << 22)
 
+/* Names of the kernels' counters in reports. */
+#define DIAGNOSTIC_NAME(constant, name) name,
+static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
+#undef DIAGNOSTIC_NAME
+
 /* ---- the list of steps ------------------------------------------------------------------------------------------ */
 
 /* Two steps around the loop and at most eight in it. */
@@ -191,7 +196,7 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
     loop->frame.item_count = items;
     if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
-                              first ? &never : loop->options->stop, &delivered, error))
+                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error))
         return false;
     loop->next += items;
     loop->done += delivered;

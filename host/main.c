@@ -23,8 +23,7 @@ typedef struct Command {
 static int compare_run(const BackendTable *backends, int argc, char **argv, Error *error)
 {
     (void)backends;
-    (void)error;
-    return cmd_compare(argc, argv);
+    return cmd_compare(argc, argv, error);
 }
 
 static const Command COMMANDS[] = {

@@ -6,6 +6,7 @@
 #include "name_table.h"
 #include "pbrt_import.h"
 #include "pbrt_params.h"
+#include "texture_image.h"
 
 #include <sys/types.h>
 
@@ -14,6 +15,7 @@
 #define IMPORT_INCLUDE_MAX 64 /* Include and Import inside each other */
 #define IMPORT_FILES_MAX 65536 /* Include and Import in all */
 #define IMPORT_ATTRIBUTES_MAX 1024 /* Attribute directives in force at once */
+#define IMPORT_LIGHTS_MAX (1u << 24) /* area lights by instances of emissive objects */
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
 #define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
 
@@ -78,7 +80,7 @@ typedef struct EmissiveShape {
 typedef struct ImportObject {
     uint object; /* of the scene */
     bool empty; /* nothing but emissive shapes */
-    EmissiveShape *emissive; /* in the order of the file */
+    EmissiveShape *emissive, *last_emissive; /* in the order of the file */
 } ImportObject;
 
 /* A file being read, or the text that pbrt_import_text was given. */
@@ -123,7 +125,7 @@ typedef struct PbrtImport {
     NameTable materials; /* scene's material or MATERIAL_INTERFACE */
     NameTable float_textures, spectrum_textures; /* index into textures */
     Array textures; /* ImportTexture */
-    NameTable images; /* file and options: the scene's image */
+    TextureCache images;
     uint default_material; /* NONE until used */
 
     /* film and camera, until WorldBegin */

@@ -21,8 +21,7 @@ static const TypeInfo TYPES[PARAM_TYPE_COUNT] = {
 static const struct {
     const char *name;
     ParamType type;
-} ALIASES[] = {
-    {"point", PARAM_POINT3}, {"vector", PARAM_VECTOR3}, {"color", PARAM_RGB}, {"normal3", PARAM_NORMAL}};
+} ALIASES[] = {{"point", PARAM_POINT3}, {"vector", PARAM_VECTOR3}, {"color", PARAM_RGB}, {"normal3", PARAM_NORMAL}};
 
 const char *param_type_name(ParamType type)
 {
@@ -197,8 +196,10 @@ bool param_end(ParamBuffer *buffer, Error *error)
         return error_at(error, param->place, "\"%s %s\" has %zu values, not a multiple of %u", TYPES[param->type].name,
                         param->name, param->count, per_item);
     if (param->type == PARAM_SPECTRUM && !param->is_text && param->count % 2 != 0)
-        return error_at(error, param->place, "\"spectrum %s\" has %zu values, which are not pairs of wavelength and "
-                        "value", param->name, param->count);
+        return error_at(error, param->place,
+                        "\"spectrum %s\" has %zu values, which are not pairs of wavelength and "
+                        "value",
+                        param->name, param->count);
     return true;
 }
 

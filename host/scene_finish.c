@@ -264,6 +264,8 @@ static bool scene_coat_tables(Scene *scene, Error *error)
     for (size_t i = 0; i < scene->materials.count; ++i) {
         Material *m = &ARRAY_AT(&scene->materials, Material, i);
         m->coat_table = NONE;
+        if (m->kind == MATERIAL_COATED_DIFFUSE)
+            m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
         if (m->kind != MATERIAL_COATED_DIFFUSE || !material_is_rough(m))
             continue;
         float alpha_x = material_alpha(m, &m->roughness_u), alpha_y = material_alpha(m, &m->roughness_v);

@@ -4,36 +4,58 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/camera_setup.c host/camera_setup.h \
-	host/cmd_compare.h \
+	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_info.c \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
-	host/color.h \
+	host/color.c host/color.h \
+	host/color_named.c \
+	host/color_tables.h \
 	host/command.h \
 	host/distribution.c host/distribution.h \
 	host/error.c host/error.h \
-	host/exr.h \
-	host/film.h \
+	host/error_image.c host/error_image.h \
+	host/exr.c host/exr.h \
+	host/file_read.c host/file_read.h \
+	host/film.c host/film.h \
 	host/filter_setup.c host/filter_setup.h \
-	host/image.h \
+	host/image.c host/image.h \
+	host/image_exr.c \
+	host/image_formats.h \
+	host/image_pfm.c \
+	host/image_stb.c \
 	host/integrator_pt.c \
 	host/interrupt.c host/interrupt.h \
 	host/json.c host/json.h \
 	host/light_setup.c host/light_setup.h \
 	host/log.c host/log.h \
 	host/matrix.c host/matrix.h \
-	host/metrics.h \
+	host/metrics.c host/metrics.h \
 	host/name_table.c host/name_table.h \
 	host/option_values.c host/option_values.h \
 	host/options.c host/options.h \
-	host/output_file.h \
+	host/output_file.c host/output_file.h \
 	host/pbrt_context.h \
-	host/pbrt_import.h \
+	host/pbrt_directives.c host/pbrt_directives.h \
+	host/pbrt_film_camera.c \
+	host/pbrt_import.c host/pbrt_import.h \
 	host/pbrt_lexer.c host/pbrt_lexer.h \
+	host/pbrt_lights.c \
+	host/pbrt_materials.c \
+	host/pbrt_mesh.c host/pbrt_mesh.h \
+	host/pbrt_objects.c \
+	host/pbrt_options.c \
 	host/pbrt_param_list.c \
 	host/pbrt_params.c host/pbrt_params.h \
-	host/pbrt_values.h \
-	host/png_write.h \
+	host/pbrt_parser.c host/pbrt_parser.h \
+	host/pbrt_shapes.c host/pbrt_shapes.h \
+	host/pbrt_state.c host/pbrt_state.h \
+	host/pbrt_textures.c \
+	host/pbrt_values.c host/pbrt_values.h \
+	host/ply.c host/ply.h \
+	host/ply_header.c \
+	host/ply_internal.h \
+	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
 	host/render.h \
 	host/render_options.c host/render_options.h \
@@ -43,7 +65,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene_summary.c host/scene_summary.h \
 	host/stats.c host/stats.h \
 	host/text_number.c host/text_number.h \
-	host/texture_image.h \
+	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h
 libtwinlight_host_la_LIBADD = $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 

@@ -1,1 +1,3 @@
-# Nothing here yet.
+dist_man_MANS += \
+	man/twinlight-render.1 \
+	man/twinlight.1

@@ -11,7 +11,9 @@
  * No interreflection is left out, so this is what pbrt's random walk estimates for a smooth coat. Energy: for rho = 1
  * the second term's albedo is T(wo) T_mean / (eta^2 (1 - R_i)), and coat.h sets 1 - R_i = T_mean / eta^2, so it is
  * T(wo): nothing is gained or lost below the coat. For a rough coat, light that single-scattering microfacets lose on
- * the inside is thus returned to the base, where pbrt loses it. */
+ * the inside is thus returned to the base, where pbrt loses it.
+ *
+ * Absorption in the coat (color1.x > 0) multiplies T on the way in and out and R_i by the transmittances of coat.h. */
 #ifndef TWINLIGHT_BSDF_COATED_H
 #define TWINLIGHT_BSDF_COATED_H
 
@@ -31,14 +33,16 @@ SHARED_FUNCTION CoatTransmission coated_transmission(const SceneView *scene, con
     return coat_smooth(bsdf->eta, cos_o, cos_i);
 }
 
-/* rho / (eta^2 (1 - rho R_i)): the base's albedo between the two passages through the coat. */
+/* rho / (eta^2 (1 - rho R_i)): the base's albedo between the two passages through the coat, R_i with absorption. */
 SHARED_FUNCTION float coated_base_channel(float rho, float eta, float escape)
 {
     return rho / (eta * eta * ((1.0f - rho) + rho * escape));
 }
 
-SHARED_FUNCTION Vec3 coated_base(const Bsdf *bsdf, float escape)
+SHARED_FUNCTION Vec3 coated_base(const Bsdf *bsdf, float interface_escape)
 {
+    float round_trip = bsdf->color1.x > 0.0f ? bsdf->color1.y : 1.0f;
+    float escape = 1.0f - (1.0f - interface_escape) * round_trip;
     return vec3(coated_base_channel(bsdf->color0.x, bsdf->eta, escape),
                 coated_base_channel(bsdf->color0.y, bsdf->eta, escape),
                 coated_base_channel(bsdf->color0.z, bsdf->eta, escape));
@@ -64,7 +68,8 @@ SHARED_FUNCTION BsdfValue coated_eval_above(const SceneView *scene, const Bsdf *
     float specular_o = coated_specular_probability(coat.t_o, base_max, escape_eta2);
     float specular_i = coated_specular_probability(coat.t_i, base_max, escape_eta2);
     BsdfValue value;
-    value.f_cos = vec3_scale(base, coat.t_o * coat.t_i * i.z * INV_PI);
+    float absorbed = coat_absorption(bsdf->color1.x, bsdf->eta, o.z) * coat_absorption(bsdf->color1.x, bsdf->eta, i.z);
+    value.f_cos = vec3_scale(base, absorbed * coat.t_o * coat.t_i * i.z * INV_PI);
     value.pdf_w = (1.0f - specular_o) * i.z * INV_PI;
     value.pdf_rev_w = (1.0f - specular_i) * o.z * INV_PI;
     if (!coated_is_rough(scene, bsdf))

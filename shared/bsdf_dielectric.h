@@ -34,7 +34,7 @@ SHARED_FUNCTION bool dielectric_smooth_sample(const Bsdf *bsdf, Vec3 wo, float u
     float cos_t = refraction_cosine(cos_o, eta);
     if (!(cos_t > BSDF_COSINE_MIN))
         return false;
-    Vec3 wi = vec3(-wo.x / eta, -wo.y / eta, wo.z > 0.0f ? -cos_t : cos_t);
+    Vec3 wi = vec3_normalize(vec3(-wo.x / eta, -wo.y / eta, wo.z > 0.0f ? -cos_t : cos_t));
     bsdf_sample_set_delta(sample, wi, vec3_splat(refraction_scale(eta, transport)), 1.0f - reflectance);
     sample->transmitted = 1u;
     sample->eta = eta;
@@ -113,7 +113,7 @@ SHARED_FUNCTION bool dielectric_scatter(float alpha_x, float alpha_y, float eta,
     }
     if (cos_t < 0.0f)
         return false;
-    *i = vec3_mad(vec3_scale(o, -1.0f / eta), cos_o / eta - cos_t, m);
+    *i = vec3_normalize(vec3_mad(vec3_scale(o, -1.0f / eta), cos_o / eta - cos_t, m));
     return i->z < -BSDF_COSINE_MIN;
 }
 

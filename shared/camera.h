@@ -8,7 +8,7 @@
 #include "warp.h"
 
 /* The point of the screen window (plane z = 1, or camera units when orthographic) that a film position shows. */
-SHARED_FUNCTION Vec2 camera_screen(__global const Camera *camera, Vec2 film, float width, float height)
+SHARED_FUNCTION Vec2 camera_screen(const Camera *camera, Vec2 film, float width, float height)
 {
     float x = film.x / width;
     float y = film.y / height;
@@ -17,14 +17,14 @@ SHARED_FUNCTION Vec2 camera_screen(__global const Camera *camera, Vec2 film, flo
 }
 
 /* The inverse of camera_screen. */
-SHARED_FUNCTION Vec2 camera_film(__global const Camera *camera, Vec2 screen, float width, float height)
+SHARED_FUNCTION Vec2 camera_film(const Camera *camera, Vec2 screen, float width, float height)
 {
     return vec2(width * ((screen.x - camera->screen[0]) / (camera->screen[1] - camera->screen[0])),
                 height * ((screen.y - camera->screen[3]) / (camera->screen[2] - camera->screen[3])));
 }
 
 /* A point on the lens, in camera space at z = 0, uniform over its disk; the origin for a pinhole. */
-SHARED_FUNCTION Vec2 camera_lens(__global const Camera *camera, Vec2 u_lens)
+SHARED_FUNCTION Vec2 camera_lens(const Camera *camera, Vec2 u_lens)
 {
     Vec2 lens = vec2(0.0f, 0.0f);
     if (camera->lens_radius > 0.0f) {
@@ -40,7 +40,7 @@ SHARED_FUNCTION Vec2 camera_lens(__global const Camera *camera, Vec2 u_lens)
  *
  * Thin lens: rays of one film position meet in one point of the plane z = focal_distance. An orthographic camera's
  * lens is centred on each ray (telecentric). */
-SHARED_FUNCTION Ray camera_ray(__global const Camera *camera, Vec2 film, float width, float height, Vec2 u_lens)
+SHARED_FUNCTION Ray camera_ray(const Camera *camera, Vec2 film, float width, float height, Vec2 u_lens)
 {
     Vec2 screen = camera_screen(camera, film, width, height);
     Vec2 lens = camera_lens(camera, u_lens);
@@ -58,21 +58,18 @@ SHARED_FUNCTION Ray camera_ray(__global const Camera *camera, Vec2 film, float w
         o = vec3(screen.x + lens.x, screen.y + lens.y, 0.0f);
         d = vec3(-slope_x, -slope_y, 1.0f);
     }
-    Affine world_from_camera = camera->world_from_camera;
     Ray ray;
-    ray.o = affine_point(world_from_camera, o);
-    ray.d = vec3_normalize(affine_vector(world_from_camera, d));
-    ray.t_max = FLOAT_INFINITY;
+    ray.o = affine_point(camera->world_from_camera, o);
+    ray.d = vec3_normalize(affine_vector(camera->world_from_camera, d));
+    ray.t_max = FLOAT_MAX;
     return ray;
 }
 
 /* The film position that sees the world point `p` through the lens point of `u_lens`: the inverse of camera_ray.
  * False when p is not in front of the camera or not on the film. */
-SHARED_FUNCTION bool camera_project(__global const Camera *camera, Vec3 p, float width, float height, Vec2 u_lens,
-                                    Vec2 *film)
+SHARED_FUNCTION bool camera_project(const Camera *camera, Vec3 p, float width, float height, Vec2 u_lens, Vec2 *film)
 {
-    Affine camera_from_world = camera->camera_from_world;
-    Vec3 q = affine_point(camera_from_world, p);
+    Vec3 q = affine_point(camera->camera_from_world, p);
     if (!(q.z > 0.0f))
         return false;
     if (camera->lens_radius > 0.0f) {

@@ -4,6 +4,12 @@
  * diffuse field, T_mean = integral of T(c) 2 c dc over 0..1. By reciprocity of the interface the fraction of a diffuse
  * field *inside* that gets out is T_mean / eta^2; the rest, R_i, goes back to the base.
  *
+ * The coat absorbs: pbrt gives its medium unit extinction over the depth `thickness`, and no scattering. Light that
+ * enters or leaves at the angle c_t inside keeps exp(-thickness / c_t) (coat_absorption; a rough interface scatters
+ * around that direction, and the difference is second order in a thickness of 0.01). Of the diffuse light that the
+ * interface throws back to the base, exp(-2 thickness / c) is left, on average over R(c) 2 c dc the round trip of
+ * coat_round_trip in host/coat_table.c.
+ *
  * Layout of a table in `lookup`, from Bsdf.coat_table on (all floats):
  *     [0]                          rows
  *     [1 + r * COAT_ROW + k]       k < COAT_CELLS: T(c) of row r at c = k / (COAT_CELLS - 1), linear in between
@@ -14,6 +20,7 @@
 #ifndef TWINLIGHT_COAT_H
 #define TWINLIGHT_COAT_H
 
+#include "elementary.h"
 #include "fresnel.h"
 #include "scene_view.h"
 
@@ -101,6 +108,15 @@ SHARED_FUNCTION CoatTransmission coat_smooth(float eta, float cos_o, float cos_i
     coat.t_i = 1.0f - fresnel_dielectric(cos_i, eta);
     coat.escape = coat_smooth_escape(eta);
     return coat;
+}
+
+/* What the coat leaves of light that crosses it once, having `cosine` outside. */
+SHARED_FUNCTION float coat_absorption(float thickness, float eta, float cosine)
+{
+    if (!(thickness > 0.0f))
+        return 1.0f;
+    float cos_t = refraction_cosine(cosine, eta);
+    return cos_t > 0.0f ? float_exp(-thickness / cos_t) : 0.0f;
 }
 
 #endif

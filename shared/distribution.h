@@ -40,11 +40,11 @@ SHARED_FUNCTION uint distribution_cell_of(float x, uint count)
     return cell < (float)count ? (uint)cell : count - 1u;
 }
 
-/* The point at `fraction` of cell `cell`: a float x with distribution_cell_of(x, count) == cell. Rounding may put
+/* The point at `fraction` of cell `cell`: a float x < 1 with distribution_cell_of(x, count) == cell. Rounding may put
  * (cell + fraction) / count an ulp or two beyond the cell's border; it is brought back. count < 2^22. */
 SHARED_FUNCTION float distribution_place(uint cell, float fraction, uint count)
 {
-    float x = ((float)cell + fraction) / (float)count;
+    float x = float_min(((float)cell + fraction) / (float)count, 0.99999994f);
     for (int i = 0; i < 4; ++i) {
         uint at = distribution_cell_of(x, count);
         if (at == cell)

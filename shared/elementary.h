@@ -115,16 +115,15 @@ SHARED_FUNCTION void float_sincos(float x, float *sine, float *cosine)
     float r, low;
     uint quadrant = angle_reduce(bits, &r, &low);
     float z = r * r;
-    float s = r + (r * z * (-0.166666642f + z * (0.00833274797f - z * 0.000195878296f)) + low);
+    float s = r + (r * z * (-0.166666672f + z * (0.00833333191f - z * (0.000198400856f - z * 2.72498505e-06f))) + low);
     float half_square = 0.5f * z;
     float c = 1.0f - half_square;
     c = c +
         (((1.0f - c) - half_square) + (z * z * (0.0416666642f - z * (0.00138883025f - z * 2.45478805e-05f)) - r * low));
-    bool swap = (quadrant & 1u) != 0u;
-    uint sine_bits = float_bits(swap ? c : s);
-    uint cosine_bits = float_bits(swap ? s : c);
-    *sine = bits_float(sine_bits ^ ((quadrant & 2u) << 30) ^ (float_bits(x) & FLOAT_SIGN_BIT));
-    *cosine = bits_float(cosine_bits ^ (((quadrant + 1u) & 2u) << 30));
+    /* Exchanged in odd quadrants without a branch: no processor predicts quadrants. */
+    uint swap = (float_bits(s) ^ float_bits(c)) & (0u - (quadrant & 1u));
+    *sine = bits_float(float_bits(s) ^ swap ^ ((quadrant & 2u) << 30) ^ (float_bits(x) & FLOAT_SIGN_BIT));
+    *cosine = bits_float(float_bits(c) ^ swap ^ (((quadrant + 1u) & 2u) << 30));
 }
 
 SHARED_FUNCTION float float_sin(float x)
@@ -147,7 +146,7 @@ SHARED_FUNCTION float float_cos(float x)
 SHARED_FUNCTION float float_exp(float x)
 {
     float bounded = float_clamp(x, -105.0f, 89.0f); /* e^-105 rounds to 0, e^89 to infinity; a NaN becomes -105 */
-    int k = (int)(bounded * 1.44269502f + (bounded < 0.0f ? -0.5f : 0.5f));
+    int k = (int)(bounded * 1.44269502f + 200.5f) - 200;
     float n = (float)k;
     float upper = bounded - n * 0.693145752f; /* exact: 15 bits of ln 2 */
     float lower = n * 1.42860677e-06f;
@@ -199,10 +198,11 @@ SHARED_FUNCTION float float_log2_pair(float x, float *lower)
     float m = float_split(x, &e);
     float f = m - 1.0f;
     float d = m + 1.0f;
-    float d_lower = m < 1.0f ? m - (d - 1.0f) : 1.0f - (d - m);
-    float s = f / d;
+    float d_lower = (m - (d - (d - m))) + (1.0f - (d - m)); /* exact (Knuth's sum) */
+    float reciprocal = 1.0f / d;
+    float s = f * reciprocal;
     float product = s * d;
-    float s_lower = (((f - product) - float_product_error(s, d, product)) - s * d_lower) / d;
+    float s_lower = (((f - product) - float_product_error(s, d, product)) - s * d_lower) * reciprocal;
     float z = s * s;
     float z_lower = float_product_error(s, s, z) + 2.0f * s * s_lower;
     float third = z * 0.333333343f;
@@ -216,7 +216,7 @@ SHARED_FUNCTION float float_log2_pair(float x, float *lower)
     float a_lower = float_product_error(sum, 2.88539004f, a) + (sum * 3.85192607e-08f + sum_lower * 2.88539004f);
     float n = (float)e;
     float upper = n + a;
-    float upper_lower = (e == 0 ? 0.0f : (n - upper) + a) + a_lower;
+    float upper_lower = ((n - upper) + a) + a_lower;
     float result = upper + upper_lower;
     *lower = (upper - result) + upper_lower;
     return result;
@@ -236,7 +236,7 @@ SHARED_FUNCTION float float_pow(float x, float y)
     float upper = float_log2_pair(x, &lower);
     float product = y * upper;
     float bounded = float_clamp(product, -160.0f, 160.0f);
-    int k = (int)(bounded + (bounded < 0.0f ? -0.5f : 0.5f));
+    int k = (int)(bounded + 200.5f) - 200;
     float r = (bounded - (float)k) + (float_product_error(y, upper, product) + y * lower);
     float p = 0.240226507f + r * (0.0555038117f + r * (0.0096181035f + r * (0.00133813021f + r * 0.000154448833f)));
     float z = float_scale(1.0f + (r * 0.693147182f + r * r * p), k);

@@ -22,13 +22,13 @@ SHARED_FUNCTION float fresnel_from_cosines(float cos_i, float cos_t, float eta)
 }
 
 /* Cosine of the refracted direction for cos_i >= 0, or -1 at total internal reflection. eta: transmitted side over
- * incident side. */
+ * incident side. Snell's law as cos_t^2 = (cos_i^2 + eta^2 - 1) / eta^2, which keeps the digits of a grazing cos_i. */
 SHARED_FUNCTION float refraction_cosine(float cos_i, float eta)
 {
-    float sin2_t = float_max(0.0f, 1.0f - cos_i * cos_i) / (eta * eta);
-    if (sin2_t >= 1.0f)
+    float numerator = cos_i * cos_i + (eta - 1.0f) * (eta + 1.0f);
+    if (!(numerator > 0.0f))
         return -1.0f;
-    return float_sqrt(1.0f - sin2_t);
+    return float_min(float_sqrt(numerator) / eta, 1.0f);
 }
 
 /* Reflectance of a dielectric for cos_i >= 0; 1 at total internal reflection, 0 where eta = 1. */

@@ -6,9 +6,7 @@
 #ifndef TWINLIGHT_LIGHT_AREA_H
 #define TWINLIGHT_LIGHT_AREA_H
 
-#include "elementary.h"
-#include "path_types.h"
-#include "scene_view.h"
+#include "surface.h"
 #include "warp.h"
 
 /* A point on an area light. pdf: of having drawn it; per solid angle at the reference point when by_angle is 1, else
@@ -16,42 +14,34 @@
 typedef struct AreaPoint {
     Vec3 p;
     Vec3 ng; /* unit, the side that emits */
+    Vec2 uv; /* texture coordinates, for alpha */
     float pdf;
     uint by_angle;
 } AreaPoint;
 
-/* The vertex normals' side, where a mesh has them; else ReverseOrientation and the transform's handedness (pbrt's
- * rule, the same as surface.h's). `n`: unit normal by the order of the vertices. `ns`: interpolated vertex normal. */
-SHARED_FUNCTION Vec3 area_orient_mesh(uint flags, Vec3 n, Vec3 ns)
+/* ng as surface_from_hit finds it: `normal` need not be a unit vector. */
+SHARED_FUNCTION Vec3 area_light_normal(Vec3 normal, Vec3 vertex_normal, uint flags)
 {
-    bool flip = (flags & SHAPE_HAS_NORMALS) != 0u ? vec3_dot(n, ns) < 0.0f : (flags & SHAPE_FLIP_NORMAL) != 0u;
-    return flip ? vec3_negate(n) : n;
-}
-
-SHARED_FUNCTION Vec3 area_vertex_normal(const SceneView *scene, const Shape *shape, uint vertex)
-{
-    return scene->normals[vertex - shape->first_vertex + shape->first_normal];
+    Vec3 ng = vec3_direction(normal, vec3(0.0f, 0.0f, 1.0f));
+    ng = (flags & SHAPE_FLIP_NORMAL) != 0u ? vec3_negate(ng) : ng;
+    return vec3_face_forward(ng, vertex_normal);
 }
 
 /* ---- triangle ---------------------------------------------------------------------------------------------------- */
 
 /* Uniform over the area. */
-SHARED_FUNCTION AreaPoint triangle_light_sample(const SceneView *scene, Primitive triangle, float area, Vec2 u)
+SHARED_FUNCTION AreaPoint triangle_light_sample(const SceneView *scene, const Primitive *triangle, float area, Vec2 u)
 {
-    Shape shape = scene->shapes[triangle.shape_and_kind & PRIMITIVE_SHAPE_MASK];
-    Vec3 a = scene->positions[triangle.a];
-    Vec3 ab = vec3_sub(scene->positions[triangle.b], a);
-    Vec3 ac = vec3_sub(scene->positions[triangle.c], a);
-    Vec2 b = warp_triangle(u);
-    Vec3 ns = vec3_splat(0.0f);
-    if ((shape.flags & SHAPE_HAS_NORMALS) != 0u) {
-        ns = vec3_scale(area_vertex_normal(scene, &shape, triangle.a), 1.0f - b.x - b.y);
-        ns = vec3_mad(ns, b.x, area_vertex_normal(scene, &shape, triangle.b));
-        ns = vec3_mad(ns, b.y, area_vertex_normal(scene, &shape, triangle.c));
-    }
+    Shape shape = scene->shapes[triangle->shape_and_kind & PRIMITIVE_SHAPE_MASK];
+    Vec3 a = scene->positions[triangle->a], b = scene->positions[triangle->b], c = scene->positions[triangle->c];
+    Vec2 weights = warp_triangle(u);
+    Vec3 vertex_normal = vec3_splat(0.0f);
+    if ((shape.flags & SHAPE_HAS_NORMALS) != 0u)
+        vertex_normal = triangle_vertex_normal(scene, &shape, triangle, weights.x, weights.y);
     AreaPoint point;
-    point.p = vec3_mad(vec3_mad(a, b.x, ab), b.y, ac);
-    point.ng = area_orient_mesh(shape.flags, vec3_normalize(vec3_cross(ab, ac)), ns);
+    point.p = vec3_add(a, vec3_mad(vec3_scale(vec3_sub(b, a), weights.x), weights.y, vec3_sub(c, a)));
+    point.ng = area_light_normal(triangle_normal(a, b, c), vertex_normal, shape.flags);
+    point.uv = SCENE_HAS(scene, FEATURE_ALPHA) ? triangle_uv(scene, &shape, triangle, weights.x, weights.y) : weights;
     point.pdf = 1.0f / area;
     point.by_angle = 0u;
     return point;
@@ -59,44 +49,28 @@ SHARED_FUNCTION AreaPoint triangle_light_sample(const SceneView *scene, Primitiv
 
 /* ---- bilinear patch ---------------------------------------------------------------------------------------------- */
 
-/* dp/du x dp/dv at (u, v); its length is the area per unit of (u, v). */
-SHARED_FUNCTION Vec3 patch_light_normal(Vec3 p00, Vec3 p10, Vec3 p01, Vec3 p11, float u, float v)
+/* Density per area of a point drawn uniformly in (u, v): one over the area per unit of (u, v). */
+SHARED_FUNCTION float patch_light_pdf(const PatchCorners *corners, float u, float v)
 {
-    Vec3 dpdu = vec3_lerp(vec3_sub(p10, p00), vec3_sub(p11, p01), v);
-    Vec3 dpdv = vec3_lerp(vec3_sub(p01, p00), vec3_sub(p11, p10), u);
-    return vec3_cross(dpdu, dpdv);
+    return 1.0f / vec3_length(vec3_cross(patch_dpdu(corners, v), patch_dpdv(corners, u)));
 }
 
 /* Uniform in (u, v). */
-SHARED_FUNCTION AreaPoint patch_light_sample(const SceneView *scene, Primitive primitive, Vec2 u)
+SHARED_FUNCTION AreaPoint patch_light_sample(const SceneView *scene, const Primitive *primitive, Vec2 u)
 {
-    Shape shape = scene->shapes[primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK];
-    Patch patch = scene->patches[primitive.a];
-    Vec3 p00 = scene->positions[patch.v[0]], p10 = scene->positions[patch.v[1]];
-    Vec3 p01 = scene->positions[patch.v[2]], p11 = scene->positions[patch.v[3]];
-    Vec3 n = patch_light_normal(p00, p10, p01, p11, u.x, u.y);
-    Vec3 ns = vec3_splat(0.0f);
+    Shape shape = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK];
+    PatchCorners corners = patch_corners(scene, primitive->a);
+    Vec3 vertex_normal = vec3_splat(0.0f);
     if ((shape.flags & SHAPE_HAS_NORMALS) != 0u)
-        ns = vec3_lerp(vec3_lerp(area_vertex_normal(scene, &shape, patch.v[0]),
-                                 area_vertex_normal(scene, &shape, patch.v[1]), u.x),
-                       vec3_lerp(area_vertex_normal(scene, &shape, patch.v[2]),
-                                 area_vertex_normal(scene, &shape, patch.v[3]), u.x),
-                       u.y);
-    float jacobian = vec3_length(n);
+        vertex_normal = patch_vertex_normal(scene, &shape, primitive->a, u.x, u.y);
     AreaPoint point;
-    point.p = vec3_lerp(vec3_lerp(p00, p10, u.x), vec3_lerp(p01, p11, u.x), u.y);
-    point.ng = area_orient_mesh(shape.flags, vec3_scale(n, 1.0f / jacobian), ns);
-    point.pdf = 1.0f / jacobian;
+    point.p = patch_point(&corners, u.x, u.y);
+    point.ng = area_light_normal(patch_normal(&corners, patch_dpdu(&corners, u.y), patch_dpdv(&corners, u.x)),
+                                 vertex_normal, shape.flags);
+    point.uv = SCENE_HAS(scene, FEATURE_ALPHA) ? patch_uv(scene, &shape, primitive->a, u.x, u.y) : u;
+    point.pdf = patch_light_pdf(&corners, u.x, u.y);
     point.by_angle = 0u;
     return point;
-}
-
-SHARED_FUNCTION float patch_light_pdf(const SceneView *scene, Primitive primitive, float u, float v)
-{
-    Patch patch = scene->patches[primitive.a];
-    Vec3 n = patch_light_normal(scene->positions[patch.v[0]], scene->positions[patch.v[1]],
-                                scene->positions[patch.v[2]], scene->positions[patch.v[3]], u, v);
-    return 1.0f / vec3_length(n);
 }
 
 /* ---- sphere and disk ---------------------------------------------------------------------------------------------- */
@@ -112,9 +86,21 @@ SHARED_FUNCTION float quadric_light_pdf(__global const Quadric *quadric, float o
     return vec3_length(vec3(vec3_dot(x, ng), vec3_dot(y, ng), vec3_dot(z, ng))) / (determinant * object_area);
 }
 
+/* The heights between which a sphere is kept. */
+SHARED_FUNCTION float sphere_low(__global const Quadric *quadric)
+{
+    return float_max(quadric->z_min, -quadric->radius);
+}
+
+SHARED_FUNCTION float sphere_high(__global const Quadric *quadric)
+{
+    return float_min(quadric->z_max, quadric->radius);
+}
+
+/* Area in object space. */
 SHARED_FUNCTION float sphere_object_area(__global const Quadric *quadric)
 {
-    return quadric->phi_max * quadric->radius * (quadric->z_max - quadric->z_min);
+    return quadric->phi_max * quadric->radius * (sphere_high(quadric) - sphere_low(quadric));
 }
 
 SHARED_FUNCTION float disk_object_area(__global const Quadric *quadric)
@@ -123,47 +109,55 @@ SHARED_FUNCTION float disk_object_area(__global const Quadric *quadric)
            (quadric->radius + quadric->inner_radius);
 }
 
-/* The point and normal of a quadric that are p and n in its object space. */
-SHARED_FUNCTION AreaPoint quadric_light_point(const SceneView *scene, Primitive primitive, Vec3 p, Vec3 n,
+/* The point and normal of a quadric that are p and n in its object space. uv is the caller's. */
+SHARED_FUNCTION AreaPoint quadric_light_point(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec3 n,
                                               float object_area)
 {
-    __global const Quadric *quadric = scene->quadrics + primitive.a;
-    Affine world_from_object = quadric->world_from_object, object_from_world = quadric->object_from_world;
-    uint flags = scene->shapes[primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
+    uint flags = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
     AreaPoint point;
-    point.p = affine_point(world_from_object, p);
-    point.ng = vec3_normalize(affine_normal(object_from_world, n));
-    if ((flags & SHAPE_FLIP_NORMAL) != 0u)
-        point.ng = vec3_negate(point.ng);
+    point.p = affine_point(quadric->world_from_object, p);
+    point.ng = area_light_normal(affine_normal(quadric->object_from_world, n), vec3_splat(0.0f), flags);
+    point.uv = vec2(0.0f, 0.0f);
     point.pdf = quadric_light_pdf(quadric, object_area, point.ng);
     point.by_angle = 0u;
     return point;
 }
 
 /* Uniform in object space over the part of the disk between the radii and angles. */
-SHARED_FUNCTION AreaPoint disk_light_sample(const SceneView *scene, Primitive primitive, Vec2 u)
+SHARED_FUNCTION AreaPoint disk_light_sample(const SceneView *scene, const Primitive *primitive, Vec2 u)
 {
-    __global const Quadric *quadric = scene->quadrics + primitive.a;
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
     float inner = quadric->inner_radius, outer = quadric->radius;
     float r = float_sqrt((1.0f - u.x) * inner * inner + u.x * outer * outer);
     float sin_phi, cos_phi;
     float_sincos(u.y * quadric->phi_max, &sin_phi, &cos_phi);
-    return quadric_light_point(scene, primitive, vec3(r * cos_phi, r * sin_phi, quadric->z_min), vec3(0.0f, 0.0f, 1.0f),
-                               disk_object_area(quadric));
+    Vec3 p = vec3(r * cos_phi, r * sin_phi, quadric->z_min);
+    AreaPoint point = quadric_light_point(scene, primitive, p, vec3(0.0f, 0.0f, 1.0f), disk_object_area(quadric));
+    if (SCENE_HAS(scene, FEATURE_ALPHA))
+        point.uv = disk_parameters(quadric, p);
+    return point;
 }
 
 /* Uniform in object space over the part of the sphere between the heights and angles (Archimedes: equal heights have
  * equal areas). */
-SHARED_FUNCTION AreaPoint sphere_light_sample_area(const SceneView *scene, Primitive primitive, Vec2 u)
+SHARED_FUNCTION AreaPoint sphere_light_sample_area(const SceneView *scene, const Primitive *primitive, Vec2 u)
 {
-    __global const Quadric *quadric = scene->quadrics + primitive.a;
-    float z = (1.0f - u.x) * quadric->z_min + u.x * quadric->z_max;
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
+    float z = (1.0f - u.x) * sphere_low(quadric) + u.x * sphere_high(quadric);
     float r = float_sqrt(float_max((quadric->radius - z) * (quadric->radius + z), 0.0f));
     float sin_phi, cos_phi;
     float_sincos(u.y * quadric->phi_max, &sin_phi, &cos_phi);
     Vec3 p = vec3(r * cos_phi, r * sin_phi, z);
-    return quadric_light_point(scene, primitive, p, vec3_scale(p, 1.0f / quadric->radius), sphere_object_area(quadric));
+    AreaPoint point = quadric_light_point(scene, primitive, p, p, sphere_object_area(quadric));
+    if (SCENE_HAS(scene, FEATURE_ALPHA))
+        point.uv = sphere_parameters(quadric, p);
+    return point;
 }
+
+/* Squared distance from the centre, in squared radii, from which on a point counts as outside. A point on the sphere
+ * itself, which sees the rest of the inside, must not fall outside by rounding; the area form is right for both. */
+#define SPHERE_OUTSIDE 1.0001f
 
 /* The cone that a whole sphere subtends at a point outside: square of the sine of its half-angle, 0 when `ref` is not
  * outside or the sphere is not whole. */
@@ -171,7 +165,7 @@ SHARED_FUNCTION float sphere_light_sin2(__global const Quadric *quadric, Vec3 re
 {
     float distance2 = vec3_length_squared(vec3_sub(quadric->center, ref));
     float radius2 = quadric->world_radius * quadric->world_radius;
-    return quadric->whole != 0u && distance2 > radius2 ? radius2 / distance2 : 0.0f;
+    return quadric->whole != 0u && distance2 > SPHERE_OUTSIDE * radius2 ? radius2 / distance2 : 0.0f;
 }
 
 /* 1 - cos of the half-angle, without the cancellation that makes it 0 below 2e-4 radians. */
@@ -180,46 +174,57 @@ SHARED_FUNCTION float sphere_light_versine(float sin2)
     return sin2 / (1.0f + float_sqrt(1.0f - sin2));
 }
 
-/* Uniform over the directions to a whole sphere, from outside; u goes through the disk, as in warp_cone. The point is
- * found from angles at the sphere's centre rather than along the ray, so that it lies on the sphere however small that
- * is: with theta the angle at `ref` between axis and ray, the sine of the angle between ray and normal is s =
- * sin(theta) / sin(theta_max), and the angle at the centre is asin(s) - theta. Sines are kept divided by the radius r
- * in the disk, which is zero on the axis. */
-SHARED_FUNCTION AreaPoint sphere_light_sample_cone(const SceneView *scene, Primitive primitive, float sin2, Vec3 ref,
-                                                   Vec2 u)
+/* The unit vector from the centre to a point of the near side, uniform over the directions to a whole sphere from
+ * outside; u goes through the disk, as in warp_cone. It is found from angles at the sphere's centre rather than along
+ * the ray, so that the point lies on the sphere however small that is: with theta the angle at `ref` between axis and
+ * ray, the sine of the angle between ray and normal is s = sin(theta) / sin(theta_max), and the angle at the centre is
+ * asin(s) - theta. Sines are kept divided by the radius r in the disk, which is zero on the axis. */
+SHARED_FUNCTION Vec3 sphere_light_cone(Vec3 axis, float sin2, Vec2 u)
 {
-    __global const Quadric *quadric = scene->quadrics + primitive.a;
     float r;
     Vec2 d = warp_disk_polar(u, &r);
-    float cos_max = float_sqrt(1.0f - sin2);
     float versine_max = sphere_light_versine(sin2);
     float versine = r * r * versine_max;
     float cos_theta = 1.0f - versine;
     float sin_theta = float_sqrt(versine_max * (2.0f - versine));
-    float s = float_sqrt((2.0f - versine) / (1.0f + cos_max));
+    float s = float_sqrt((2.0f - versine) / (1.0f + float_sqrt(1.0f - sin2)));
     float c = float_sqrt(float_max(1.0f - r * r * s * s, 0.0f));
     float sin_alpha = s * cos_theta - c * sin_theta;
     float cos_alpha = c * cos_theta + r * r * s * sin_theta;
-    Vec3 axis = vec3_normalize(vec3_sub(quadric->center, ref));
-    Vec3 n = frame_to_world(frame_from_normal(axis), vec3(sin_alpha * d.x, sin_alpha * d.y, -cos_alpha));
-    uint flags = scene->shapes[primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+    return frame_to_world(frame_from_normal(axis), vec3(sin_alpha * d.x, sin_alpha * d.y, -cos_alpha));
+}
+
+SHARED_FUNCTION AreaPoint sphere_light_sample(const SceneView *scene, const Primitive *primitive, Vec3 ref, Vec2 u)
+{
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
+    float sin2 = sphere_light_sin2(quadric, ref);
+    if (!(sin2 > 0.0f))
+        return sphere_light_sample_area(scene, primitive, u);
+    uint flags = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+    Vec3 n = sphere_light_cone(vec3_normalize(vec3_sub(quadric->center, ref)), sin2, u);
     AreaPoint point;
     point.p = vec3_mad(quadric->center, quadric->world_radius, n);
     point.ng = (flags & SHAPE_FLIP_NORMAL) != 0u ? vec3_negate(n) : n;
-    point.pdf = warp_cone_pdf(versine_max);
+    point.uv = vec2(0.0f, 0.0f);
+    if (SCENE_HAS(scene, FEATURE_ALPHA))
+        point.uv =
+            sphere_parameters(quadric, sphere_project(affine_vector(quadric->object_from_world, n), quadric->radius));
+    point.pdf = warp_cone_pdf(sphere_light_versine(sin2));
     point.by_angle = 1u;
     return point;
 }
 
-SHARED_FUNCTION AreaPoint sphere_light_sample(const SceneView *scene, Primitive primitive, Vec3 ref, Vec2 u)
+/* Cone sampling only finds the near side of a sphere; the far side shows through the holes of an alpha texture. */
+SHARED_FUNCTION bool sphere_light_hidden(const SceneView *scene, const Primitive *primitive, Vec3 ng, Vec3 wi)
 {
-    float sin2 = sphere_light_sin2(scene->quadrics + primitive.a, ref);
-    if (sin2 > 0.0f)
-        return sphere_light_sample_cone(scene, primitive, sin2, ref, u);
-    return sphere_light_sample_area(scene, primitive, u);
+    if ((primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
+        return false;
+    uint flags = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+    float cosine = vec3_dot(ng, wi);
+    return ((flags & SHAPE_FLIP_NORMAL) != 0u ? -cosine : cosine) > 0.0f;
 }
 
-/* ---- area lights --------------------------------------------------------------------------------------------------- */
+/* ---- area lights -------------------------------------------------------------------------------------------------- */
 
 /* Radiance that leaves the area light `light` towards `w` (unit, away from the surface) at a point with the geometric
  * normal `ng`: on the side of ng, or on both. */
@@ -231,17 +236,30 @@ SHARED_FUNCTION Vec3 light_emitted(const SceneView *scene, uint light, Vec3 ng, 
     return emitter->emission;
 }
 
-/* Density per solid angle at `ref` from one per area; 0 where the direction lies in the surface. */
-SHARED_FUNCTION float area_pdf_to_w(float pdf_a, float distance2, float cosine)
+/* Density per solid angle from one per area; 0 where the direction lies in the surface. */
+SHARED_FUNCTION float area_light_pdf_from_area(float pdf_a, float distance2, float cosine)
 {
-    float projected = float_abs(cosine);
-    return projected > 0.0f ? pdf_a * (distance2 / projected) : 0.0f;
+    float pdf_w = pdf_a * (distance2 / float_abs(cosine));
+    return cosine != 0.0f && float_finite(pdf_w) ? pdf_w : 0.0f;
 }
 
-SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, Vec3 ref, Vec2 u)
+/* How much of the surface is there at a point: a ray that meets it is kept with this probability
+ * (primitive_alpha_keeps). */
+SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *primitive, const AreaPoint *point)
 {
-    Primitive primitive = scene->primitives[scene->lights[light].primitive];
-    uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
+    if (!SCENE_HAS(scene, FEATURE_ALPHA) || (primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
+        return 1.0f;
+    TexturePoint at;
+    at.p = point->p;
+    at.uv = point->uv;
+    uint alpha = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].alpha;
+    return float_clamp(texture_eval_float(scene, alpha, &at), 0.0f, 1.0f);
+}
+
+SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, const Primitive *primitive, Vec3 ref,
+                                           Vec2 u)
+{
+    uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR)
         return patch_light_sample(scene, primitive, u);
     if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE)
@@ -253,7 +271,8 @@ SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, V
 
 SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
 {
-    AreaPoint point = area_light_point(scene, light, ref, u);
+    Primitive primitive = scene->primitives[scene->lights[light].primitive];
+    AreaPoint point = area_light_point(scene, light, &primitive, ref, u);
     Vec3 d = vec3_sub(point.p, ref);
     float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))
@@ -262,45 +281,39 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
     sample->p = point.p;
     sample->ng = point.ng;
     sample->radiance = light_emitted(scene, light, point.ng, vec3_negate(sample->wi));
-    sample->pdf_w =
-        point.by_angle != 0u ? point.pdf : area_pdf_to_w(point.pdf, distance2, vec3_dot(point.ng, sample->wi));
+    sample->pdf_w = point.pdf;
+    if (point.by_angle == 0u)
+        sample->pdf_w = area_light_pdf_from_area(point.pdf, distance2, vec3_dot(point.ng, sample->wi));
     sample->delta = 0u;
     sample->infinite = 0u;
-    return sample->pdf_w > 0.0f && float_finite(sample->pdf_w) && !vec3_is_zero(sample->radiance);
-}
-
-/* Cone sampling only finds the near side of a sphere. The far side shows through the holes of an alpha texture. */
-SHARED_FUNCTION bool sphere_light_hidden(Primitive primitive, uint flags, Vec3 ng, Vec3 wi)
-{
-    if ((primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
+    if (!(sample->pdf_w > 0.0f && float_finite(sample->pdf_w)) || vec3_is_zero(sample->radiance))
         return false;
-    float cosine = vec3_dot(ng, wi);
-    return ((flags & SHAPE_FLIP_NORMAL) != 0u ? -cosine : cosine) > 0.0f;
+    sample->radiance = vec3_scale(sample->radiance, area_light_alpha(scene, &primitive, &point));
+    return !vec3_is_zero(sample->radiance);
 }
 
 SHARED_FUNCTION float area_light_pdf_w(const SceneView *scene, uint light, Vec3 ref, Vec3 wi, const Surface *hit)
 {
     Primitive primitive = scene->primitives[scene->lights[light].primitive];
     uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    float pdf_a = 0.0f;
+    float pdf_a;
     if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
-        pdf_a = patch_light_pdf(scene, primitive, hit->u, hit->v);
+        PatchCorners corners = patch_corners(scene, primitive.a);
+        pdf_a = patch_light_pdf(&corners, hit->u, hit->v);
     } else if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE) {
-        __global const Quadric *quadric = scene->quadrics + primitive.a;
-        float sin2 = sphere_light_sin2(quadric, ref);
-        uint flags = scene->shapes[primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+        __global const Quadric *sphere = scene->quadrics + primitive.a;
+        float sin2 = sphere_light_sin2(sphere, ref);
         if (sin2 > 0.0f)
-            return sphere_light_hidden(primitive, flags, hit->ng, wi)
-                       ? 0.0f
-                       : warp_cone_pdf(sphere_light_versine(sin2));
-        pdf_a = quadric_light_pdf(quadric, sphere_object_area(quadric), hit->ng);
+            return sphere_light_hidden(scene, &primitive, hit->ng, wi) ? 0.0f
+                                                                       : warp_cone_pdf(sphere_light_versine(sin2));
+        pdf_a = quadric_light_pdf(sphere, sphere_object_area(sphere), hit->ng);
     } else if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK) {
-        pdf_a = quadric_light_pdf(scene->quadrics + primitive.a, disk_object_area(scene->quadrics + primitive.a),
-                                  hit->ng);
+        __global const Quadric *disk = scene->quadrics + primitive.a;
+        pdf_a = quadric_light_pdf(disk, disk_object_area(disk), hit->ng);
     } else {
         pdf_a = 1.0f / scene->lights[light].area;
     }
-    return area_pdf_to_w(pdf_a, vec3_length_squared(vec3_sub(hit->p, ref)), vec3_dot(hit->ng, wi));
+    return area_light_pdf_from_area(pdf_a, vec3_length_squared(vec3_sub(hit->p, ref)), vec3_dot(hit->ng, wi));
 }
 
 #endif

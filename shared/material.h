@@ -117,6 +117,7 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
         bsdf.color0 = color_unit(vec3_scale(bsdf.color0, material->scale));
     } else {
         bsdf.color0 = color_unit(bsdf.color0);
+        bsdf.color1 = material->color1.value;
     }
     if (SCENE_HAS(scene, FEATURE_ROUGH)) {
         bsdf.alpha_x = alpha_from_roughness(material->flags, float_param_eval(scene, material->roughness_u, point));

@@ -35,19 +35,4 @@ SHARED_FUNCTION float mis_power(float pdf_a, float pdf_b)
     return 1.0f / (1.0f + ratio * ratio);
 }
 
-/* s = 0: a direction drawn from the BSDF with density `pdf_bsdf_w` met the light. `pdf_light_w`: solid-angle density
- * that drawing a point on that light would have had, times the probability of choosing that light. After a delta lobe
- * or straight from the camera (`only` = 1) no other strategy exists. */
-SHARED_FUNCTION float mis_weight_hit(uint only, float pdf_bsdf_w, float pdf_light_w)
-{
-    return only != 0u ? 1.0f : mis_power(pdf_bsdf_w, pdf_light_w);
-}
-
-/* s = 1: a direction towards a chosen light. `pdf_light_w` as above. A delta light (`only` = 1) is met by no other
- * strategy. */
-SHARED_FUNCTION float mis_weight_light(uint only, float pdf_light_w, float pdf_bsdf_w)
-{
-    return only != 0u ? 1.0f : mis_power(pdf_light_w, pdf_bsdf_w);
-}
-
 #endif

@@ -32,7 +32,7 @@ typedef unsigned char uchar;
 typedef uint32_t uint;
 typedef uint64_t ulong;
 
-#define __kernel static inline
+#define __kernel static inline __attribute__((always_inline))
 #define __global
 #define __constant static const
 #define SHARED_FUNCTION static inline __attribute__((unused))

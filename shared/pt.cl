@@ -1,6 +1,9 @@
 /* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
  * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
  * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+#ifndef TWINLIGHT_PT_CL
+#define TWINLIGHT_PT_CL
+
 #include "bsdf.h"
 #include "camera.h"
 #include "diagnostics.h"
@@ -17,9 +20,10 @@
 #define ROULETTE_FIRST_DEPTH 2u
 
 /* From: nothing. To: the path's first ray, throughput 1. */
-__kernel void pt_start_paths(__global const FrameParams *frame, __global const uint *geometry,
-                             __global const uint *tables, __global const uint *texels, __global uint *paths,
-                             __global uint *rays, __global uint *shadows)
+__kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -32,7 +36,8 @@ __kernel void pt_start_paths(__global const FrameParams *frame, __global const u
     float weight;
     Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     Vec2 film = vec2((float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
-    Ray ray = camera_ray(&frame->camera, film, (float)frame->width, (float)frame->height,
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     ray_store(rays, stride, t, ray);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
@@ -48,13 +53,13 @@ __kernel void pt_start_paths(__global const FrameParams *frame, __global const u
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
 }
 
-SHARED_FUNCTION void path_end(__global uint *paths, __global uint *rays, uint stride, uint t)
+SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
 {
     state_store(paths, stride, PATH_DEPTH, t, 0u);
     state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
 }
 
-SHARED_FUNCTION void path_add_radiance(__global uint *paths, uint stride, uint t, Vec3 radiance)
+SHARED_FUNCTION void path_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
 {
     Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
@@ -67,10 +72,10 @@ SHARED_FUNCTION Vec3 path_environment(const SceneView *scene, uint flags, float 
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
         Vec3 radiance = environment_light_radiance(scene, light, d);
-        float pdf_light = 0.0f;
+        float weight = 1.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
-            pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-        sum = vec3_mad(sum, mis_weight_hit(flags & PATH_FLAG_DELTA, pdf_w, pdf_light), radiance);
+            weight = mis_power(pdf_w, scene->lights[light].select_pdf * environment_pdf_w(scene, light, d));
+        sum = vec3_mad(sum, weight, radiance);
     }
     return sum;
 }
@@ -83,13 +88,14 @@ SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flag
     if ((flags & PATH_FLAG_DELTA) != 0u || vec3_is_zero(radiance))
         return radiance;
     float pdf_light = scene->lights[light].select_pdf * light_pdf_w(scene, light, from, d, surface);
-    return vec3_scale(radiance, mis_weight_hit(0u, pdf_w, pdf_light));
+    return vec3_scale(radiance, mis_power(pdf_w, pdf_light));
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
-__kernel void pt_shade_hits(__global const FrameParams *frame, __global const uint *geometry,
-                            __global const uint *tables, __global const uint *texels, __global uint *paths,
-                            __global uint *rays, __global const uint *hits)
+__kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -148,9 +154,9 @@ SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
 }
 
 /* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
-__kernel void pt_sample_lights(__global const FrameParams *frame, __global const uint *geometry,
-                               __global const uint *tables, __global const uint *texels, __global uint *paths,
-                               __global uint *shadows)
+__kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                               __global const uint *restrict tables, __global const uint *restrict texels,
+                               __global uint *restrict paths, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -172,7 +178,7 @@ __kernel void pt_sample_lights(__global const FrameParams *frame, __global const
     if (vec3_is_zero(value.f_cos))
         return;
     float pdf = scene.lights[light].select_pdf * sample.pdf_w;
-    float weight = mis_weight_light(sample.delta, pdf, value.pdf_w);
+    float weight = sample.delta != 0u ? 1.0f : mis_power(pdf, value.pdf_w);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
     Vec3 light_term = vec3_scale(vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance), weight / pdf);
     state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
@@ -180,7 +186,8 @@ __kernel void pt_sample_lights(__global const FrameParams *frame, __global const
 }
 
 /* From: traced shadow rays. To: visible light samples gathered. */
-__kernel void pt_add_lights(__global const FrameParams *frame, __global uint *paths, __global const uint *shadows)
+__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                            __global const uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f && state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
@@ -188,9 +195,9 @@ __kernel void pt_add_lights(__global const FrameParams *frame, __global uint *pa
 }
 
 /* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
-__kernel void pt_extend_paths(__global const FrameParams *frame, __global const uint *geometry,
-                              __global const uint *tables, __global const uint *texels, __global uint *paths,
-                              __global uint *rays)
+__kernel void pt_extend_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -227,8 +234,8 @@ __kernel void pt_extend_paths(__global const FrameParams *frame, __global const 
 }
 
 /* From: the finished path. To: what it adds to its pixel. A sum that is not finite counts as zero and is counted. */
-__kernel void pt_splat(__global const FrameParams *frame, __global const uint *paths, __global uint *splats,
-                       __global uint *diagnostics)
+__kernel void pt_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths,
+                       __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     Vec3 radiance =
@@ -240,3 +247,5 @@ __kernel void pt_splat(__global const FrameParams *frame, __global const uint *p
     state_store(splats, stride, SPLAT_PIXEL, t, state_load(paths, stride, PATH_PIXEL, t));
     state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
 }
+
+#endif

@@ -186,7 +186,8 @@ typedef struct FloatParam {
 #define MATERIAL_CONDUCTOR_REFLECTANCE 0x2u /* color0 is reflectance at normal incidence; else eta color0, k color1 */
 
 /* color0: diffuse, coated, transmission: reflectance. conductor: eta or reflectance.
- * color1: conductor: k. diffuse transmission: transmittance.
+ * color1: conductor: k. diffuse transmission: transmittance. coated: x the coat's optical thickness along its normal
+ * (pbrt's "thickness"), y what scene_finish makes of it: the transmittance of one internal round trip (coat.h).
  * roughness_u/v: as given in the scene; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
  * mix: `mix_a` where the random number is >= amount, `mix_b` where it is below. */
 typedef struct Material {

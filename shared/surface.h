@@ -248,6 +248,8 @@ SHARED_FUNCTION Surface surface_from_hit(const SceneView *scene, const Ray *ray,
     surface.shape = primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK;
     surface.primitive = hit.primitive;
     surface.instance = hit.instance;
+    surface.u = hit.u;
+    surface.v = hit.v;
     bool instanced = SCENE_HAS(scene, FEATURE_INSTANCE) && hit.instance != NONE;
     if (instanced) {
         o = affine_point(scene->instances[hit.instance].object_from_world, ray->o);

@@ -1,8 +1,9 @@
 /* Maps from the unit square to disks, triangles and directions that keep areas (so a uniform point stays uniform), and
  * the two parametrisations of the sphere by images. Directions are unit vectors in a frame with z up.
  *
- * All maps but warp_sphere and the equirectangular one are continuous with bounded distortion: a small step in the
- * square is a small step in the target, which Markov chains live on. */
+ * The disk, the triangle, cones narrower than the whole sphere and the octahedral map are continuous with bounded
+ * distortion: a small step in the square is a small step in the target, which Markov chains live on. The cosine
+ * hemisphere is continuous, but steep at its rim; warp_sphere and the equirectangular map have a seam and poles. */
 #ifndef TWINLIGHT_WARP_H
 #define TWINLIGHT_WARP_H
 

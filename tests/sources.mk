@@ -1,5 +1,6 @@
 # One Check program per area; each lists every unit of the area that can be wrong.
 TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
+TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 
 if HAVE_CHECK
 check_PROGRAMS += \
@@ -9,6 +10,9 @@ check_PROGRAMS += \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
+	tests/test_metrics \
+	tests/test_options \
+	tests/test_platform_bits \
 	tests/test_render \
 	tests/test_texture
 TESTS += $(check_PROGRAMS)
@@ -37,23 +41,96 @@ tests_test_light_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 tests_test_math_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 tests_test_render_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 tests_test_texture_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+EXTRA_DIST += \
+	tests/bsdf_cases.h \
+	tests/geometry_fixture.h \
+	tests/light_fixture.h \
+	tests/opencl_probe.h \
+	tests/platform_layout.h \
+	tests/render_fixture.h \
+	tests/test_files.h \
+	tests/test_light.h \
+	tests/test_math.h \
+	tests/test_util.h \
+	tests/platform_probe.cl
 
+tests_test_bsdf_SOURCES = tests/test_bsdf.c \
+	tests/test_bsdf_formulas.c \
+	tests/test_bsdf_identities.c \
+	tests/test_bsdf_sampling.c
+tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
-tests_test_film_LDADD = $(TEST_LIBS)
-tests_test_geometry_LDADD = $(TEST_LIBS)
-tests_test_import_LDADD = $(TEST_LIBS)
-tests_test_light_LDADD = $(TEST_LIBS)
-tests_test_math_LDADD = $(TEST_LIBS)
-tests_test_render_LDADD = $(TEST_LIBS)
-tests_test_texture_LDADD = $(TEST_LIBS)
 
-# The command line: its parts, and the whole program.
-if HAVE_CHECK
-check_PROGRAMS += tests/test_options
-endif
-tests_test_options_SOURCES = tests/test_options.c tests/test_util.h
-tests_test_options_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+tests_test_film_SOURCES = tests/test_film.c \
+	tests/test_film_output.c
+tests_test_film_CFLAGS = $(TEST_CFLAGS)
+tests_test_film_LDADD = $(TEST_LIBS)
+
+tests_test_geometry_SOURCES = tests/test_geometry.c \
+	tests/geometry_fixture.c
+tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
+tests_test_geometry_LDADD = $(TEST_LIBS)
+
+tests_test_import_SOURCES = tests/test_import.c
+tests_test_import_CFLAGS = $(TEST_CFLAGS)
+tests_test_import_LDADD = $(TEST_LIBS)
+
+tests_test_light_SOURCES = tests/test_light.c \
+	tests/test_light_area.c \
+	tests/test_light_camera.c \
+	tests/test_light_environment.c \
+	tests/test_light_filter.c \
+	tests/test_light_irradiance.c \
+	tests/test_light_mis.c \
+	tests/test_light_select.c
+tests_test_light_CFLAGS = $(TEST_CFLAGS)
+tests_test_light_LDADD = $(TEST_LIBS)
+
+tests_test_math_SOURCES = tests/test_math.c \
+	tests/test_math_alias.c \
+	tests/test_math_distribution2d.c \
+	tests/test_math_elementary.c \
+	tests/test_math_elementary_pairs.c \
+	tests/test_math_rng.c \
+	tests/test_math_sphere_maps.c \
+	tests/test_math_warp.c
+tests_test_math_CFLAGS = $(TEST_CFLAGS)
+tests_test_math_LDADD = $(TEST_LIBS)
+
+tests_test_metrics_SOURCES = tests/test_metrics.c
+tests_test_metrics_CFLAGS = $(TEST_CFLAGS)
+tests_test_metrics_LDADD = $(TEST_LIBS)
+
+tests_test_options_SOURCES = tests/test_options.c
+tests_test_options_CFLAGS = $(TEST_CFLAGS)
 tests_test_options_LDADD = $(TEST_LIBS)
 
-dist_check_SCRIPTS += tests/test_cli.sh
-TESTS += tests/test_cli.sh
+tests_test_platform_bits_SOURCES = tests/test_platform_bits.c
+if HAVE_OPENCL
+tests_test_platform_bits_SOURCES += tests/opencl_probe.c
+else
+tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
+endif
+tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
+tests_test_platform_bits_CFLAGS = $(TEST_CFLAGS)
+tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
+
+tests_test_render_SOURCES = tests/test_render.c \
+	tests/render_fixture.c
+tests_test_render_CFLAGS = $(TEST_CFLAGS)
+tests_test_render_LDADD = $(TEST_LIBS)
+
+tests_test_texture_SOURCES = tests/test_texture.c \
+	tests/test_texture_color.c \
+	tests/test_texture_files.c \
+	tests/test_texture_image.c
+tests_test_texture_CFLAGS = $(TEST_CFLAGS)
+tests_test_texture_LDADD = $(TEST_LIBS)
+
+# Rules of the tree itself, and the whole program from outside.
+script_tests = \
+	tests/check_layers.sh \
+	tests/check_opencl.sh \
+	tests/test_cli.sh
+dist_check_SCRIPTS += $(script_tests)
+TESTS += $(script_tests)

@@ -1,16 +1,12 @@
-#include "test_util.h"
-
-START_TEST(test_placeholder)
-{
-    ck_assert_int_eq(1, 1);
-}
-END_TEST
+#include "bsdf_cases.h"
 
 int main(void)
 {
     Suite *suite = suite_create("bsdf");
-    TCase *tcase = tcase_create("bsdf");
-    tcase_add_test(tcase, test_placeholder);
-    suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, bsdf_formula_tests());
+    suite_add_tcase(suite, bsdf_identity_tests());
+    suite_add_tcase(suite, bsdf_sampling_tests());
+    suite_add_tcase(suite, bsdf_energy_tests());
+    suite_add_tcase(suite, bsdf_coated_tests());
     return test_run(suite);
 }

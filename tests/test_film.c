@@ -1,8 +1,275 @@
 #include "test_util.h"
 
-START_TEST(test_placeholder)
+#include "film.h"
+#include "state.h"
+
+#include <pthread.h>
+#include <string.h>
+
+TCase *film_output_tcase(void);
+
+static const int CROP_WHOLE[4] = {0, 0, 4, 3};
+
+static Film film_make(int width, int height, const int *crop)
 {
-    ck_assert_int_eq(1, 1);
+    Film film;
+    Error error = {0};
+    ck_assert_msg(film_init(&film, width, height, crop, &error), "%s", error.message);
+    return film;
+}
+
+static void splat_set(uint *splats, uint stride, uint t, uint pixel, float r, float g, float b)
+{
+    state_store(splats, stride, SPLAT_PIXEL, t, pixel);
+    state_store_vec3(splats, stride, SPLAT_COLOR, t, vec3(r, g, b));
+}
+
+static void film_add_one(Film *film, uint pixel, float r, float g, float b)
+{
+    uint splat[SPLAT_WORDS];
+    splat_set(splat, 1, 0, pixel, r, g, b);
+    film_add_splats(film, splat, 1, 1);
+}
+
+/* 0.3 added 2^30 times: in float32 the sum stops at 8,388,608. A merge with a copy doubles both sum and count. */
+START_TEST(test_billion_additions_exact)
+{
+    const int crop[4] = {0, 0, 1, 1};
+    Error error;
+    Film film = film_make(1, 1, crop), copy = film_make(1, 1, crop);
+    int64_t unit = (int64_t)floor((double)0.3f * 0x1p30 + 0.5);
+    for (int i = 0; i < 1 << 14; ++i)
+        film_add_one(&film, 0, 0.3f, -0.3f, 0.0f);
+    for (int i = 14; i < 30; ++i) {
+        for (int c = 0; c < 3; ++c)
+            copy.sums[c] = film.sums[c];
+        copy.counts[0] = film.counts[0];
+        ck_assert(film_merge(&film, &copy, &error));
+    }
+    ck_assert_int_eq(film.sums[0], unit << 30);
+    ck_assert_int_eq(film.sums[1], -(unit << 30));
+    ck_assert_int_eq(film.sums[2], 0);
+    ck_assert_uint_eq(film.counts[0], 1u << 30);
+    ck_assert_uint_eq(film.saturated, 0);
+    float rgb[3];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_double_eq_tol((double)rgb[0], (double)0.3f, 0x1p-31);
+    film_destroy(&film);
+    film_destroy(&copy);
+}
+END_TEST
+
+#define SPLATS 40000u
+#define THREADS 4u
+
+typedef struct ThreadJob {
+    Film *film;
+    const uint *splats;
+    uint count;
+} ThreadJob;
+
+static void *thread_add(void *argument)
+{
+    const ThreadJob *job = argument;
+    film_add_splats(job->film, job->splats, job->count, SPLATS);
+    return NULL;
+}
+
+/* Splats over twelve orders of magnitude and both signs, from a linear congruential generator. */
+static void splats_fill(uint *splats)
+{
+    uint state = 1;
+    for (uint t = 0; t < SPLATS; ++t) {
+        float rgb[3];
+        for (int c = 0; c < 3; ++c) {
+            state = state * 1664525u + 1013904223u;
+            rgb[c] = ldexpf((float)(int)state / 0x1p31f, (int)(state >> 3) % 40 - 30);
+        }
+        splat_set(splats, SPLATS, t, (state >> 7) % 13 == 12 ? NONE : (state >> 7) % 13, rgb[0], rgb[1], rgb[2]);
+    }
+}
+
+/* Item t of the shuffled buffer is item 12347 t mod SPLATS of the other (the two are coprime). */
+static void splats_shuffle(const uint *splats, uint *shuffled)
+{
+    for (uint t = 0; t < SPLATS; ++t)
+        for (uint f = 0; f < SPLAT_WORDS; ++f)
+            state_store(shuffled, SPLATS, f, t, state_load(splats, SPLATS, f, (uint)((uint64_t)t * 12347 % SPLATS)));
+}
+
+static void films_compare(const Film *a, const Film *b)
+{
+    ck_assert_mem_eq((const void *)a->sums, (const void *)b->sums, 12 * 3 * sizeof *a->sums);
+    ck_assert_mem_eq((const void *)a->counts, (const void *)b->counts, 12 * sizeof *a->counts);
+    ck_assert_uint_eq(a->saturated, b->saturated);
+}
+
+START_TEST(test_order_does_not_matter)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats), *shuffled = malloc(SPLATS * SPLAT_WORDS * 4);
+    splats_fill(splats);
+    splats_shuffle(splats, shuffled);
+    Film one = film_make(4, 3, CROP_WHOLE), two = film_make(4, 3, CROP_WHOLE), many = film_make(4, 3, CROP_WHOLE);
+    film_add_splats(&one, splats, SPLATS, SPLATS);
+    film_add_splats(&two, shuffled, SPLATS, SPLATS);
+    pthread_t threads[THREADS];
+    ThreadJob jobs[THREADS];
+    for (uint i = 0; i < THREADS; ++i) {
+        jobs[i] = (ThreadJob){&many, shuffled + i * (SPLATS / THREADS), SPLATS / THREADS};
+        pthread_create(&threads[i], NULL, thread_add, &jobs[i]);
+    }
+    for (uint i = 0; i < THREADS; ++i)
+        pthread_join(threads[i], NULL);
+    films_compare(&one, &two);
+    films_compare(&one, &many);
+    ck_assert_int_ne(one.sums[0], 0);
+    film_destroy(&one);
+    film_destroy(&two);
+    film_destroy(&many);
+    free(splats);
+    free(shuffled);
+}
+END_TEST
+
+START_TEST(test_merge_equals_one_film)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats);
+    Error error;
+    splats_fill(splats);
+    Film whole = film_make(4, 3, CROP_WHOLE), first = film_make(4, 3, CROP_WHOLE), rest = film_make(4, 3, CROP_WHOLE);
+    film_add_splats(&whole, splats, SPLATS, SPLATS);
+    film_add_splats(&first, splats, 12345, SPLATS);
+    film_add_splats(&rest, splats + 12345, SPLATS - 12345, SPLATS);
+    ck_assert(film_merge(&first, &rest, &error));
+    films_compare(&whole, &first);
+    film_destroy(&whole);
+    film_destroy(&first);
+    film_destroy(&rest);
+    free(splats);
+}
+END_TEST
+
+/* Halves go away from zero; the default unit is 2^-30. */
+START_TEST(test_rounding)
+{
+    const float values[] = {0x1p-31f, -0x1p-31f, 0x1.fffffep-32f, -0x1.fffffep-32f, 0x1.8p-30f, 1.0f, -0.0f, 1e-45f};
+    const int64_t expected[] = {1, -1, 0, 0, 2, 1 << 30, 0, 0};
+    for (int i = 0; i < 8; ++i) {
+        Film film = film_make(4, 3, CROP_WHOLE);
+        film_add_one(&film, 5, values[i], 0.0f, values[i]);
+        ck_assert_int_eq(film.sums[15], expected[i]);
+        ck_assert_int_eq(film.sums[17], expected[i]);
+        film_destroy(&film);
+    }
+}
+END_TEST
+
+START_TEST(test_saturation)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    film_add_one(&film, 0, 1e30f, 1.0f, -FLOAT_MAX);
+    ck_assert_uint_eq(film.saturated, 1);
+    ck_assert_int_eq(film.sums[0], (int64_t)1 << 48);
+    ck_assert_int_eq(film.sums[1], 1 << 30);
+    ck_assert_int_eq(film.sums[2], -((int64_t)1 << 48));
+    /* 2^18 is 2^48 units, the largest that is not clamped; 2^14 of them are too much for a sum. */
+    for (int i = 0; i < (1 << 14) - 1; ++i)
+        film_add_one(&film, 1, 0x1p18f, 0.0f, 0.0f);
+    ck_assert_uint_eq(film.saturated, 1);
+    film_add_one(&film, 1, 0x1p18f, 0.0f, 0.0f);
+    ck_assert_uint_eq(film.saturated, 2);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_not_finite_counts_as_zero)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    float rgb[36];
+    film_add_one(&film, 7, NAN, 1.0f, 1.0f);
+    film_add_one(&film, 7, 1.0f, INFINITY, 1.0f);
+    film_add_one(&film, 7, 1.0f, 1.0f, -INFINITY);
+    film_add_one(&film, 7, 4.0f, 2.0f, 1.0f);
+    ck_assert_uint_eq(film.not_finite, 3);
+    ck_assert_uint_eq(film.counts[7], 4);
+    film_resolve(&film, 2.0f, rgb);
+    ck_assert_float_eq(rgb[21], 2.0f);
+    ck_assert_float_eq(rgb[22], 1.0f);
+    ck_assert_float_eq(rgb[23], 0.5f);
+    ck_assert_float_eq(rgb[0], 0.0f);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_crop)
+{
+    const int crop[4] = {1, 1, 3, 2};
+    Film film = film_make(4, 3, crop);
+    for (uint pixel = 0; pixel < 14; ++pixel)
+        film_add_one(&film, pixel, 1.0f + (float)pixel, 0.0f, 0.0f);
+    film_add_one(&film, NONE, 1.0f, 1.0f, 1.0f);
+    float rgb[6];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_float_eq(rgb[0], 6.0f);
+    ck_assert_float_eq(rgb[3], 7.0f);
+    ck_assert_uint_eq(film.counts[0] + film.counts[1], 2);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_quantum)
+{
+    const double means[] = {1.0, 0.75, 1.5, 1e-40, 1e30, 0.0, -1.0, NAN, INFINITY};
+    const int expected[] = {-26, -27, -26, -159, 73, -30, -30, -30, -30};
+    Film film = film_make(4, 3, CROP_WHOLE);
+    for (int i = 0; i < 9; ++i) {
+        film_quantum_set(&film, means[i]);
+        ck_assert_int_eq(film.quantum_exponent, expected[i]);
+    }
+    film_quantum_set(&film, 1e30);
+    film_add_one(&film, 0, 1e30f, 3e30f, 1e10f);
+    float rgb[36];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_float_eq_tol(rgb[0], 1e30f, 1e23f);
+    ck_assert_float_eq_tol(rgb[1], 3e30f, 3e23f);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_merge_refuses_other_films)
+{
+    const int crop[4] = {0, 0, 3, 3};
+    Error error;
+    Film film = film_make(4, 3, CROP_WHOLE), wide = film_make(5, 3, CROP_WHOLE), cropped = film_make(4, 3, crop);
+    Film coarse = film_make(4, 3, CROP_WHOLE), full = film_make(4, 3, CROP_WHOLE);
+    coarse.quantum_exponent = -20;
+    film.counts[3] = 2;
+    full.counts[3] = UINT32_MAX - 1;
+    ck_assert(!film_merge(&film, &wide, &error));
+    ck_assert_str_eq(error.message, "error: films of different sizes cannot be merged: 4 x 3 and 5 x 3");
+    ck_assert(!film_merge(&film, &cropped, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "0,0,4,3 and 0,0,3,3"));
+    ck_assert(!film_merge(&film, &coarse, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "2^-30 and 2^-20"));
+    ck_assert(!film_merge(&film, &full, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "4294967295 samples"));
+    Film *films[] = {&film, &wide, &cropped, &coarse, &full};
+    for (int i = 0; i < 5; ++i)
+        film_destroy(films[i]);
+}
+END_TEST
+
+START_TEST(test_init_refuses)
+{
+    const int crops[][4] = {{2, 0, 2, 3}, {0, 0, 5, 3}, {-1, 0, 4, 3}, {0, 3, 4, 3}};
+    Film film;
+    Error error;
+    for (int i = 0; i < 4; ++i)
+        ck_assert(!film_init(&film, 4, 3, crops[i], &error));
+    ck_assert(!film_init(&film, 0, 3, CROP_WHOLE, &error));
+    const int huge[4] = {0, 0, 1, 1};
+    ck_assert(!film_init(&film, 70000, 70000, huge, &error));
+    film_destroy(&film);
 }
 END_TEST
 
@@ -10,7 +277,17 @@ int main(void)
 {
     Suite *suite = suite_create("film");
     TCase *tcase = tcase_create("film");
-    tcase_add_test(tcase, test_placeholder);
+    tcase_add_test(tcase, test_billion_additions_exact);
+    tcase_add_test(tcase, test_order_does_not_matter);
+    tcase_add_test(tcase, test_merge_equals_one_film);
+    tcase_add_test(tcase, test_rounding);
+    tcase_add_test(tcase, test_saturation);
+    tcase_add_test(tcase, test_not_finite_counts_as_zero);
+    tcase_add_test(tcase, test_crop);
+    tcase_add_test(tcase, test_quantum);
+    tcase_add_test(tcase, test_merge_refuses_other_films);
+    tcase_add_test(tcase, test_init_refuses);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, film_output_tcase());
     return test_run(suite);
 }

@@ -1,16 +1,17 @@
-#include "test_util.h"
+/* Lights, camera, pixel filter and MIS weights. */
+#include "test_light.h"
 
-START_TEST(test_placeholder)
-{
-    ck_assert_int_eq(1, 1);
-}
-END_TEST
+#include "test_util.h"
 
 int main(void)
 {
     Suite *suite = suite_create("light");
-    TCase *tcase = tcase_create("light");
-    tcase_add_test(tcase, test_placeholder);
-    suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, light_area_case());
+    suite_add_tcase(suite, light_irradiance_case());
+    suite_add_tcase(suite, light_environment_case());
+    suite_add_tcase(suite, light_select_case());
+    suite_add_tcase(suite, camera_case());
+    suite_add_tcase(suite, pixel_filter_case());
+    suite_add_tcase(suite, mis_case());
     return test_run(suite);
 }

@@ -1,16 +1,15 @@
-#include "test_util.h"
-
-START_TEST(test_placeholder)
-{
-    ck_assert_int_eq(1, 1);
-}
-END_TEST
+/* Elementary functions, generator, warps and tabulated distributions. */
+#include "test_math.h"
 
 int main(void)
 {
     Suite *suite = suite_create("math");
-    TCase *tcase = tcase_create("math");
-    tcase_add_test(tcase, test_placeholder);
-    suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, test_math_elementary());
+    suite_add_tcase(suite, test_math_elementary_pairs());
+    suite_add_tcase(suite, test_math_rng());
+    suite_add_tcase(suite, test_math_warp());
+    suite_add_tcase(suite, test_math_sphere_maps());
+    suite_add_tcase(suite, test_math_alias());
+    suite_add_tcase(suite, test_math_distribution2d());
     return test_run(suite);
 }

@@ -1,0 +1,106 @@
+#include "error_image.h"
+
+#include "exr.h"
+#include "png_write.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static bool ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), ending_length = strlen(ending);
+    return length > ending_length && strcasecmp(path + length - ending_length, ending) == 0;
+}
+
+bool error_image_path_check(const char *path, Error *error)
+{
+    if (ends_with(path, ".exr") || ends_with(path, ".png"))
+        return true;
+    error_set(error, "the ending of %s tells no kind of image", path);
+    return error_fix(error, "use a name that ends in .exr or .png");
+}
+
+void error_color(float relative, float rgb[3])
+{
+    if (!isfinite(relative)) {
+        rgb[0] = rgb[2] = 1.0f;
+        rgb[1] = 0.0f;
+        return;
+    }
+    /* Three decades, 0.001 ... 1, to 0 ... 1. The first channel rises over the whole range, the second over its upper
+     * half, the third over its last quarter: black, red, yellow, white, or black, blue, cyan, white. */
+    float t = fabsf(relative) > 1e-3f ? fminf(log10f(fabsf(relative)) / 3.0f + 1.0f, 1.0f) : 0.0f;
+    float ramp[3] = {t, fmaxf(2.0f * t - 1.0f, 0.0f), 0.6f * fmaxf(4.0f * t - 3.0f, 0.0f)};
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = ramp[relative > 0.0f ? c : 2 - c];
+}
+
+static double pixel_mean(const float *rgb)
+{
+    return ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3.0;
+}
+
+/* out: one relative error a pixel. */
+static void relative_fill(const float *image, const float *reference, size_t pixels, float *out)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < pixels; ++i) {
+        double mean = pixel_mean(reference + 3 * i);
+        sum += isfinite(mean) ? mean : 0.0;
+    }
+    double floor_value = 0.01 * fabs(sum / (double)pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+        double a = pixel_mean(image + 3 * i), r = pixel_mean(reference + 3 * i);
+        out[i] = a == r ? 0.0f : (float)((a - r) / (fabs(r) + floor_value));
+    }
+}
+
+static bool exr_error_write(const char *path, const float *image, const float *reference, const float *relative,
+                            int width, int height, Error *error)
+{
+    size_t values = 3 * (size_t)width * (size_t)height;
+    float *difference = malloc(values * sizeof *difference);
+    if (!difference)
+        return error_memory(error, values * sizeof *difference, "an error image");
+    for (size_t i = 0; i < values; ++i)
+        difference[i] = image[i] - reference[i];
+    const ExrChannel channels[] = {{"R", difference, 3, false},
+                                   {"G", difference + 1, 3, false},
+                                   {"B", difference + 2, 3, false},
+                                   {"relative.Y", relative, 1, false}};
+    bool good = exr_write(path, channels, 4, width, height, NULL, NULL, 0, error);
+    free(difference);
+    return good;
+}
+
+static bool png_error_write(const char *path, const float *relative, int width, int height, Error *error)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    float *rgb = malloc(3 * pixels * sizeof *rgb);
+    if (!rgb)
+        return error_memory(error, 3 * pixels * sizeof *rgb, "an error image");
+    for (size_t i = 0; i < pixels; ++i)
+        error_color(relative[i], rgb + 3 * i);
+    bool good = png_write(path, rgb, width, height, 0.0f, error);
+    free(rgb);
+    return good;
+}
+
+bool error_image_write(const char *path, const float *image, const float *reference, int width, int height,
+                       Error *error)
+{
+    size_t pixels = (size_t)width * (size_t)height;
+    if (!error_image_path_check(path, error))
+        return false;
+    float *relative = malloc(pixels * sizeof *relative);
+    if (!relative)
+        return error_memory(error, pixels * sizeof *relative, "an error image");
+    relative_fill(image, reference, pixels, relative);
+    bool good = ends_with(path, ".exr") ? exr_error_write(path, image, reference, relative, width, height, error)
+                                        : png_error_write(path, relative, width, height, error);
+    free(relative);
+    return good;
+}

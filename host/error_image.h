@@ -1,0 +1,24 @@
+/* Pictures of where one image differs from another. */
+#ifndef TWINLIGHT_ERROR_IMAGE_H
+#define TWINLIGHT_ERROR_IMAGE_H
+
+#include "error.h"
+
+/* image, reference: width x height x 3 linear RGB. By the ending of `path`:
+ *
+ * .exr: R, G, B = image - reference, and relative.Y = (a - r) / (|r| + 0.01 |mean of all r|), with a and r the means of
+ *   a pixel's channels. What is not finite stays so.
+ * .png: relative.Y in false colour, logarithmic from 0.1 % (black) to 100 % (light): too bright in red and yellow, too
+ *   dark in blue and cyan, not finite in magenta.
+ *
+ * Fails for another ending and when the file cannot be written. */
+bool error_image_write(const char *path, const float *image, const float *reference, int width, int height,
+                       Error *error);
+
+/* Whether the ending is one of the above; fills `error` when not. */
+bool error_image_path_check(const char *path, Error *error);
+
+/* The false colour (linear RGB) of a relative error. */
+void error_color(float relative, float rgb[3]);
+
+#endif

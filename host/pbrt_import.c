@@ -1,0 +1,169 @@
+#include "pbrt_import.h"
+
+#include "log.h"
+#include "pbrt_context.h"
+#include "pbrt_directives.h"
+#include "pbrt_parser.h"
+#include "pbrt_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix)
+{
+    if (im->options.lenient) {
+        ++im->scene->counts.substitutions;
+        log_message_at(LOG_WARNING, place, "%s is not supported; instead: %s", what, substitute);
+        return true;
+    }
+    error_at(im->error, place, "%s is not supported", what);
+    if (fix)
+        return error_fix(im->error, "%s; or use --lenient (%s)", fix, substitute);
+    return error_fix(im->error, "use --lenient (%s)", substitute);
+}
+
+bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
+                    size_t count)
+{
+    const char *nearest = name_nearest(name, known, count);
+    char list[400] = "";
+    size_t used = 0;
+    error_at(im->error, place, "unknown %s \"%s\"", kind, name);
+    if (nearest)
+        return error_fix(im->error, "did you mean \"%s\"?", nearest);
+    for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", known[i]);
+    return error_fix(im->error, "use %s", list);
+}
+
+bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
+{
+    *ctm = im->state.ctm[0];
+    if (matrix_equal(&im->state.ctm[0], &im->state.ctm[1]))
+        return true;
+    return import_unsupported(im, place, "motion (a transform that differs between StartTime and EndTime)",
+                              "everything stays where it is at StartTime", NULL);
+}
+
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
+{
+    if (!import_ctm(im, place, ctm))
+        return false;
+    if (matrix_inverse(ctm, inverse))
+        return true;
+    error_at(im->error, place, "the current transform cannot be inverted");
+    return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+}
+
+const char *import_path(PbrtImport *im, const char *name)
+{
+    size_t directory = strlen(im->directory), length = strlen(name);
+    if (name[0] == '/' || directory == 0)
+        return arena_text(&im->arena, name, length, im->error);
+    char *path = arena_alloc(&im->arena, directory + length + 2, im->error);
+    if (path)
+        snprintf(path, directory + length + 2, "%s%s%s", im->directory, im->directory[directory - 1] == '/' ? "" : "/",
+                 name);
+    return path;
+}
+
+void import_list(PbrtImport *im, ParamList *list, const char *owner, int target)
+{
+    param_list_init(list, owner, im->place, im->error);
+    param_list_add_buffer(list, &im->params);
+    if (target >= 0)
+        param_list_add_set(list, im->state.attributes[target], true);
+}
+
+static void import_init(PbrtImport *im, const ImportOptions *options, Scene *scene, Error *error)
+{
+    memset(im, 0, sizeof *im);
+    im->scene = scene;
+    im->options = *options;
+    im->error = error;
+    im->directory = "";
+    param_buffer_init(&im->params);
+    state_init(&im->state);
+    array_init(&im->saved, sizeof(StateSave));
+    name_table_init(&im->coordinate_systems);
+    array_init(&im->coordinate_matrices, sizeof(Matrix));
+    name_table_init(&im->objects);
+    array_init(&im->object_definitions, sizeof(ImportObject));
+    im->open_object = -1;
+    name_table_init(&im->materials);
+    name_table_init(&im->float_textures);
+    name_table_init(&im->spectrum_textures);
+    array_init(&im->textures, sizeof(ImportTexture));
+    texture_cache_init(&im->images);
+    im->default_material = NONE;
+    im->iso = 100.0f;
+    im->shutter_close = 1.0f;
+}
+
+static void import_destroy(PbrtImport *im)
+{
+    parser_close_all(im);
+    param_buffer_destroy(&im->params);
+    array_destroy(&im->saved);
+    name_table_destroy(&im->coordinate_systems);
+    array_destroy(&im->coordinate_matrices);
+    name_table_destroy(&im->objects);
+    array_destroy(&im->object_definitions);
+    name_table_destroy(&im->materials);
+    name_table_destroy(&im->float_textures);
+    name_table_destroy(&im->spectrum_textures);
+    array_destroy(&im->textures);
+    texture_cache_destroy(&im->images);
+    arena_destroy(&im->arena);
+}
+
+/* "room" of "scenes/room.pbrt". */
+static void scene_name_set(Scene *scene, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    const char *dot = strrchr(base, '.');
+    int length = dot && dot != base ? (int)(dot - base) : (int)strlen(base);
+    snprintf(scene->name, sizeof scene->name, "%.*s", length < 255 ? length : 255, base);
+}
+
+static void counts_report(const Scene *scene)
+{
+    const SceneCounts *counts = &scene->counts;
+    if (counts->degenerate_triangles > 0)
+        log_message(LOG_WARNING, "%lu primitives of no area were left out", counts->degenerate_triangles);
+    if (counts->zero_area_lights > 0)
+        log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
+}
+
+static bool import_read(PbrtImport *im, const char *name)
+{
+    scene_name_set(im->scene, name);
+    if (!directives_read(im))
+        return false;
+    counts_report(im->scene);
+    return true;
+}
+
+bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error)
+{
+    PbrtImport im;
+    import_init(&im, options, scene, error);
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    im.directory = arena_text(&im.arena, path, length, error);
+    bool good = im.directory && parser_open_file(&im, path, (SourcePlace){0}, false) && import_read(&im, path);
+    import_destroy(&im);
+    return good;
+}
+
+bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
+                      const ImportOptions *options, Scene *scene, Error *error)
+{
+    PbrtImport im;
+    import_init(&im, options, scene, error);
+    im.directory = directory;
+    bool good = parser_open_text(&im, text, length, name, false, error) && import_read(&im, name);
+    import_destroy(&im);
+    return good;
+}

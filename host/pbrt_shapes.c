@@ -1,0 +1,308 @@
+/* Shape directives other than meshes' data: the surroundings of a shape, quadrics, and how all get into the scene. */
+#include "pbrt_shapes.h"
+
+#include "log.h"
+#include "pbrt_mesh.h"
+#include "pbrt_values.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define DEGREES_TO_RADIANS 0.017453292519943295f
+
+static bool point_transform(const Matrix *matrix, float p[3])
+{
+    double in[3] = {(double)p[0], (double)p[1], (double)p[2]}, out[3];
+    matrix_point(matrix, in, out);
+    for (int k = 0; k < 3; ++k) {
+        p[k] = (float)out[k];
+        if (!isfinite(p[k]))
+            return false;
+    }
+    return true;
+}
+
+static void normal_transform(const Matrix *inverse, bool reverse, float n[3])
+{
+    double in[3] = {(double)n[0], (double)n[1], (double)n[2]}, out[3];
+    matrix_normal(inverse, in, out);
+    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    double scale = length > 0.0 && isfinite(length) ? (reverse ? -1.0 : 1.0) / length : 0.0;
+    for (int k = 0; k < 3; ++k)
+        n[k] = scale != 0.0 ? (float)(out[k] * scale) : 0.0f;
+}
+
+/* Points and normals to the space that ctm leads to. */
+static bool mesh_transform(PbrtImport *im, const ShapeContext *context, bool reverse, float *positions, float *normals,
+                           size_t count)
+{
+    for (size_t i = 0; i < count; ++i)
+        if (!point_transform(&context->ctm, &positions[3 * i])) {
+            error_at(im->error, context->place, "vertex %zu is not finite, or too far away, after the transform", i);
+            return error_fix(im->error, "check the vertices and the current transform for huge numbers");
+        }
+    for (size_t i = 0; normals && i < count; ++i)
+        normal_transform(&context->inverse, reverse, &normals[3 * i]);
+    return true;
+}
+
+/* Radiance of the primitives that were added last, when the light is given by its power. As in pbrt each primitive
+ * has that power: radiance = power / (pi area), half of it on each side of a two-sided light. */
+static void power_apply(Scene *scene, size_t first_light, const AreaEmission *emission)
+{
+    float sides = emission->flags & LIGHT_TWO_SIDED ? 2.0f : 1.0f;
+    for (size_t i = first_light; emission->by_power && i < scene->lights.count; ++i) {
+        Light *light = &ARRAY_AT(&scene->lights, Light, i);
+        light->emission = vec3_scale(light->emission, 1.0f / (PI * sides * light->area));
+    }
+}
+
+static void *arena_copy(PbrtImport *im, const void *data, size_t bytes)
+{
+    void *copy = arena_alloc(&im->arena, bytes, im->error);
+    return copy ? memcpy(copy, data, bytes) : NULL;
+}
+
+/* Keeps an emissive shape of an object definition for its instances. */
+static bool emissive_keep(PbrtImport *im, EmissiveShape shape)
+{
+    ImportObject *object = &ARRAY_AT(&im->object_definitions, ImportObject, im->open_object);
+    MeshData *mesh = &shape.mesh;
+    size_t corners = shape.kind == PRIMITIVE_TRIANGLE ? 3 : 4;
+    if (mesh->vertex_count > 0) {
+        size_t bytes = mesh->vertex_count * sizeof(float);
+        if (!(mesh->positions = arena_copy(im, mesh->positions, 3 * bytes)) ||
+            (mesh->normals && !(mesh->normals = arena_copy(im, mesh->normals, 3 * bytes))) ||
+            (mesh->uvs && !(mesh->uvs = arena_copy(im, mesh->uvs, 2 * bytes))) ||
+            !(mesh->indices = arena_copy(im, mesh->indices, corners * mesh->triangle_count * sizeof(uint))))
+            return false;
+    }
+    EmissiveShape *kept = arena_copy(im, &shape, sizeof shape);
+    if (!kept)
+        return false;
+    if (object->last_emissive)
+        object->last_emissive->next = kept;
+    else
+        object->emissive = kept;
+    object->last_emissive = kept;
+    return true;
+}
+
+/* Adds a mesh that is in its final space. */
+static bool mesh_emit(PbrtImport *im, uint kind, const MeshData *mesh, Shape shape, const AreaEmission *emission)
+{
+    size_t first_light = im->scene->lights.count;
+    const float *radiance = emission ? emission->radiance : NULL;
+    uint flags = emission ? emission->flags : 0u;
+    bool good = kind == PRIMITIVE_TRIANGLE ? scene_add_mesh(im->scene, mesh, shape, radiance, flags, im->error)
+                                           : scene_add_patches(im->scene, mesh, shape, radiance, flags, im->error);
+    if (good && emission)
+        power_apply(im->scene, first_light, emission);
+    return good;
+}
+
+bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, float *positions, float *normals,
+                    const MeshData *mesh)
+{
+    MeshData moved = *mesh;
+    moved.positions = positions;
+    moved.normals = normals;
+    if (!mesh_transform(im, context, context->shape.flags & SHAPE_REVERSE, positions, normals, mesh->vertex_count))
+        return false;
+    if (context->invisible)
+        return true;
+    if (context->emits && im->open_object >= 0)
+        return emissive_keep(im, (EmissiveShape){.kind = kind,
+                                                 .mesh = moved,
+                                                 .shape = context->shape,
+                                                 .emission = context->emission,
+                                                 .place = context->place});
+    return mesh_emit(im, kind, &moved, context->shape, context->emits ? &context->emission : NULL);
+}
+
+static bool quadric_emit(PbrtImport *im, uint kind, const Quadric *quadric, const Matrix *matrix, const Matrix *inverse,
+                         Shape shape, const AreaEmission *emission)
+{
+    size_t first_light = im->scene->lights.count;
+    if (!scene_add_quadric(im->scene, kind, *quadric, matrix->m, inverse->m, shape,
+                           emission ? emission->radiance : NULL, emission ? emission->flags : 0u, im->error))
+        return false;
+    if (emission)
+        power_apply(im->scene, first_light, emission);
+    return true;
+}
+
+bool shape_add_quadric(PbrtImport *im, const ShapeContext *context, uint kind, const Quadric *quadric)
+{
+    if (context->invisible)
+        return true;
+    if (context->emits && im->open_object >= 0)
+        return emissive_keep(im, (EmissiveShape){.kind = kind,
+                                                 .quadric = *quadric,
+                                                 .matrix = context->ctm,
+                                                 .shape = context->shape,
+                                                 .emission = context->emission,
+                                                 .place = context->place});
+    return quadric_emit(im, kind, quadric, &context->ctm, &context->inverse, context->shape,
+                        context->emits ? &context->emission : NULL);
+}
+
+static bool emissive_mesh_add(PbrtImport *im, const EmissiveShape *shape, const ShapeContext *context, Shape flags)
+{
+    /* Copies, for the transform overwrites them and the next instance starts from the definition again. */
+    size_t floats = 3 * shape->mesh.vertex_count;
+    Array copies;
+    array_init(&copies, sizeof(float));
+    float *positions = array_grow(&copies, floats * (shape->mesh.normals ? 2 : 1), im->error);
+    if (!positions)
+        return false;
+    float *normals = shape->mesh.normals ? positions + floats : NULL;
+    memcpy(positions, shape->mesh.positions, floats * sizeof(float));
+    if (normals)
+        memcpy(normals, shape->mesh.normals, floats * sizeof(float));
+    bool good = mesh_transform(im, context, false, positions, normals, shape->mesh.vertex_count);
+    if (good) {
+        MeshData mesh = shape->mesh;
+        mesh.positions = positions;
+        mesh.normals = normals;
+        good = mesh_emit(im, shape->kind, &mesh, flags, &shape->emission);
+    }
+    array_destroy(&copies);
+    return good;
+}
+
+bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix *ctm)
+{
+    ShapeContext context = {.ctm = *ctm, .place = im->place};
+    Shape flags = shape->shape;
+    if (im->scene->lights.count + shape->mesh.triangle_count >= IMPORT_LIGHTS_MAX) {
+        error_at(im->error, im->place, "instances of emissive objects make more than %u area lights",
+                 IMPORT_LIGHTS_MAX);
+        return error_fix(im->error, "take the light source out of the object");
+    }
+    if (matrix_swaps_handedness(ctm))
+        flags.flags ^= SHAPE_FLIP_NORMAL;
+    bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
+    if (quadric)
+        context.ctm = matrix_multiply(ctm, &shape->matrix);
+    if (!matrix_inverse(&context.ctm, &context.inverse))
+        return error_at(im->error, im->place, "the transform of this instance cannot be inverted");
+    return quadric
+               ? quadric_emit(im, shape->kind, &shape->quadric, &context.ctm, &context.inverse, flags, &shape->emission)
+               : emissive_mesh_add(im, shape, &context, flags);
+}
+
+/* Sphere::Create of pbrt: zmin -radius, zmax radius, phimax 360 by default, clamped to the sphere. */
+static bool sphere_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    float radius = param_float(list, "radius", 1.0f);
+    float a = param_float(list, "zmin", -radius), b = param_float(list, "zmax", radius);
+    float phi = param_float(list, "phimax", 360.0f);
+    if (!(radius > 0.0f))
+        param_error(list, "radius", "the radius of a sphere must be above 0");
+    Quadric quadric = {.radius = radius,
+                       .z_min = float_clamp(float_min(a, b), -radius, radius),
+                       .z_max = float_clamp(float_max(a, b), -radius, radius),
+                       .phi_max = float_clamp(phi, 0.0f, 360.0f) * DEGREES_TO_RADIANS};
+    return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_SPHERE, &quadric);
+}
+
+static bool disk_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    float height = param_float(list, "height", 0.0f), radius = param_float(list, "radius", 1.0f);
+    float inner = param_float(list, "innerradius", 0.0f), phi = param_float(list, "phimax", 360.0f);
+    if (!(radius > 0.0f))
+        param_error(list, "radius", "the radius of a disk must be above 0");
+    if (!(inner >= 0.0f && inner < radius))
+        param_error(list, "innerradius", "the inner radius of a disk must be at least 0 and below the radius");
+    Quadric quadric = {.radius = radius,
+                       .inner_radius = inner,
+                       .z_min = height,
+                       .z_max = height,
+                       .phi_max = float_clamp(phi, 0.0f, 360.0f) * DEGREES_TO_RADIANS};
+    return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_DISK, &quadric);
+}
+
+/* The alpha texture, or a constant below 1. */
+static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
+{
+    FloatParam param = {.value = 1.0f, .program = NONE};
+    value_float_param(im, list, "alpha", &param);
+    *alpha = param.program;
+    if (param.program != NONE || list->failed)
+        return !list->failed;
+    if (param.value < 0.0f)
+        param_error(list, "alpha", "alpha must not be negative");
+    else if (param.value < 1.0f)
+        *alpha = value_constant_program(im, param.value);
+    return !list->failed && (param.value >= 1.0f || *alpha != NONE);
+}
+
+/* Emission of a shape: an invisible one has none, with a warning as in pbrt. */
+static bool emission_read(PbrtImport *im, ShapeContext *context)
+{
+    if (!value_area_emission(im, &context->emission, &context->emits))
+        return false;
+    if (context->emits && context->invisible) {
+        log_message_at(LOG_WARNING, im->place, "the area light is ignored: the shape's material is \"interface\"");
+        context->emits = false;
+    }
+    return true;
+}
+
+static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
+{
+    *context = (ShapeContext){.place = im->place};
+    if (!import_ctm(im, im->place, &context->ctm) || !value_material(im, &context->shape.material))
+        return false;
+    context->invisible = context->shape.material == MATERIAL_INTERFACE;
+    context->has_inverse = matrix_inverse(&context->ctm, &context->inverse);
+    bool reverse = im->state.reverse_orientation;
+    context->shape.flags =
+        (reverse ? SHAPE_REVERSE : 0u) | (reverse != matrix_swaps_handedness(&context->ctm) ? SHAPE_FLIP_NORMAL : 0u);
+    context->shape.first_light = NONE;
+    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context);
+}
+
+static bool inverse_needed(PbrtImport *im, const ShapeContext *context)
+{
+    if (context->has_inverse)
+        return true;
+    error_at(im->error, im->place, "the current transform cannot be inverted");
+    return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+}
+
+static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
+{
+    static const char *const KNOWN[] = {"sphere", "disk", "trianglemesh", "plymesh", "bilinearmesh"};
+    static const char *const UNSUPPORTED[] = {"cylinder", "curve", "loopsubdiv"};
+    ShapeContext context;
+    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)
+        if (strcmp(kind, UNSUPPORTED[i]) == 0) {
+            char what[64];
+            snprintf(what, sizeof what, "the shape \"%s\"", kind);
+            return import_unsupported(im, im->place, what, "the shape is left out", "turn it into a plymesh");
+        }
+    bool quadric = strcmp(kind, "sphere") == 0 || strcmp(kind, "disk") == 0;
+    size_t known = 0;
+    while (known < sizeof KNOWN / sizeof *KNOWN && strcmp(kind, KNOWN[known]) != 0)
+        ++known;
+    if (known == sizeof KNOWN / sizeof *KNOWN)
+        return import_unknown(im, im->place, "shape", kind, KNOWN, known);
+    if (!context_make(im, list, &context))
+        return false;
+    if (quadric)
+        return inverse_needed(im, &context) &&
+               (kind[0] == 's' ? sphere_read(im, list, &context) : disk_read(im, list, &context));
+    return mesh_read(im, kind, list, &context);
+}
+
+bool import_shape(PbrtImport *im, const char *kind)
+{
+    ParamList list;
+    import_list(im, &list, kind, ATTRIBUTE_SHAPE);
+    bool good = shape_read(im, kind, &list);
+    param_list_destroy(&list);
+    return good;
+}

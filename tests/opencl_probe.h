@@ -1,0 +1,22 @@
+/* The smallest OpenCL host that tests need: one CPU device, one program, kernels with two inputs and one output. */
+#ifndef TWINLIGHT_TEST_OPENCL_PROBE_H
+#define TWINLIGHT_TEST_OPENCL_PROBE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct OpenclProbe OpenclProbe;
+
+/* Opens the first CPU device that promises correctly rounded division and denormals, and builds `source` with
+ * `options`. Returns NULL and says why in `message`; *absent tells whether that is because there is no such device. */
+OpenclProbe *opencl_probe_open(const char *source, const char *options, char *message, size_t message_size,
+                               bool *absent);
+void opencl_probe_close(OpenclProbe *probe);
+const char *opencl_probe_device(const OpenclProbe *probe);
+
+/* Runs kernel `name` (in, table, out) over `items`. Counts are of 32-bit words; `out` is zeroed on the device first. */
+bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, size_t in_words, const uint32_t *table,
+                      size_t table_words, uint32_t *out, size_t out_words, size_t items);
+
+#endif

@@ -1,0 +1,33 @@
+/* Stands in for opencl_probe.c in a build without OpenCL. */
+#include "opencl_probe.h"
+
+#include <stdio.h>
+
+OpenclProbe *opencl_probe_open(const char *source, const char *options, char *message, size_t message_size,
+                               bool *absent)
+{
+    (void)source;
+    (void)options;
+    *absent = true;
+    snprintf(message, message_size, "built without OpenCL; fix: apt-get install ocl-icd-opencl-dev pocl-opencl-icd");
+    return NULL;
+}
+
+void opencl_probe_close(OpenclProbe *probe)
+{
+    (void)probe;
+}
+
+const char *opencl_probe_device(const OpenclProbe *probe)
+{
+    (void)probe;
+    return "";
+}
+
+bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, size_t in_words, const uint32_t *table,
+                      size_t table_words, uint32_t *out, size_t out_words, size_t items)
+{
+    (void)probe, (void)name, (void)in, (void)in_words, (void)table, (void)table_words;
+    (void)out, (void)out_words, (void)items;
+    return false;
+}
