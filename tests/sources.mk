@@ -18,32 +18,10 @@ check_PROGRAMS += \
 TESTS += $(check_PROGRAMS)
 endif
 
-tests_test_bsdf_SOURCES = tests/test_bsdf.c tests/test_util.h
-tests_test_film_SOURCES = tests/test_film.c tests/test_util.h
-tests_test_geometry_SOURCES = \
-	tests/geometry_fixture.c tests/geometry_fixture.h tests/geometry_suites.h \
-	tests/test_geometry.c \
-	tests/test_geometry_backend.c \
-	tests/test_geometry_quadrics.c \
-	tests/test_geometry_rays.c \
-	tests/test_util.h
-tests_test_import_SOURCES = tests/test_import.c tests/test_util.h
-tests_test_light_SOURCES = tests/test_light.c tests/test_util.h
-tests_test_math_SOURCES = tests/test_math.c tests/test_util.h
-tests_test_render_SOURCES = tests/test_render.c tests/render_fixture.c tests/render_fixture.h tests/test_util.h
-tests_test_texture_SOURCES = tests/test_texture.c tests/test_util.h
-
-tests_test_bsdf_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_film_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_geometry_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_import_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_light_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_math_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_render_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
-tests_test_texture_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 EXTRA_DIST += \
 	tests/bsdf_cases.h \
 	tests/geometry_fixture.h \
+	tests/geometry_suites.h \
 	tests/light_fixture.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
@@ -67,7 +45,10 @@ tests_test_film_CFLAGS = $(TEST_CFLAGS)
 tests_test_film_LDADD = $(TEST_LIBS)
 
 tests_test_geometry_SOURCES = tests/test_geometry.c \
-	tests/geometry_fixture.c
+	tests/geometry_fixture.c \
+	tests/test_geometry_backend.c \
+	tests/test_geometry_quadrics.c \
+	tests/test_geometry_rays.c
 tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
 tests_test_geometry_LDADD = $(TEST_LIBS)
 
