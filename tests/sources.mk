@@ -21,6 +21,7 @@ endif
 EXTRA_DIST += \
 	tests/bsdf_cases.h \
 	tests/geometry_fixture.h \
+	tests/geometry_suites.h \
 	tests/light_fixture.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
@@ -44,7 +45,10 @@ tests_test_film_CFLAGS = $(TEST_CFLAGS)
 tests_test_film_LDADD = $(TEST_LIBS)
 
 tests_test_geometry_SOURCES = tests/test_geometry.c \
-	tests/geometry_fixture.c
+	tests/geometry_fixture.c \
+	tests/test_geometry_backend.c \
+	tests/test_geometry_quadrics.c \
+	tests/test_geometry_rays.c
 tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
 tests_test_geometry_LDADD = $(TEST_LIBS)
 
