@@ -3,7 +3,7 @@
 #include "ray.h"
 
 /* Slab test: 2 products, a difference and a reciprocal of up to 2 units each; primitive test: see triangle_shear. */
-#define MARGIN_ULPS 8.0f
+#define MARGIN_ULPS 4.0f
 
 Box box_empty(void)
 {

@@ -3,18 +3,23 @@
 #include "primitive.h"
 #include "primitive_bounds.h"
 #include "state.h"
+#include "triangle_cluster.h"
 
 #include <embree3/rtcore.h>
 
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* One Object's hierarchy. */
 typedef struct ObjectRays {
     const RaysEmbree *rays;
     RTCScene scene;
-    uint first_primitive;
+    TriangleCluster *clusters; /* triangles */
+    uint cluster_count;
+    uint *others; /* primitives of other kinds */
+    uint other_count;
     float margin;
     Box box; /* without margin */
 } ObjectRays;
@@ -41,12 +46,9 @@ typedef struct RayWalk {
 
 /* ---- callbacks --------------------------------------------------------------------------------------------------- */
 
-static void primitive_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+static struct RTCBounds embree_bounds(Box box)
 {
-    const ObjectRays *object = args->geometryUserPtr;
-    Box box = box_inflate(primitive_box(&object->rays->view, object->first_primitive + args->primID), object->margin);
-    struct RTCBounds *out = args->bounds_o;
-    *out = (struct RTCBounds){.lower_x = box.low[0],
+    return (struct RTCBounds){.lower_x = box.low[0],
                               .lower_y = box.low[1],
                               .lower_z = box.low[2],
                               .upper_x = box.high[0],
@@ -54,20 +56,51 @@ static void primitive_bounds_callback(const struct RTCBoundsFunctionArguments *a
                               .upper_z = box.high[2]};
 }
 
-static void primitive_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
+static void cluster_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    Box box = triangle_cluster_box(&object->clusters[args->primID]);
+    *args->bounds_o = embree_bounds(box_inflate(box, object->margin));
+}
+
+static void cluster_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
 {
     const ObjectRays *object = args->geometryUserPtr;
     RayWalk *walk = (RayWalk *)args->context;
-    if (primitive_intersect(&object->rays->view, object->first_primitive + args->primID, walk->instance, &walk->query,
+    if (triangle_cluster_intersect(&object->rays->view, &object->clusters[args->primID], walk->instance, &walk->query,
+                                   &walk->best))
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t;
+}
+
+static void cluster_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    const RayWalk *walk = (const RayWalk *)args->context;
+    if (triangle_cluster_occludes(&object->rays->view, &object->clusters[args->primID], &walk->query))
+        ((struct RTCRay *)args->ray)->tfar = -INFINITY;
+}
+
+static void other_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    Box box = primitive_box(&object->rays->view, object->others[args->primID]);
+    *args->bounds_o = embree_bounds(box_inflate(box, object->margin));
+}
+
+static void other_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    RayWalk *walk = (RayWalk *)args->context;
+    if (primitive_intersect(&object->rays->view, object->others[args->primID], walk->instance, &walk->query,
                             &walk->best))
         ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t;
 }
 
-static void primitive_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
+static void other_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
 {
     const ObjectRays *object = args->geometryUserPtr;
     const RayWalk *walk = (const RayWalk *)args->context;
-    if (primitive_occludes(&object->rays->view, object->first_primitive + args->primID, &walk->query))
+    if (primitive_occludes(&object->rays->view, object->others[args->primID], &walk->query))
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
 
@@ -94,12 +127,7 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
         Box inner = box_inflate(object->box, object->margin);
         box = box_inflate(box_transform(&inner, &instance->world_from_object), rays->objects[0].margin);
     }
-    *args->bounds_o = (struct RTCBounds){.lower_x = box.low[0],
-                                         .lower_y = box.low[1],
-                                         .lower_z = box.low[2],
-                                         .upper_x = box.high[0],
-                                         .upper_y = box.high[1],
-                                         .upper_z = box.high[2]};
+    *args->bounds_o = embree_bounds(box);
 }
 
 /* The walk through an instance's object: the ray in its space, the best hit so far taken along. */
@@ -185,30 +213,56 @@ static float object_reach(const RaysEmbree *rays, size_t object)
     return reach;
 }
 
-static void object_build(RaysEmbree *rays, size_t index)
+/* Splits the object's primitives into triangles, which are grouped, and others. */
+static bool object_sort(ObjectRays *object, Object record, Error *error)
 {
-    ObjectRays *object = &rays->objects[index];
-    Object record = rays->view.objects[index];
-    object->rays = rays;
-    object->first_primitive = record.first_primitive;
-    object->margin = box_margin(object_reach(rays, index));
+    const SceneView *view = &object->rays->view;
+    uint *sorted = malloc(((size_t)record.primitive_count + 1) * sizeof *sorted), triangles = 0;
+    if (!sorted)
+        return error_memory(error, record.primitive_count * sizeof *sorted, "ray queries");
     object->box = box_empty();
     for (uint i = 0; i < record.primitive_count; ++i) {
-        Box box = primitive_box(&rays->view, record.first_primitive + i);
+        uint id = record.first_primitive + i;
+        bool triangle = view->primitives[id].shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE;
+        sorted[triangle ? triangles++ : record.primitive_count - ++object->other_count] = id;
+        Box box = primitive_box(view, id);
         box_join(&object->box, &box);
     }
+    object->others = malloc(((size_t)object->other_count + 1) * sizeof *object->others);
+    if (!object->others) {
+        free(sorted);
+        return error_memory(error, object->other_count * sizeof *object->others, "ray queries");
+    }
+    memcpy(object->others, sorted + triangles, object->other_count * sizeof *object->others);
+    bool built = triangles == 0 || triangle_clusters_build(object->rays->device, view, sorted, triangles,
+                                                           &object->clusters, &object->cluster_count, error);
+    free(sorted);
+    return built;
+}
+
+static bool object_build(RaysEmbree *rays, size_t index, Error *error)
+{
+    ObjectRays *object = &rays->objects[index];
     uint instances = index == 0 ? (uint)rays->instance_count : 0u;
-    if (record.primitive_count == 0 && instances == 0)
-        return;
+    object->rays = rays;
+    object->margin = box_margin(object_reach(rays, index));
+    if (!object_sort(object, rays->view.objects[index], error))
+        return false;
+    if (object->cluster_count == 0 && object->other_count == 0 && instances == 0)
+        return true;
     object->scene = rtcNewScene(rays->device);
     rtcSetSceneBuildQuality(object->scene, RTC_BUILD_QUALITY_MEDIUM);
-    if (record.primitive_count > 0)
-        geometry_attach(rays->device, object->scene, record.primitive_count, object, primitive_bounds_callback,
-                        primitive_intersect_callback, primitive_occluded_callback);
+    if (object->cluster_count > 0)
+        geometry_attach(rays->device, object->scene, object->cluster_count, object, cluster_bounds_callback,
+                        cluster_intersect_callback, cluster_occluded_callback);
+    if (object->other_count > 0)
+        geometry_attach(rays->device, object->scene, object->other_count, object, other_bounds_callback,
+                        other_intersect_callback, other_occluded_callback);
     if (instances > 0)
         geometry_attach(rays->device, object->scene, instances, rays, instance_bounds_callback,
                         instance_intersect_callback, instance_occluded_callback);
     rtcCommitScene(object->scene);
+    return true;
 }
 
 static bool rays_build(RaysEmbree *rays, int threads, Error *error)
@@ -225,7 +279,8 @@ static bool rays_build(RaysEmbree *rays, int threads, Error *error)
         return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
     /* The world last: its instances need their objects' bounds. */
     for (size_t i = rays->object_count; i-- > 0;)
-        object_build(rays, i);
+        if (!object_build(rays, i, error))
+            return false;
     if (rays->failure[0] != '\0')
         return error_set(error, "Embree cannot build its hierarchy: %s", rays->failure);
     return true;
@@ -252,9 +307,12 @@ void rays_embree_destroy(RaysEmbree *rays)
 {
     if (!rays)
         return;
-    for (size_t i = 0; rays->objects && i < rays->object_count; ++i)
+    for (size_t i = 0; rays->objects && i < rays->object_count; ++i) {
         if (rays->objects[i].scene)
             rtcReleaseScene(rays->objects[i].scene);
+        free(rays->objects[i].clusters);
+        free(rays->objects[i].others);
+    }
     if (rays->device)
         rtcReleaseDevice(rays->device);
     free(rays->objects);

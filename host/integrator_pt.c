@@ -20,6 +20,11 @@
 #define PASS_ITEMS_MIN 16384u
 #define PASS_ITEMS_MAX (1u << 22)
 
+/* Names of the kernels' counters in reports. */
+#define DIAGNOSTIC_NAME(constant, name) name,
+static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
+#undef DIAGNOSTIC_NAME
+
 /* ---- the list of steps ------------------------------------------------------------------------------------------ */
 
 /* Two steps around the loop and at most eight in it. */

@@ -331,6 +331,8 @@ static bool directive_unknown(PbrtImport *im, const Token *token)
 
 static bool directive_run(PbrtImport *im, const Directive *directive)
 {
+    if (directive->plain == directive_world_begin && im->in_world)
+        return error_at(im->error, im->place, "a second WorldBegin");
     if (directive->where == BEFORE_WORLD && im->in_world)
         return error_at(im->error, im->place, "%s must stand before WorldBegin", directive->name);
     if (directive->where == IN_WORLD && !im->in_world)

@@ -219,7 +219,8 @@ static void shutter_read(PbrtImport *im, ParamList *list)
     im->shutter_open = param_float(list, "shutteropen", 0.0f);
     im->shutter_close = param_float(list, "shutterclose", 1.0f);
     if (!(im->shutter_close > im->shutter_open))
-        param_error(list, "shutterclose", "the shutter closes before it opens: the image would be black");
+        param_error(list, param_ignore(list, "shutterclose") ? "shutterclose" : "shutteropen",
+                    "the shutter closes before it opens: the image would be black");
 }
 
 /* pbrt's other cameras. */

@@ -25,10 +25,4 @@
 enum { KERNEL_LIST(KERNEL_ENUMERATE) KERNEL_COUNT };
 #undef KERNEL_ENUMERATE
 
-/* Names of the counters in reports. */
-#define DIAGNOSTIC_NAME(constant, name) name,
-static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT]
-    __attribute__((unused)) = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
-#undef DIAGNOSTIC_NAME
-
 #endif

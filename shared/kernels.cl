@@ -1,3 +1,8 @@
 /* All kernels, as one translation unit. */
+#ifndef TWINLIGHT_KERNELS_CL
+#define TWINLIGHT_KERNELS_CL
+
 #include "pt.cl"
 #include "walk.cl"
+
+#endif

@@ -155,13 +155,17 @@ SHARED_FUNCTION AreaPoint sphere_light_sample_area(const SceneView *scene, const
     return point;
 }
 
+/* Squared distance from the centre, in squared radii, from which on a point counts as outside. A point on the sphere
+ * itself, which sees the rest of the inside, must not fall outside by rounding; the area form is right for both. */
+#define SPHERE_OUTSIDE 1.0001f
+
 /* The cone that a whole sphere subtends at a point outside: square of the sine of its half-angle, 0 when `ref` is not
  * outside or the sphere is not whole. */
 SHARED_FUNCTION float sphere_light_sin2(__global const Quadric *quadric, Vec3 ref)
 {
     float distance2 = vec3_length_squared(vec3_sub(quadric->center, ref));
     float radius2 = quadric->world_radius * quadric->world_radius;
-    return quadric->whole != 0u && distance2 > radius2 ? radius2 / distance2 : 0.0f;
+    return quadric->whole != 0u && distance2 > SPHERE_OUTSIDE * radius2 ? radius2 / distance2 : 0.0f;
 }
 
 /* 1 - cos of the half-angle, without the cancellation that makes it 0 below 2e-4 radians. */

@@ -143,13 +143,9 @@ SHARED_FUNCTION Hit hit_none(float t_max)
     return hit;
 }
 
-/* Replaces *best when the primitive is met before it. `instance`: whose space the query is in, NONE for the world. */
-SHARED_FUNCTION bool primitive_intersect(const SceneView *scene, uint primitive, uint instance, const RayQuery *query,
-                                         Hit *best)
+/* Replaces *best by the hit (t, u, v) of the primitive when it comes before. */
+SHARED_FUNCTION bool hit_improve(Hit *best, Hit hit, uint instance, uint primitive)
 {
-    Hit hit;
-    if (!primitive_query(scene, primitive, query, &hit))
-        return false;
     hit.primitive = primitive;
     hit.instance = instance;
     if (!hit_before(&hit, best))
@@ -158,10 +154,18 @@ SHARED_FUNCTION bool primitive_intersect(const SceneView *scene, uint primitive,
     return true;
 }
 
+/* Replaces *best when the primitive is met before it. `instance`: whose space the query is in, NONE for the world. */
+SHARED_FUNCTION bool primitive_intersect(const SceneView *scene, uint primitive, uint instance, const RayQuery *query,
+                                         Hit *best)
+{
+    Hit hit = hit_none(query->t_max);
+    return primitive_query(scene, primitive, query, &hit) && hit_improve(best, hit, instance, primitive);
+}
+
 /* Whether anything of the primitive lies between the ends of the ray. */
 SHARED_FUNCTION bool primitive_occludes(const SceneView *scene, uint primitive, const RayQuery *query)
 {
-    Hit hit;
+    Hit hit = hit_none(query->t_max);
     return primitive_query(scene, primitive, query, &hit);
 }
 

@@ -1,6 +1,9 @@
 /* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
  * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
  * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+#ifndef TWINLIGHT_PT_CL
+#define TWINLIGHT_PT_CL
+
 #include "bsdf.h"
 #include "camera.h"
 #include "diagnostics.h"
@@ -18,8 +21,9 @@
 
 /* From: nothing. To: the path's first ray, throughput 1. */
 __kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                             __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
-                             __global uint *restrict rays, __global uint *restrict shadows)
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -32,7 +36,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     float weight;
     Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     Vec2 film = vec2((float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
-    Ray ray = camera_ray(&frame->camera, film, (float)frame->width, (float)frame->height,
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     ray_store(rays, stride, t, ray);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
@@ -88,8 +93,9 @@ SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flag
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
 __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                            __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
-                            __global uint *restrict rays, __global const uint *restrict hits)
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -149,8 +155,8 @@ SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
 
 /* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
 __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                               __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
-                               __global uint *restrict shadows)
+                               __global const uint *restrict tables, __global const uint *restrict texels,
+                               __global uint *restrict paths, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -180,7 +186,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
 }
 
 /* From: traced shadow rays. To: visible light samples gathered. */
-__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths, __global const uint *restrict shadows)
+__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                            __global const uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f && state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
@@ -189,8 +196,8 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
 
 /* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
 __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                              __global const uint *restrict tables, __global const uint *restrict texels, __global uint *restrict paths,
-                              __global uint *restrict rays)
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -227,8 +234,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
 }
 
 /* From: the finished path. To: what it adds to its pixel. A sum that is not finite counts as zero and is counted. */
-__kernel void pt_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths, __global uint *restrict splats,
-                       __global uint *restrict diagnostics)
+__kernel void pt_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths,
+                       __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     Vec3 radiance =
@@ -240,3 +247,5 @@ __kernel void pt_splat(__global const FrameParams *restrict frame, __global cons
     state_store(splats, stride, SPLAT_PIXEL, t, state_load(paths, stride, PATH_PIXEL, t));
     state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
 }
+
+#endif

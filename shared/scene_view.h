@@ -32,7 +32,7 @@ typedef struct SceneView {
 
 /* A device program is built with the scene's feature mask as a constant; C reads it at run time. */
 #ifdef TWINLIGHT_FEATURES
-#define SCENE_HAS(scene, feature) ((TWINLIGHT_FEATURES & (feature)) != 0u)
+#define SCENE_HAS(scene, feature) ((void)(scene), (TWINLIGHT_FEATURES & (feature)) != 0u)
 #else
 #define SCENE_HAS(scene, feature) (((scene)->features & (feature)) != 0u)
 #endif

@@ -86,7 +86,9 @@ SHARED_FUNCTION int triangle_side(const TrianglePlane *plane, Vec3 p, Vec3 error
     Vec3 bound = vec3_mad(vec3_scale(vec3_abs(away), TRIANGLE_ULPS_AWAY), TRIANGLE_ULPS_SIZE, plane->size);
     bound = vec3_mad(error, FLOAT_EPSILON, bound);
     float distance = vec3_dot(plane->normal, away);
-    float tolerance = vec3_dot(plane->terms, bound) - 0.9f * offset * vec3_max_abs(p) * vec3_length(plane->normal);
+    Vec3 n = vec3_abs(plane->normal);
+    float length = float_max(vec3_max_component(n), 0.57f * (n.x + n.y + n.z)); /* of the normal, or less */
+    float tolerance = vec3_dot(plane->terms, bound) - offset * vec3_max_abs(p) * length;
     tolerance = float_max(tolerance, 0.0f);
     return distance > tolerance ? 1 : distance < -tolerance ? -1 : 0;
 }
@@ -106,17 +108,12 @@ SHARED_FUNCTION Vec3 triangle_end_error(const RayQuery *query)
     return vec3_add(vec3_scale(size, FLOAT_EPSILON), query->error);
 }
 
-/* A triangle that reaches behind the origin or beyond the end of the ray, as the one does that an end lies on, is hit
- * only when the ends' sides of its plane say so. z_min and z_max: of its corners. */
-SHARED_FUNCTION bool triangle_between_ends(Vec3 a, Vec3 b, Vec3 c, Vec3 normal, const RayQuery *query, float z_min,
-                                           float z_max)
+/* The triangle that an end of the ray lies on must not be hit there, and what rounding makes of t cannot tell. So
+ * where t is within its rounding of 0 or t_max, the sides of the plane that the ends are on decide. near, far: whether
+ * they have to. */
+SHARED_FUNCTION bool triangle_between_ends(Vec3 a, Vec3 b, Vec3 c, Vec3 normal, const RayQuery *query, bool near,
+                                           bool far)
 {
-    float dz = float_abs(vec3_component(query->d, query->kz));
-    float margin = 8.0f * FLOAT_EPSILON * (float_abs(query->oz) + z_max * dz);
-    bool near = z_min * dz <= margin;
-    bool far = z_max * dz + margin >= query->t_max * dz;
-    if (!near && !far)
-        return true;
     TrianglePlane plane;
     plane.a = a;
     plane.normal = normal;
@@ -137,6 +134,45 @@ SHARED_FUNCTION bool triangle_between_ends(Vec3 a, Vec3 b, Vec3 c, Vec3 normal, 
     return true;
 }
 
+SHARED_FUNCTION float corner_extent(ShearedCorner a)
+{
+    return float_max(float_abs(a.x), float_abs(a.y));
+}
+
+/* Bound on the rounding of t times area: by the shear and the edge functions, and of the origin off the triangle. */
+#define TRIANGLE_ULPS_T 32.0f
+
+SHARED_FUNCTION float triangle_t_error(ShearedCorner a, ShearedCorner b, ShearedCorner c, const RayQuery *query)
+{
+    float extent = float_max(corner_extent(a), float_max(corner_extent(b), corner_extent(c)));
+    float depth = float_max(float_abs(a.z), float_max(float_abs(b.z), float_abs(c.z)));
+    float reach = depth + float_abs(query->sz) * (vec3_max_abs(query->o) + vec3_max_abs(query->error));
+    return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
+}
+
+/* What is left to do for a triangle that the ray's line passes through (triangle_contains, area not zero): the hit
+ * with 0 < t < t_max. sa, sb, sc, e: its sheared corners and their edge functions. */
+SHARED_FUNCTION bool triangle_finish(Vec3 a, Vec3 b, Vec3 c, ShearedCorner sa, ShearedCorner sb, ShearedCorner sc,
+                                     TriangleEdges e, const RayQuery *query, float *t, float *u, float *v)
+{
+    float area = e.a + e.b + e.c;
+    float volume = e.a * sa.z + e.b * sb.z + e.c * sc.z;
+    *t = volume / area;
+    if (!(*t > 0.0f && *t < query->t_max))
+        return false;
+    Vec3 normal = triangle_normal(a, b, c);
+    if (vec3_is_zero(normal))
+        return false;
+    float error = triangle_t_error(sa, sb, sc, query);
+    bool near = float_abs(volume) <= error;
+    bool far = (query->t_max - *t) * float_abs(area) <= error;
+    if ((near || far) && !triangle_between_ends(a, b, c, normal, query, near, far))
+        return false;
+    *u = e.b / area;
+    *v = e.c / area;
+    return true;
+}
+
 /* The hit of the triangle a, b, c with 0 < t < t_max; u and v are the barycentric weights of b and c. Triangles whose
  * normal computes to zero, and NaNs anywhere, give no hit. The result depends on nothing but the arguments. */
 SHARED_FUNCTION bool triangle_query(Vec3 a, Vec3 b, Vec3 c, const RayQuery *query, float *t, float *u, float *v)
@@ -149,18 +185,7 @@ SHARED_FUNCTION bool triangle_query(Vec3 a, Vec3 b, Vec3 c, const RayQuery *quer
     float area = e.a + e.b + e.c;
     if (!triangle_contains(e) || !(area > 0.0f || area < 0.0f))
         return false;
-    *t = (e.a * sa.z + e.b * sb.z + e.c * sc.z) / area;
-    if (!(*t > 0.0f && *t < query->t_max))
-        return false;
-    Vec3 normal = triangle_normal(a, b, c);
-    if (vec3_is_zero(normal))
-        return false;
-    float z_min = float_min(sa.z, float_min(sb.z, sc.z)), z_max = float_max(sa.z, float_max(sb.z, sc.z));
-    if (!triangle_between_ends(a, b, c, normal, query, z_min, z_max))
-        return false;
-    *u = e.b / area;
-    *v = e.c / area;
-    return true;
+    return triangle_finish(a, b, c, sa, sb, sc, e, query, t, u, v);
 }
 
 /* The same for a ray that is asked about one triangle only. */

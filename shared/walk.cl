@@ -1,6 +1,9 @@
 /* Random walks that ask for rays and nothing else: what the tests of the backends and bench_rays run, so that the
  * bits of hits can be compared across threads, backends and devices without a light or material in play. The walk
  * leaves each hit in a uniform direction on a random side, and draws a segment to an earlier point of itself. */
+#ifndef TWINLIGHT_WALK_CL
+#define TWINLIGHT_WALK_CL
+
 #include "diagnostics.h"
 #include "rng.h"
 #include "state.h"
@@ -82,3 +85,5 @@ __kernel void walk_splat(__global const FrameParams *frame, __global const uint 
     state_store(splats, stride, SPLAT_PIXEL, t, frame->first_item + t);
     state_store_vec3(splats, stride, SPLAT_COLOR, t, vec3((float)(h >> 16), (float)(h & 0xffffu), (float)occluded));
 }
+
+#endif

@@ -1,7 +1,6 @@
 # One Check program per area; each lists every unit of the area that can be wrong.
 TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
-# Check's float macros print what they compare, as double.
-TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
+TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
 
 if HAVE_CHECK
 check_PROGRAMS += \

@@ -1,0 +1,250 @@
+#include "triangle_cluster.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- building ---------------------------------------------------------------------------------------------------- */
+
+typedef struct ClusterBuild {
+    const SceneView *scene;
+    TriangleCluster *clusters;
+    atomic_uint count;
+} ClusterBuild;
+
+static void cluster_set(TriangleCluster *cluster, int lane, const SceneView *scene, uint id)
+{
+    Primitive primitive = scene->primitives[id];
+    const uint corners[3] = {primitive.a, primitive.b, primitive.c};
+    cluster->primitive[lane] = id;
+    for (int k = 0; k < 3; ++k) {
+        Vec3 p = scene->positions[corners[k]];
+        cluster->corner[k][0][lane] = p.x;
+        cluster->corner[k][1][lane] = p.y;
+        cluster->corner[k][2][lane] = p.z;
+    }
+}
+
+static void *build_leaf(RTCThreadLocalAllocator allocator, const struct RTCBuildPrimitive *primitives, size_t count,
+                        void *context)
+{
+    ClusterBuild *build = context;
+    (void)allocator;
+    TriangleCluster *cluster = &build->clusters[atomic_fetch_add(&build->count, 1)];
+    memset(cluster, 0, sizeof *cluster);
+    for (int lane = 0; lane < CLUSTER_LANES; ++lane)
+        cluster->primitive[lane] = NONE;
+    for (size_t i = 0; i < count; ++i)
+        cluster_set(cluster, (int)i, build->scene, primitives[i].primID);
+    return cluster;
+}
+
+/* Only the leaves are wanted; Embree insists on nodes that are not NULL. */
+static void *build_node(RTCThreadLocalAllocator allocator, unsigned children, void *context)
+{
+    (void)allocator;
+    (void)children;
+    return context;
+}
+
+static void build_children(void *node, void **children, unsigned count, void *context)
+{
+    (void)node;
+    (void)children;
+    (void)count;
+    (void)context;
+}
+
+static void build_bounds(void *node, const struct RTCBounds **bounds, unsigned count, void *context)
+{
+    (void)node;
+    (void)bounds;
+    (void)count;
+    (void)context;
+}
+
+static bool build_run(RTCDevice device, struct RTCBuildPrimitive *items, uint count, ClusterBuild *build)
+{
+    struct RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    RTCBVH bvh = rtcNewBVH(device);
+    arguments.bvh = bvh;
+    arguments.primitives = items;
+    arguments.primitiveCount = count;
+    arguments.primitiveArrayCapacity = count;
+    arguments.maxDepth = 64;
+    arguments.sahBlockSize = CLUSTER_LANES;
+    arguments.maxLeafSize = CLUSTER_LANES;
+    arguments.traversalCost = 0.2f;
+    arguments.intersectionCost = 1.0f;
+    arguments.createNode = build_node;
+    arguments.setNodeChildren = build_children;
+    arguments.setNodeBounds = build_bounds;
+    arguments.createLeaf = build_leaf;
+    arguments.userPtr = build;
+    bool built = rtcBuildBVH(&arguments) != NULL;
+    rtcReleaseBVH(bvh);
+    return built;
+}
+
+bool triangle_clusters_build(RTCDevice device, const SceneView *scene, const uint *primitives, uint count,
+                             TriangleCluster **clusters, uint *cluster_count, Error *error)
+{
+    size_t item_bytes = ((size_t)count * sizeof(struct RTCBuildPrimitive) + 63) / 64 * 64;
+    struct RTCBuildPrimitive *items = aligned_alloc(64, item_bytes);
+    /* Leaves may hold a single triangle; pages that no leaf is written to are never made. */
+    TriangleCluster *out = aligned_alloc(64, ((size_t)count * sizeof *out + 63) / 64 * 64);
+    if (!items || !out) {
+        free(items);
+        free(out);
+        return error_memory(error, (size_t)count * sizeof *out, "groups of triangles");
+    }
+    for (uint i = 0; i < count; ++i) {
+        Box box = primitive_box(scene, primitives[i]);
+        items[i] = (struct RTCBuildPrimitive){.lower_x = box.low[0],
+                                              .lower_y = box.low[1],
+                                              .lower_z = box.low[2],
+                                              .geomID = 0,
+                                              .upper_x = box.high[0],
+                                              .upper_y = box.high[1],
+                                              .upper_z = box.high[2],
+                                              .primID = primitives[i]};
+    }
+    ClusterBuild build = {.scene = scene, .clusters = out};
+    bool built = build_run(device, items, count, &build);
+    free(items);
+    *clusters = out;
+    *cluster_count = atomic_load(&build.count);
+    return built || error_set(error, "Embree cannot group %u triangles", count);
+}
+
+Box triangle_cluster_box(const TriangleCluster *cluster)
+{
+    Box box = box_empty();
+    for (int lane = 0; lane < CLUSTER_LANES && cluster->primitive[lane] != NONE; ++lane)
+        for (int k = 0; k < 3; ++k)
+            box_add(&box, vec3(cluster->corner[k][0][lane], cluster->corner[k][1][lane], cluster->corner[k][2][lane]));
+    return box;
+}
+
+/* ---- asking ------------------------------------------------------------------------------------------------------ */
+
+/* ShearedCorner of four triangles. */
+typedef struct ShearedLanes {
+    Lanes x, y, z;
+} ShearedLanes;
+
+typedef struct ClusterTest {
+    ShearedLanes corner[3];
+    Lanes edge[3];
+} ClusterTest;
+
+static inline Lanes lanes_min(Lanes a, Lanes b)
+{
+    LaneMask less = a < b;
+    return (Lanes)(((LaneMask)a & less) | ((LaneMask)b & ~less));
+}
+
+static inline Lanes lanes_max(Lanes a, Lanes b)
+{
+    LaneMask less = a < b;
+    return (Lanes)(((LaneMask)b & less) | ((LaneMask)a & ~less));
+}
+
+/* Bit i: lane i of the mask. */
+static inline unsigned lanes_bits(LaneMask mask)
+{
+#if defined(__SSE__) && CLUSTER_LANES == 4
+    return (unsigned)__builtin_ia32_movmskps((Lanes)mask);
+#endif
+    unsigned bits = 0;
+    for (int lane = 0; lane < CLUSTER_LANES; ++lane)
+        bits |= (mask[lane] != 0 ? 1u : 0u) << lane;
+    return bits;
+}
+
+/* triangle_shear of four triangles' corner. */
+static inline ShearedLanes lanes_shear(const Lanes corner[3], const RayQuery *query)
+{
+    ShearedLanes out;
+    Lanes z = corner[query->kz] - query->oz;
+    out.x = (corner[query->kx] - query->ox) - query->sx * z;
+    out.y = (corner[query->ky] - query->oy) - query->sy * z;
+    out.z = query->sz * z;
+    return out;
+}
+
+static inline Lanes lanes_edge(const ShearedLanes *p, const ShearedLanes *q)
+{
+    return p->x * q->y - p->y * q->x;
+}
+
+/* Which lanes triangle_query would go on with: its first half, and two cheap reasons to give up that it would find
+ * later, all corners behind the origin or all beyond t_best by more than rounding. */
+static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
+                                          ClusterTest *test)
+{
+    for (int k = 0; k < 3; ++k)
+        test->corner[k] = lanes_shear(cluster->corner[k], query);
+    test->edge[0] = lanes_edge(&test->corner[1], &test->corner[2]);
+    test->edge[1] = lanes_edge(&test->corner[2], &test->corner[0]);
+    test->edge[2] = lanes_edge(&test->corner[0], &test->corner[1]);
+    Lanes zero = {0.0f};
+    LaneMask negative = (test->edge[0] < zero) | (test->edge[1] < zero) | (test->edge[2] < zero);
+    LaneMask positive = (test->edge[0] > zero) | (test->edge[1] > zero) | (test->edge[2] > zero);
+    Lanes area = test->edge[0] + test->edge[1] + test->edge[2];
+    LaneMask inside = ~(negative & positive) & ((area > zero) | (area < zero));
+    unsigned bits = lanes_bits(inside);
+    if (bits == 0)
+        return 0;
+    Lanes z_min = lanes_min(lanes_min(test->corner[0].z, test->corner[1].z), test->corner[2].z);
+    Lanes z_max = lanes_max(lanes_max(test->corner[0].z, test->corner[1].z), test->corner[2].z);
+    Lanes limit = zero + t_best * (1.0f + 16.0f * FLOAT_EPSILON);
+    return bits & lanes_bits((z_max > zero) & (z_min <= limit));
+}
+
+/* The other half of triangle_query for one lane, and the alpha texture. */
+static bool cluster_finish(const SceneView *scene, const TriangleCluster *cluster, const ClusterTest *test, int lane,
+                           const RayQuery *query, Hit *hit)
+{
+    Vec3 p[3];
+    ShearedCorner s[3];
+    for (int k = 0; k < 3; ++k) {
+        p[k] = vec3(cluster->corner[k][0][lane], cluster->corner[k][1][lane], cluster->corner[k][2][lane]);
+        s[k] = (ShearedCorner){test->corner[k].x[lane], test->corner[k].y[lane], test->corner[k].z[lane]};
+    }
+    TriangleEdges edges = {test->edge[0][lane], test->edge[1][lane], test->edge[2][lane]};
+    if (!triangle_finish(p[0], p[1], p[2], s[0], s[1], s[2], edges, query, &hit->t, &hit->u, &hit->v))
+        return false;
+    if (!SCENE_HAS(scene, FEATURE_ALPHA))
+        return true;
+    Primitive primitive = scene->primitives[cluster->primitive[lane]];
+    return !(primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
+           primitive_alpha_keeps(scene, query, cluster->primitive[lane], &primitive, hit);
+}
+
+bool triangle_cluster_intersect(const SceneView *scene, const TriangleCluster *cluster, uint instance,
+                                const RayQuery *query, Hit *best)
+{
+    ClusterTest test;
+    bool improved = false;
+    unsigned candidates = cluster_candidates(cluster, query, best->t, &test);
+    for (; candidates != 0; candidates &= candidates - 1) {
+        int lane = __builtin_ctz(candidates);
+        Hit hit = hit_none(query->t_max);
+        if (cluster_finish(scene, cluster, &test, lane, query, &hit))
+            improved |= hit_improve(best, hit, instance, cluster->primitive[lane]);
+    }
+    return improved;
+}
+
+bool triangle_cluster_occludes(const SceneView *scene, const TriangleCluster *cluster, const RayQuery *query)
+{
+    ClusterTest test;
+    unsigned candidates = cluster_candidates(cluster, query, query->t_max, &test);
+    for (; candidates != 0; candidates &= candidates - 1) {
+        Hit hit = hit_none(query->t_max);
+        if (cluster_finish(scene, cluster, &test, __builtin_ctz(candidates), query, &hit))
+            return true;
+    }
+    return false;
+}
