@@ -27,7 +27,10 @@ EXTRA_DIST += \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
+	tests/bad \
+	tests/corpus \
 	tests/test_files.h \
+	tests/test_import.h \
 	tests/test_light.h \
 	tests/test_math.h \
 	tests/test_util.h \
@@ -53,7 +56,18 @@ tests_test_geometry_SOURCES = tests/test_geometry.c \
 tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
 tests_test_geometry_LDADD = $(TEST_LIBS)
 
-tests_test_import_SOURCES = tests/test_import.c
+tests_test_import_SOURCES = tests/test_import.c \
+	tests/test_import_bad.c \
+	tests/test_import_files.c \
+	tests/test_import_lights.c \
+	tests/test_import_materials.c \
+	tests/test_import_params.c \
+	tests/test_import_ply.c \
+	tests/test_import_settings.c \
+	tests/test_import_shapes.c \
+	tests/test_import_text.c \
+	tests/test_import_textures.c \
+	tests/test_import_transform.c
 tests_test_import_CFLAGS = $(TEST_CFLAGS)
 tests_test_import_LDADD = $(TEST_LIBS)
 
@@ -130,3 +144,25 @@ script_tests = \
 	tests/test_cli.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)
+
+# The scene reader against arbitrary bytes. tests/fuzz_scene replays files (with any compiler); `make fuzz` builds the
+# reader with libFuzzer and sanitizers, and runs it for FUZZ_SECONDS from the seeds of tests/corpus.
+EXTRA_PROGRAMS += tests/fuzz_scene
+tests_fuzz_scene_SOURCES = tests/fuzz_scene.c
+tests_fuzz_scene_CPPFLAGS = $(AM_CPPFLAGS) -DREPLAY
+tests_fuzz_scene_LDADD = libtwinlight_host.la
+CLEANFILES += tests/fuzz_scene$(EXEEXT)
+
+FUZZ_CC = clang
+FUZZ_SECONDS = 60
+FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined
+.PHONY: fuzz
+fuzz:
+	sources=; for file in $(libtwinlight_host_la_SOURCES); do \
+	  case $$file in *.c) sources="$$sources $(srcdir)/$$file";; esac; done; \
+	$(FUZZ_CC) $(FUZZ_CFLAGS) $(DEFS) -I. $(AM_CPPFLAGS) -pthread $(OPENEXR_CFLAGS) $(PNG_CFLAGS) $(ZLIB_CFLAGS) \
+	  $(STB_CFLAGS) $(srcdir)/tests/fuzz_scene.c $$sources -o fuzz_scene \
+	  $(libtwinlight_host_la_LIBADD) -pthread
+	$(MKDIR_P) fuzz-found
+	./fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
+	  -dict=$(srcdir)/tests/corpus/scene.dict fuzz-found $(srcdir)/tests/corpus
