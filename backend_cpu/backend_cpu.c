@@ -46,7 +46,7 @@ typedef struct Job {
     const StepList *list;
     SplatSink sink;
     void *context;
-    const volatile int *stop;
+    const atomic_int *stop;
 } Job;
 
 struct Backend {
@@ -215,7 +215,7 @@ static void *worker_main(void *argument)
 }
 
 static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
-                            void *context, const volatile int *stop, uint64_t *items_done, Error *error)
+                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     pthread_mutex_lock(&backend->mutex);
     backend->job = (Job){frame, list, sink, context, stop};
