@@ -120,7 +120,7 @@ END_TEST
 START_TEST(test_stop)
 {
     static Collector collector;
-    static const volatile int stopped = 1, never = 0;
+    static const atomic_int stopped = 1, never = 0;
     Error error = {0};
     TestScene test;
     BackendOptions options = {.threads = 2};
