@@ -17,7 +17,13 @@
 /* Items that a thread carries through the whole list of steps at a time. Large enough that the two clock readings and
  * the hand-out of a chunk vanish, small enough that its state (about 256 bytes an item) stays in the second-level
  * cache. bench_rays and the renders differ by less than 2 % between 256 and 1024. */
+#ifndef CHUNK_ITEMS
 #define CHUNK_ITEMS 512u
+#endif
+
+/* Fields are one cache line more than a chunk apart. Were they a power of two apart, as CHUNK_ITEMS is, all fields of an
+ * item would fall into the same two sets of the first-level cache and evict one another. */
+#define CHUNK_STRIDE (CHUNK_ITEMS + 16u)
 
 #define THREADS_MAX 1024
 
@@ -40,7 +46,7 @@ typedef struct Job {
     const StepList *list;
     SplatSink sink;
     void *context;
-    const volatile int *stop;
+    const atomic_int *stop;
 } Job;
 
 struct Backend {
@@ -80,7 +86,7 @@ static uint64_t nanoseconds_now(void)
 static bool worker_reserve(Worker *worker, const StepList *list)
 {
     for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id) {
-        size_t words = id == BUFFER_DIAGNOSTICS ? DIAGNOSTIC_COUNT : (size_t)list->words_per_item[id] * CHUNK_ITEMS;
+        size_t words = id == BUFFER_DIAGNOSTICS ? DIAGNOSTIC_COUNT : (size_t)list->words_per_item[id] * CHUNK_STRIDE;
         if (words <= worker->buffer_words[id])
             continue;
         free(worker->buffers[id]);
@@ -123,10 +129,10 @@ static uint worker_trace(Worker *worker, StepKind kind, uint count)
     uint traced;
     if (kind == STEP_TRACE_CLOSEST) {
         traced = rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], count,
-                                           CHUNK_ITEMS);
+                                           CHUNK_STRIDE);
         worker->closest_rays += traced;
     } else {
-        traced = rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_ITEMS);
+        traced = rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
         worker->shadow_rays += traced;
     }
     worker->ray_nanoseconds += nanoseconds_now() - begin;
@@ -136,7 +142,7 @@ static uint worker_trace(Worker *worker, StepKind kind, uint count)
 static bool chunk_is_idle(const Worker *worker, uint count)
 {
     for (uint t = 0; t < count; ++t)
-        if (state_load_float(worker->buffers[BUFFER_RAYS], CHUNK_ITEMS, RAY_T_MAX, t) > 0.0f)
+        if (state_load_float(worker->buffers[BUFFER_RAYS], CHUNK_STRIDE, RAY_T_MAX, t) > 0.0f)
             return false;
     return true;
 }
@@ -149,7 +155,7 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     worker->frame = *job->frame;
     worker->frame.first_item = job->frame->first_item + first;
     worker->frame.item_count = count;
-    worker->frame.stride = CHUNK_ITEMS;
+    worker->frame.stride = CHUNK_STRIDE;
     worker_arguments(worker, arguments);
     for (size_t i = 0; i < job->list->count; ++i) {
         const Step *step = &job->list->steps[i];
@@ -161,7 +167,7 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
             i = step->target - 1;
     }
     if (job->list->words_per_item[BUFFER_SPLATS] > 0)
-        job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_ITEMS);
+        job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
     worker_sum_diagnostics(worker);
     atomic_fetch_add_explicit(&worker->backend->items_done, count, memory_order_relaxed);
 }
@@ -209,7 +215,7 @@ static void *worker_main(void *argument)
 }
 
 static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
-                            void *context, const volatile int *stop, uint64_t *items_done, Error *error)
+                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     pthread_mutex_lock(&backend->mutex);
     backend->job = (Job){frame, list, sink, context, stop};

@@ -1,3 +1,8 @@
+/* Before any shared header: everything is inlined into the loops of this file. */
+#ifdef NDEBUG
+#define PLATFORM_INLINE_ALL
+#endif
+
 #include "kernels.h"
 
 #include "backend.h"
@@ -16,7 +21,7 @@
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 
-/* One loop a kernel, with the kernel inlined into it. */
+/* One loop a kernel, with the kernel and all it calls inlined into it, so that the scene's pointers are made once. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
     static void run_##name(void *const *buffers, uint count)                                                           \
     {                                                                                                                  \

@@ -40,9 +40,15 @@ typedef struct RayWalk {
     struct RTCIntersectContext context; /* first: Embree's pointer to it is one to the walk */
     const RaysEmbree *rays;
     RayQuery query;
+    float t_scale; /* Embree's t over ours: see embree_ray */
     uint instance;
     Hit best;
 } RayWalk;
+
+/* Embree takes direction components below 10^-18 for that number, so a very short direction is lengthened for it by a
+ * power of two, and t shortened: exact, and 1 for nearly all rays. */
+#define SHORT_DIRECTION 0x1p-40f
+#define SHORT_STRETCH 0x1p100f
 
 /* ---- callbacks --------------------------------------------------------------------------------------------------- */
 
@@ -69,7 +75,7 @@ static void cluster_intersect_callback(const struct RTCIntersectFunctionNArgumen
     RayWalk *walk = (RayWalk *)args->context;
     if (triangle_cluster_intersect(&object->rays->view, &object->clusters[args->primID], walk->instance, &walk->query,
                                    &walk->best))
-        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t;
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t * walk->t_scale;
 }
 
 static void cluster_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
@@ -93,7 +99,7 @@ static void other_intersect_callback(const struct RTCIntersectFunctionNArguments
     RayWalk *walk = (RayWalk *)args->context;
     if (primitive_intersect(&object->rays->view, object->others[args->primID], walk->instance, &walk->query,
                             &walk->best))
-        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t;
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t * walk->t_scale;
 }
 
 static void other_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
@@ -104,16 +110,21 @@ static void other_occluded_callback(const struct RTCOccludedFunctionNArguments *
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
 
-static struct RTCRay ray_for_embree(const RayQuery *query, float t_max)
+/* The ray up to walk->best.t as Embree gets it. */
+static struct RTCRay embree_ray(RayWalk *walk)
 {
+    const RayQuery *query = &walk->query;
+    bool is_short = vec3_max_abs(query->d) < SHORT_DIRECTION;
+    float stretch = is_short ? SHORT_STRETCH : 1.0f;
+    walk->t_scale = is_short ? 1.0f / SHORT_STRETCH : 1.0f;
     return (struct RTCRay){.org_x = query->o.x,
                            .org_y = query->o.y,
                            .org_z = query->o.z,
-                           .dir_x = query->d.x,
-                           .dir_y = query->d.y,
-                           .dir_z = query->d.z,
+                           .dir_x = query->d.x * stretch,
+                           .dir_y = query->d.y * stretch,
+                           .dir_z = query->d.z * stretch,
                            .tnear = 0.0f,
-                           .tfar = t_max,
+                           .tfar = walk->best.t * walk->t_scale,
                            .mask = 0xffffffffu};
 }
 
@@ -150,10 +161,10 @@ static void instance_intersect_callback(const struct RTCIntersectFunctionNArgume
     if (!object->scene)
         return;
     RayWalk inner = walk_enter(outer, args->primID);
-    struct RTCRayHit rayhit = {.ray = ray_for_embree(&inner.query, inner.best.t)};
+    struct RTCRayHit rayhit = {.ray = embree_ray(&inner)};
     rtcIntersect1(object->scene, &inner.context, &rayhit);
     outer->best = inner.best;
-    ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t;
+    ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t * outer->t_scale;
 }
 
 static void instance_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
@@ -163,7 +174,7 @@ static void instance_occluded_callback(const struct RTCOccludedFunctionNArgument
     if (!object->scene)
         return;
     RayWalk inner = walk_enter((const RayWalk *)args->context, args->primID);
-    struct RTCRay ray = ray_for_embree(&inner.query, inner.query.t_max);
+    struct RTCRay ray = embree_ray(&inner);
     rtcOccluded1(object->scene, &inner.context, &ray);
     if (ray.tfar < 0.0f)
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
@@ -336,7 +347,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
     walk_begin(&walk, rays, ray);
     if (rays->object_count == 0 || !rays->objects[0].scene)
         return walk.best;
-    struct RTCRayHit rayhit = {.ray = ray_for_embree(&walk.query, ray->t_max)};
+    struct RTCRayHit rayhit = {.ray = embree_ray(&walk)};
     rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
     return walk.best;
 }
@@ -347,9 +358,9 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
     if (rays->object_count == 0 || !rays->objects[0].scene)
         return false;
     walk_begin(&walk, rays, ray);
-    struct RTCRay embree_ray = ray_for_embree(&walk.query, ray->t_max);
-    rtcOccluded1(rays->objects[0].scene, &walk.context, &embree_ray);
-    return embree_ray.tfar < 0.0f;
+    struct RTCRay asked = embree_ray(&walk);
+    rtcOccluded1(rays->objects[0].scene, &walk.context, &asked);
+    return asked.tfar < 0.0f;
 }
 
 uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint count, uint stride)

@@ -10,6 +10,7 @@
 #include "error.h"
 #include "scene_types.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -93,7 +94,7 @@ typedef struct BackendInterface {
      * *stop becomes non-zero no new chunk is begun; the items done are still delivered. `items_done` (may be NULL)
      * gets how many items were delivered. */
     bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
-                const volatile int *stop, uint64_t *items_done, Error *error);
+                const atomic_int *stop, uint64_t *items_done, Error *error);
     /* Sums the diagnostics counters (diagnostics.h) into counters[DIAGNOSTIC_COUNT]. */
     void (*diagnostics)(Backend *backend, uint64_t *counters);
     void (*statistics)(Backend *backend, BackendStatistics *statistics);

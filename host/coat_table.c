@@ -8,7 +8,7 @@
  * normals' density are then smooth functions, for any alpha. */
 #define QUADRATURE_PHI 16
 #define QUADRATURE_HEIGHT 24
-#define AZIMUTHS 8
+#define AZIMUTHS 64 /* of the mean over azimuth */
 
 /* Cosine at which the end of the table at c = 0 is taken: T has a limit there. */
 #define GRAZING_COSINE 1e-4f
@@ -37,22 +37,6 @@ static float rough_transmission(float alpha_x, float alpha_y, float eta, Vec3 o)
     return (float)(sum / (QUADRATURE_PHI * QUADRATURE_HEIGHT));
 }
 
-/* Least transmission over azimuth; by symmetry the first quadrant is enough. */
-static float azimuth_transmission(float alpha_x, float alpha_y, float eta, float cosine)
-{
-    float sine = float_sqrt((1.0f - cosine) * (1.0f + cosine));
-    if (alpha_x == alpha_y)
-        return rough_transmission(alpha_x, alpha_y, eta, vec3(sine, 0.0f, cosine));
-    float least = 1.0f;
-    for (int k = 0; k < AZIMUTHS; ++k) {
-        float s, c;
-        float_sincos(PI_OVER_2 * (float)k / (AZIMUTHS - 1), &s, &c);
-        float t = rough_transmission(alpha_x, alpha_y, eta, vec3(sine * c, sine * s, cosine));
-        least = float_min(least, t);
-    }
-    return least;
-}
-
 /* T_mean / eta^2 of the linear interpolant: over a cell, the integral of T(c) 2 c dc is exact by Simpson's rule. */
 static float row_escape(const float *row, float eta)
 {
@@ -66,16 +50,38 @@ static float row_escape(const float *row, float eta)
     return (float)(sum / ((double)eta * (double)eta));
 }
 
-static void row_fill(float alpha_x, float alpha_y, float eta, float *row)
+/* One row: directions whose azimuth has the sine `across` from the less rough axis. */
+static void row_fill(float alpha_x, float alpha_y, float across, float eta, float *row)
 {
     bool smooth = alpha_x < ALPHA_DELTA && alpha_y < ALPHA_DELTA;
     alpha_x = float_clamp(alpha_x, ALPHA_MIN, ALPHA_MAX);
     alpha_y = float_clamp(alpha_y, ALPHA_MIN, ALPHA_MAX);
+    float along = float_sqrt((1.0f - across) * (1.0f + across));
     for (unsigned k = 0; k < COAT_CELLS; ++k) {
         float cosine = float_max((float)k / (float)(COAT_CELLS - 1u), GRAZING_COSINE);
-        row[k] = smooth ? 1.0f - fresnel_dielectric(cosine, eta) : azimuth_transmission(alpha_x, alpha_y, eta, cosine);
+        float sine = float_sqrt((1.0f - cosine) * (1.0f + cosine));
+        Vec3 o =
+            alpha_x < alpha_y ? vec3(sine * along, sine * across, cosine) : vec3(sine * across, sine * along, cosine);
+        row[k] = smooth ? 1.0f - fresnel_dielectric(cosine, eta) : rough_transmission(alpha_x, alpha_y, eta, o);
     }
     row[COAT_CELLS] = row_escape(row, eta);
+}
+
+/* Gives every row the mean over azimuth of 1 - R_i, by midpoints over a quadrant. */
+static void rows_average_escape(float *rows)
+{
+    double sum = 0.0;
+    for (int k = 0; k < AZIMUTHS; ++k) {
+        float s, c;
+        float_sincos(PI_OVER_2 * ((float)k + 0.5f) / AZIMUTHS, &s, &c);
+        float position = s * (float)(COAT_AZIMUTH_ROWS - 1u);
+        unsigned r = (unsigned)position < COAT_AZIMUTH_ROWS - 2u ? (unsigned)position : COAT_AZIMUTH_ROWS - 2u;
+        float t = position - (float)r;
+        const float *row = rows + r * COAT_ROW + COAT_CELLS;
+        sum += (double)((1.0f - t) * row[0] + t * row[COAT_ROW]);
+    }
+    for (unsigned r = 0; r < COAT_AZIMUTH_ROWS; ++r)
+        rows[r * COAT_ROW + COAT_CELLS] = (float)(sum / AZIMUTHS);
 }
 
 /* Room for a table of `rows` rows with its head filled; NULL on failure. */
@@ -95,10 +101,14 @@ static float *table_begin(unsigned rows, Array *lookup, uint32_t *first, Error *
 
 bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, uint32_t *first, Error *error)
 {
-    float *table = table_begin(1, lookup, first, error);
+    unsigned rows = alpha_x == alpha_y ? 1 : COAT_AZIMUTH_ROWS;
+    float *table = table_begin(rows, lookup, first, error);
     if (!table)
         return false;
-    row_fill(alpha_x, alpha_y, eta, table + 1);
+    for (unsigned r = 0; r < rows; ++r)
+        row_fill(alpha_x, alpha_y, (float)r / (float)(COAT_AZIMUTH_ROWS - 1u), eta, table + 1 + r * COAT_ROW);
+    if (rows > 1)
+        rows_average_escape(table + 1);
     return true;
 }
 
@@ -108,8 +118,8 @@ bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *er
     if (!table)
         return false;
     for (unsigned r = 0; r < COAT_ALPHA_ROWS; ++r) {
-        float alpha = (float)r / (float)(COAT_ALPHA_ROWS - 1u);
-        row_fill(alpha, alpha, eta, table + 1 + r * COAT_ROW);
+        float root = (float)r / (float)(COAT_ALPHA_ROWS - 1u);
+        row_fill(root * root, root * root, 0.0f, eta, table + 1 + r * COAT_ROW);
     }
     return true;
 }

@@ -1,8 +1,9 @@
 #include "color.h"
 
+#include "array.h"
 #include "color_tables.h"
+#include "text_number.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 
 #define SPECTRUM_SIZE (CIE_LAST - CIE_FIRST + 1)
 #define BLACKBODY_KELVIN_MIN 400.0
+#define SPECTRUM_NUMBERS_MAX (1 << 20)
 
 /* XYZ (of luminance 1 for white) to linear sRGB: the inverse of the matrix whose columns are the primaries of ITU-R
  * BT.709 scaled to add up to the white of the D65 table. */
@@ -165,59 +167,60 @@ bool color_from_samples(const float *wavelength_value_pairs, size_t n, ColorRole
     return true;
 }
 
-/* Reads numbers up to the end of the file into a growing array. Comments begin with #. */
-static bool numbers_read(FILE *file, const char *path, float **numbers, size_t *count, Error *error)
+#define SPACES " \t\r\n\f\v"
+
+/* The numbers of one line, whose comment begins with #. */
+static bool line_read(char *line, SourcePlace place, Array *numbers, Error *error)
 {
-    const size_t LIMIT = 1u << 20;
-    char *line = NULL;
-    size_t line_size = 0, capacity = 0;
-    bool good = true;
-    for (int number = 1; good && getline(&line, &line_size, file) >= 0; ++number) {
-        line[strcspn(line, "#")] = '\0';
-        for (char *text = line + strspn(line, " \t\r\n\f\v"); good && *text; text += strspn(text, " \t\r\n\f\v")) {
-            char *end;
-            float value = strtof(text, &end);
-            SourcePlace place = {path, number, (int)(text - line) + 1};
-            if (end == text || !strchr(" \t\r\n\f\v", *end)) {
-                good = error_at(error, place, "expected a number");
-                break;
-            }
-            if (*count == capacity) {
-                capacity = capacity ? 2 * capacity : 256;
-                float *larger = *count < LIMIT ? realloc(*numbers, capacity * sizeof **numbers) : NULL;
-                if (!larger) {
-                    good = error_at(error, place, "too many numbers for a spectrum");
-                    break;
-                }
-                *numbers = larger;
-            }
-            (*numbers)[(*count)++] = value;
-            text = end;
-        }
+    line[strcspn(line, "#")] = '\0';
+    for (char *text = line + strspn(line, SPACES); *text; text += strspn(text, SPACES)) {
+        size_t length = strcspn(text, SPACES);
+        float value = 0.0f;
+        place.column = (int)(text - line) + 1;
+        if (number_float(text, length, &value) != NUMBER_OK)
+            return error_at(error, place, "expected a number, not \"%.*s\"", length < 40 ? (int)length : 40, text);
+        if (numbers->count >= SPECTRUM_NUMBERS_MAX)
+            return error_at(error, place, "more than %d numbers in a spectrum", SPECTRUM_NUMBERS_MAX);
+        float *to = array_grow(numbers, 1, error);
+        if (!to)
+            return false;
+        *to = value;
+        text += length;
     }
+    return true;
+}
+
+static bool numbers_read(const char *path, Array *numbers, Error *error)
+{
+    char *line = NULL;
+    size_t line_size = 0;
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return error_errno(error, "open the spectrum", path);
+    bool good = true;
+    for (int number = 1; good && getline(&line, &line_size, file) >= 0; ++number)
+        good = line_read(line, (SourcePlace){path, number, 0}, numbers, error);
+    if (good && ferror(file))
+        good = error_errno(error, "read", path);
     free(line);
+    fclose(file);
     return good;
 }
 
 bool color_spectrum_file(const char *path, ColorRole role, float rgb[3], Error *error)
 {
-    FILE *file = fopen(path, "r");
-    if (!file)
-        return error_errno(error, "open the spectrum", path);
-    float *numbers = NULL;
-    size_t count = 0;
-    bool good = numbers_read(file, path, &numbers, &count, error);
-    if (good && ferror(file))
-        good = error_errno(error, "read", path);
-    fclose(file);
-    if (good && count % 2 != 0)
-        good = error_at(error, (SourcePlace){path, 0, 0}, "a spectrum needs pairs of numbers, but has %zu", count);
+    Array numbers;
     Error inner;
-    if (good && !color_from_samples(numbers, count / 2, role, rgb, &inner)) {
-        good = error_at(error, (SourcePlace){path, 0, 0}, "%s", inner.message + strlen("error: "));
-        memcpy(error->fix, inner.fix, sizeof error->fix);
+    SourcePlace place = {path, 0, 0};
+    array_init(&numbers, sizeof(float));
+    bool good = numbers_read(path, &numbers, error);
+    if (good && numbers.count % 2 != 0)
+        good = error_at(error, place, "a spectrum needs pairs of numbers, but has %zu", numbers.count);
+    if (good && !color_from_samples(numbers.data, numbers.count / 2, role, rgb, &inner)) {
+        good = error_at(error, place, "%s", inner.message + strlen("error: "));
+        error_fix(error, "%s", inner.fix);
     }
-    free(numbers);
+    array_destroy(&numbers);
     return good;
 }
 

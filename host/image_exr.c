@@ -170,6 +170,15 @@ static exr_result_t tiles_read(ExrReader *reader, Image *image)
     return result;
 }
 
+/* The one compression that the library knows and cannot undo; the other reader finds R G B [A] and Y only. */
+static bool is_dwa(const ExrReader *reader)
+{
+    exr_compression_t compression = EXR_COMPRESSION_NONE;
+    exr_get_compression(reader->context, 0, &compression);
+    return (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) &&
+           (reader->channels >= 3 || strcmp(reader->names[0], "Y") == 0);
+}
+
 static bool part_read(ExrReader *reader, const char *path, Image *image, Error *error)
 {
     exr_storage_t storage = EXR_STORAGE_SCANLINE;
@@ -177,11 +186,12 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
         !image_allocate_float(path, reader->width, reader->height, reader->channels, image, error))
         return false;
     exr_get_storage(reader->context, 0, &storage);
+    if (is_dwa(reader))
+        return image_read_exr_dwa(path, image, error);
     exr_result_t result = storage == EXR_STORAGE_TILED ? tiles_read(reader, image) : scanlines_read(reader, image);
     if (result == EXR_ERR_SUCCESS)
         return true;
-    image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
-    return result == EXR_ERR_FEATURE_NOT_IMPLEMENTED && error_fix(error, "save it with ZIP or PIZ compression");
+    return image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
 }
 
 bool image_read_exr(FILE *file, const char *path, Image *image, Error *error)

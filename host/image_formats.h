@@ -9,6 +9,8 @@
 typedef enum StbKind { STB_PNG, STB_JPEG, STB_TGA, STB_HDR } StbKind;
 
 bool image_read_exr(FILE *file, const char *path, Image *image, Error *error);
+/* Fills the allocated float image from a DWA-compressed file whose size and channels (R G B [A], or Y) are known. */
+bool image_read_exr_dwa(const char *path, Image *image, Error *error);
 bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error);
 bool image_read_stb(FILE *file, const char *path, StbKind kind, bool sixteen_bits, Image *image, Error *error);
 

@@ -117,7 +117,7 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
                       double *mean, Error *error)
 {
     uint crop_pixels = (frame.crop_x1 - frame.crop_x0) * (frame.crop_y1 - frame.crop_y0);
-    static const volatile int never = 0;
+    static const atomic_int never = 0;
     Pilot *pilot = malloc(sizeof *pilot);
     if (!pilot)
         return error_memory(error, sizeof *pilot, "the pilot");
@@ -189,7 +189,7 @@ static bool save_if_due(PassLoop *loop, double now, Error *error)
  * is repeated (the signal handler then ends the program): an image without holes is worth a moment. */
 static bool pass_run(PassLoop *loop, uint items, Error *error)
 {
-    static const volatile int never = 0;
+    static const atomic_int never = 0;
     bool first = loop->next < loop->crop_pixels;
     uint64_t delivered = 0;
     loop->frame.sample_index = loop->options->first_sample + (uint)(loop->next / loop->crop_pixels);

@@ -6,15 +6,15 @@
 #include <string.h>
 #include <unistd.h>
 
-/* An int and not sig_atomic_t because integrators poll it as one; on every system with POSIX threads both are. */
-static volatile int interrupt_seen;
+/* Atomic, for worker threads poll it; a handler may touch it because it is lock-free. */
+static atomic_int interrupt_seen;
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2, "a signal handler may only touch lock-free atomics");
 
 static void interrupt_handle(int signal_number)
 {
     (void)signal_number;
-    if (interrupt_seen)
+    if (atomic_exchange(&interrupt_seen, 1))
         _exit(EXIT_STOPPED);
-    interrupt_seen = 1;
 }
 
 bool interrupt_install(Error *error)
@@ -31,7 +31,7 @@ bool interrupt_install(Error *error)
     return true;
 }
 
-const volatile int *interrupt_flag(void)
+const atomic_int *interrupt_flag(void)
 {
     return &interrupt_seen;
 }

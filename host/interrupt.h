@@ -4,10 +4,12 @@
 
 #include "error.h"
 
+#include <stdatomic.h>
+
 /* Installs the handlers. */
 bool interrupt_install(Error *error);
 
 /* Points to 0, and to 1 after a signal. */
-const volatile int *interrupt_flag(void);
+const atomic_int *interrupt_flag(void);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct RenderOptions {
     int max_depth; /* path segments, >= 1 */
     uint64_t seed;
     double save_every; /* seconds between calls of `save`; 0: never */
-    const volatile int *stop; /* becomes 1 by a signal: finish what is begun and return */
+    const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */
 } RenderOptions;
 
 typedef struct RenderProgress {

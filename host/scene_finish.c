@@ -210,7 +210,9 @@ static uint material_features(const Material *m)
     if (material_is_rough(m))
         features |= FEATURE_ROUGH;
     if (m->normal_map != NONE || m->displacement.program != NONE)
-        features |= FEATURE_BUMP | FEATURE_TEXTURE;
+        features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
+    if (m->roughness_u.program != m->roughness_v.program || m->roughness_u.value != m->roughness_v.value)
+        features |= FEATURE_TANGENTS;
     if (m->color0.program != NONE || m->color1.program != NONE || m->roughness_u.program != NONE ||
         m->roughness_v.program != NONE || m->amount.program != NONE)
         features |= FEATURE_TEXTURE;

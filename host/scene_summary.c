@@ -28,7 +28,7 @@ static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",
                                                          "area light",
                                                          "infinite light",
                                                          "delta light",
-                                                         "lens"};
+                                                         "lens", "tangents"};
 
 const char *scene_feature_name(int bit)
 {

@@ -21,6 +21,7 @@ libtwinlight_host_la_SOURCES = \
 	host/filter_setup.c host/filter_setup.h \
 	host/image.c host/image.h \
 	host/image_exr.c \
+	host/image_exr_dwa.c \
 	host/image_formats.h \
 	host/image_pfm.c \
 	host/image_stb.c \

@@ -1,3 +1,4 @@
 dist_man_MANS += \
+	man/twinlight-compare.1 \
 	man/twinlight-render.1 \
 	man/twinlight.1

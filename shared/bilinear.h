@@ -66,10 +66,10 @@ SHARED_FUNCTION bool patch_query_line(const PatchCorners *q, const RayQuery *que
     *t = vec3_dot(delta, vec3_cross(along, across)) / square;
     if (!(*v >= -PATCH_OVERLAP && *v <= 1.0f + PATCH_OVERLAP && *t > 0.0f && *t < query->t_max))
         return false;
-    Vec3 normal = vec3_cross(patch_dpdu(q, *v), patch_dpdv(q, u));
-    float size = vec3_length(normal);
+    Vec3 dpdu = patch_dpdu(q, *v), dpdv = patch_dpdv(q, u), normal = vec3_cross(dpdu, dpdv);
+    float size = vec3_length(dpdu) * vec3_length(dpdv);
     float reach = ray_query_reach(query, *t) + patch_size(q);
-    float tolerance = size * (4.0f * FLOAT_EPSILON * reach + vec3_max_abs(query->error));
+    float tolerance = size * (12.0f * FLOAT_EPSILON * reach + vec3_max_abs(query->error));
     return ray_query_clear(query, *t, float_abs(vec3_dot(normal, query->d)), tolerance);
 }
 

@@ -11,7 +11,8 @@
  * No interreflection is left out, so this is what pbrt's random walk estimates for a smooth coat. Energy: for rho = 1
  * the second term's albedo is T(wo) T_mean / (eta^2 (1 - R_i)), and coat.h sets 1 - R_i = T_mean / eta^2, so it is
  * T(wo): nothing is gained or lost below the coat. For a rough coat, light that single-scattering microfacets lose on
- * the inside is thus returned to the base, where pbrt loses it.
+ * the inside is thus returned to the base; pbrt loses it, so its rough coats over bright bases are darker
+ * (tests/test_bsdf_coated.c prints by how much).
  *
  * Absorption in the coat (color1.x > 0) multiplies T on the way in and out and R_i by the transmittances of coat.h. */
 #ifndef TWINLIGHT_BSDF_COATED_H
@@ -26,11 +27,13 @@ SHARED_FUNCTION bool coated_is_rough(const SceneView *scene, const Bsdf *bsdf)
     return SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
 }
 
-SHARED_FUNCTION CoatTransmission coated_transmission(const SceneView *scene, const Bsdf *bsdf, float cos_o, float cos_i)
+/* T of direction w (w.z > 0) and, in *escape, 1 - R_i, which is the same for every direction. */
+SHARED_FUNCTION float coated_transmission(const SceneView *scene, const Bsdf *bsdf, Vec3 w, float *escape)
 {
     if (coated_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
-        return coat_table_lookup(scene->lookup + bsdf->coat_table, bsdf->alpha_x * bsdf->alpha_y, cos_o, cos_i);
-    return coat_smooth(bsdf->eta, cos_o, cos_i);
+        return coat_table_lookup(scene->lookup + bsdf->coat_table, bsdf->alpha_x, bsdf->alpha_y, w, escape);
+    *escape = coat_smooth_escape(bsdf->eta);
+    return 1.0f - fresnel_dielectric(w.z, bsdf->eta);
 }
 
 /* rho / (eta^2 (1 - rho R_i)): the base's albedo between the two passages through the coat, R_i with absorption. */
@@ -61,15 +64,17 @@ SHARED_FUNCTION float coated_specular_probability(float t, float base_max, float
 /* Value for o.z, i.z > 0. */
 SHARED_FUNCTION BsdfValue coated_eval_above(const SceneView *scene, const Bsdf *bsdf, Vec3 o, Vec3 i)
 {
-    CoatTransmission coat = coated_transmission(scene, bsdf, o.z, i.z);
-    Vec3 base = coated_base(bsdf, coat.escape);
+    float escape;
+    float t_o = coated_transmission(scene, bsdf, o, &escape);
+    float t_i = coated_transmission(scene, bsdf, i, &escape);
+    Vec3 base = coated_base(bsdf, escape);
     float base_max = vec3_max_component(base);
-    float escape_eta2 = coat.escape * bsdf->eta * bsdf->eta;
-    float specular_o = coated_specular_probability(coat.t_o, base_max, escape_eta2);
-    float specular_i = coated_specular_probability(coat.t_i, base_max, escape_eta2);
+    float escape_eta2 = escape * bsdf->eta * bsdf->eta;
+    float specular_o = coated_specular_probability(t_o, base_max, escape_eta2);
+    float specular_i = coated_specular_probability(t_i, base_max, escape_eta2);
     BsdfValue value;
     float absorbed = coat_absorption(bsdf->color1.x, bsdf->eta, o.z) * coat_absorption(bsdf->color1.x, bsdf->eta, i.z);
-    value.f_cos = vec3_scale(base, absorbed * coat.t_o * coat.t_i * i.z * INV_PI);
+    value.f_cos = vec3_scale(base, absorbed * t_o * t_i * i.z * INV_PI);
     value.pdf_w = (1.0f - specular_o) * i.z * INV_PI;
     value.pdf_rev_w = (1.0f - specular_i) * o.z * INV_PI;
     if (!coated_is_rough(scene, bsdf))
@@ -101,9 +106,10 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
     bool flip = wo.z < 0.0f;
     Vec3 o = direction_flip(wo, flip);
     bool rough = coated_is_rough(scene, bsdf);
-    CoatTransmission coat = coated_transmission(scene, bsdf, o.z, o.z);
-    float base_max = vec3_max_component(coated_base(bsdf, coat.escape));
-    float specular = coated_specular_probability(coat.t_o, base_max, coat.escape * bsdf->eta * bsdf->eta);
+    float escape;
+    float t_o = coated_transmission(scene, bsdf, o, &escape);
+    float base_max = vec3_max_component(coated_base(bsdf, escape));
+    float specular = coated_specular_probability(t_o, base_max, escape * bsdf->eta * bsdf->eta);
     Vec3 i;
     if (!(u_lobe < specular)) {
         i = warp_cosine_hemisphere(u);
@@ -111,7 +117,7 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
         Vec3 m = ggx_sample_visible(o, bsdf->alpha_x, bsdf->alpha_y, u);
         i = vec3_mad(vec3_negate(o), 2.0f * vec3_dot(o, m), m);
     } else {
-        bsdf_sample_set_delta(sample, vec3(-wo.x, -wo.y, wo.z), vec3_splat((1.0f - coat.t_o) / specular), specular);
+        bsdf_sample_set_delta(sample, vec3(-wo.x, -wo.y, wo.z), vec3_splat((1.0f - t_o) / specular), specular);
         return true;
     }
     if (!(i.z > BSDF_COSINE_MIN))

@@ -11,12 +11,19 @@
  * coat_round_trip in host/coat_table.c.
  *
  * Layout of a table in `lookup`, from Bsdf.coat_table on (all floats):
- *     [0]                          rows
- *     [1 + r * COAT_ROW + k]       k < COAT_CELLS: T(c) of row r at c = k / (COAT_CELLS - 1), linear in between
+ *     [0]                              rows
+ *     [1 + r * COAT_ROW + k]           k < COAT_CELLS: T(c) of row r at c = k / (COAT_CELLS - 1), linear in between
  *     [1 + r * COAT_ROW + COAT_CELLS]  1 - R_i of row r, from the integral of the linear interpolant, so that what the
- *                                  table says is transmitted is what comes back out
- * One row: the coat's own alphas. COAT_ALPHA_ROWS rows (textured roughness): row r is isotropic with
- * alpha = r / (COAT_ALPHA_ROWS - 1), row 0 smooth; linear in between, clamped above 1. host/coat_table.c builds both. */
+ *                                      table says is transmitted is what comes back out
+ * What the rows are, all linear in between:
+ *     1 row                  an isotropic coat
+ *     COAT_AZIMUTH_ROWS      an anisotropic coat; row r holds the directions whose azimuth has the sine (from the
+ *                            less rough axis) r / (COAT_AZIMUTH_ROWS - 1). T is smooth in that sine, because the
+ *                            roughness along azimuth phi is sqrt(alpha_min^2 cos^2 phi + alpha_max^2 sin^2 phi). Every
+ *                            row has the same 1 - R_i.
+ *     COAT_ALPHA_ROWS        a textured roughness; row r is isotropic with alpha = (r / (COAT_ALPHA_ROWS - 1))^2,
+ *                            row 0 smooth; clamped above 1; sqrt(alpha_x alpha_y) where the texture is anisotropic.
+ * host/coat_table.c builds them. */
 #ifndef TWINLIGHT_COAT_H
 #define TWINLIGHT_COAT_H
 
@@ -26,16 +33,11 @@
 
 #define COAT_CELLS 64u
 #define COAT_ROW (COAT_CELLS + 1u)
+#define COAT_AZIMUTH_ROWS 9u
 #define COAT_ALPHA_ROWS 17u
 
 /* Largest eta of the closed form below; beyond it 1 - R_i is overestimated, which darkens. */
 #define COAT_ETA_MAX 4.0f
-
-/* The coat at one shading point: T seen from two directions, and 1 - R_i. */
-typedef struct CoatTransmission {
-    float t_o, t_i;
-    float escape;
-} CoatTransmission;
 
 /* T_mean of a smooth interface with eta >= 1, to a relative 1e-4: 1 - q^2 p(q), q = sqrt((eta - 1) / (eta + 1)), with p
  * the polynomial through eight Chebyshev points of the exact integral (Walsh 1926; see tests/test_bsdf_coated.c). */
@@ -72,42 +74,43 @@ SHARED_FUNCTION float coat_row_transmission(__global const float *row, float cos
     return (1.0f - t) * row[cell] + t * row[cell + 1u];
 }
 
-SHARED_FUNCTION CoatTransmission coat_row_lookup(__global const float *row, float cos_o, float cos_i)
+/* Between which rows of a table with more than one a direction lies, as row + fraction. */
+SHARED_FUNCTION float coat_row_position(uint rows, float alpha_x, float alpha_y, Vec3 w)
 {
-    CoatTransmission coat;
-    coat.t_o = coat_row_transmission(row, cos_o);
-    coat.t_i = coat_row_transmission(row, cos_i);
-    coat.escape = row[COAT_CELLS];
-    return coat;
+    float coordinate;
+    if (rows == COAT_ALPHA_ROWS) {
+        coordinate = float_sqrt(float_sqrt(alpha_x * alpha_y));
+    } else {
+        float across = alpha_x < alpha_y ? w.y : w.x;
+        float horizontal = w.x * w.x + w.y * w.y;
+        coordinate = horizontal > 0.0f ? float_abs(across) / float_sqrt(horizontal) : 0.0f;
+    }
+    return float_min(coordinate, 1.0f) * (float)(rows - 1u);
 }
 
-/* `alpha_squared` = alpha_x alpha_y is read only by tables of several rows. Cosines in 0..1. */
-SHARED_FUNCTION CoatTransmission coat_table_lookup(__global const float *table, float alpha_squared, float cos_o,
-                                                   float cos_i)
+/* T of direction w (w.z > 0) and, in *escape, 1 - R_i. */
+SHARED_FUNCTION float coat_table_lookup(__global const float *table, float alpha_x, float alpha_y, Vec3 w,
+                                        float *escape)
 {
-    __global const float *rows = table + 1;
-    if (table[0] < 2.0f)
-        return coat_row_lookup(rows, cos_o, cos_i);
-    float position = float_sqrt(float_clamp(alpha_squared, 0.0f, 1.0f)) * (float)(COAT_ALPHA_ROWS - 1u);
-    uint cell = (uint)position;
-    if (cell > COAT_ALPHA_ROWS - 2u)
-        cell = COAT_ALPHA_ROWS - 2u;
-    float t = position - (float)cell;
-    CoatTransmission a = coat_row_lookup(rows + cell * COAT_ROW, cos_o, cos_i);
-    CoatTransmission b = coat_row_lookup(rows + (cell + 1u) * COAT_ROW, cos_o, cos_i);
-    a.t_o = (1.0f - t) * a.t_o + t * b.t_o;
-    a.t_i = (1.0f - t) * a.t_i + t * b.t_i;
-    a.escape = (1.0f - t) * a.escape + t * b.escape;
-    return a;
-}
-
-SHARED_FUNCTION CoatTransmission coat_smooth(float eta, float cos_o, float cos_i)
-{
-    CoatTransmission coat;
-    coat.t_o = 1.0f - fresnel_dielectric(cos_o, eta);
-    coat.t_i = 1.0f - fresnel_dielectric(cos_i, eta);
-    coat.escape = coat_smooth_escape(eta);
-    return coat;
+    uint rows = (uint)table[0];
+    __global const float *row = table + 1;
+    float t = 0.0f;
+    if (rows > 1u) {
+        float position = coat_row_position(rows, alpha_x, alpha_y, w);
+        uint r = (uint)position;
+        if (r > rows - 2u)
+            r = rows - 2u;
+        row += r * COAT_ROW;
+        t = position - (float)r;
+    }
+    *escape = row[COAT_CELLS];
+    float transmission = coat_row_transmission(row, w.z);
+    if (rows > 1u) {
+        row += COAT_ROW;
+        *escape = (1.0f - t) * *escape + t * row[COAT_CELLS];
+        transmission = (1.0f - t) * transmission + t * coat_row_transmission(row, w.z);
+    }
+    return transmission;
 }
 
 /* What the coat leaves of light that crosses it once, having `cosine` outside. */

@@ -35,7 +35,11 @@ typedef uint64_t ulong;
 #define __kernel static inline __attribute__((always_inline))
 #define __global
 #define __constant static const
+#ifdef PLATFORM_INLINE_ALL
+#define SHARED_FUNCTION static inline __attribute__((unused, always_inline))
+#else
 #define SHARED_FUNCTION static inline __attribute__((unused))
+#endif
 
 /* The item that a kernel works on. One copy per translation unit and thread; the thunks of kernel_list.h set it. */
 static _Thread_local uint platform_item __attribute__((unused));

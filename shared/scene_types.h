@@ -32,7 +32,8 @@
 #define FEATURE_INFINITE_LIGHT 0x40000u
 #define FEATURE_DELTA_LIGHT 0x80000u /* point, spot, distant */
 #define FEATURE_LENS 0x100000u /* a camera with a lens of non-zero radius */
-#define FEATURE_COUNT 21
+#define FEATURE_TANGENTS 0x200000u /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
+#define FEATURE_COUNT 22
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
 

@@ -92,6 +92,9 @@ SHARED_FUNCTION void surface_from_triangle(const SceneView *scene, const Shape *
     if (shape->flags & SHAPE_HAS_NORMALS)
         vertex_normal = triangle_vertex_normal(scene, shape, primitive, hit->u, hit->v);
     surface_normals_set(surface, triangle_normal(a, b, c), vertex_normal, shape->flags);
+    surface->dpdu = surface->dpdv = vec3_splat(0.0f);
+    if (!SCENE_HAS(scene, FEATURE_TANGENTS))
+        return;
     if (!triangle_tangents(scene, shape, primitive, surface))
         surface_tangents_from_normal(surface);
     if (shape->flags & SHAPE_HAS_NORMALS)

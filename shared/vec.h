@@ -103,8 +103,7 @@ SHARED_FUNCTION float vec3_length(Vec3 a)
 /* `a` must not be zero. */
 SHARED_FUNCTION Vec3 vec3_normalize(Vec3 a)
 {
-    float length = vec3_length(a);
-    return vec3(a.x / length, a.y / length, a.z / length);
+    return vec3_scale(a, 1.0f / vec3_length(a));
 }
 
 SHARED_FUNCTION Vec3 vec3_lerp(Vec3 a, Vec3 b, float t)

@@ -60,7 +60,8 @@ static Double3 double3_face(Double3 m)
 }
 
 /* Walter et al. 2007, eq. 20 and 14, with the sampling of visible normals. `index` is relative to wo's side. */
-static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, double ay, double complex index, bool choose)
+static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, double ay, double complex index,
+                                         bool choose)
 {
     Double3 m = double3_face((Double3){wo.x + wi.x, wo.y + wi.y, wo.z + wi.z});
     double fresnel = textbook_fresnel(fabs(dot3(wo, m)), index);
@@ -102,15 +103,15 @@ START_TEST(test_fresnel_dielectric)
             double exact = textbook_fresnel((double)c, (double)ETAS[e]);
             double critical = 1.0 - (1.0 - (double)c * (double)c) / ((double)ETAS[e] * (double)ETAS[e]);
             double tolerance = 2e-6 + 2e-6 / sqrt(fmax(fabs(critical), 1e-7)); /* dF/dc is infinite there */
-            ck_assert_double_lt(fabs((double)fresnel_dielectric(c, ETAS[e]) - exact), tolerance);
+            REQUIRE(fabs((double)fresnel_dielectric(c, ETAS[e]) - exact) < tolerance);
         }
     for (int n = 0; n <= 1000; ++n)
-        ck_assert(fresnel_dielectric((float)n / 1000.0f, 1.0f) == 0.0f);
-    ck_assert(fresnel_dielectric(0.0f, 1.5f) == 1.0f);
-    ck_assert(fresnel_dielectric(0.5f, 1.0f / 1.5f) == 1.0f); /* 60 degrees, beyond the critical 41.8 */
-    ck_assert_double_lt(fabs((double)fresnel_dielectric(1.0f, 1.5f) - 0.04), 1e-7);
+        REQUIRE(fresnel_dielectric((float)n / 1000.0f, 1.0f) == 0.0f);
+    REQUIRE(fresnel_dielectric(0.0f, 1.5f) == 1.0f);
+    REQUIRE(fresnel_dielectric(0.5f, 1.0f / 1.5f) == 1.0f); /* 60 degrees, beyond the critical 41.8 */
+    REQUIRE(fabs((double)fresnel_dielectric(1.0f, 1.5f) - 0.04) < 1e-7);
     double brewster = 1.0 / sqrt(1.0 + 1.5 * 1.5), s = (1.5 * 1.5 - 1.0) / (1.5 * 1.5 + 1.0);
-    ck_assert_double_lt(fabs((double)fresnel_dielectric((float)brewster, 1.5f) - 0.5 * s * s), 1e-6);
+    REQUIRE(fabs((double)fresnel_dielectric((float)brewster, 1.5f) - 0.5 * s * s) < 1e-6);
 }
 END_TEST
 
@@ -125,14 +126,14 @@ START_TEST(test_fresnel_conductor)
             double critical = 1.0 - (1.0 - (double)c * (double)c) / pow((double)ETA[m], 2.0);
             double tolerance = 4e-6 + (K[m] < 0.1f ? 4e-6 / sqrt(fmax(fabs(critical), 1e-7)) : 0.0);
             double value = (double)fresnel_conductor(c, ETA[m], K[m]);
-            ck_assert_msg(fabs(value - exact) < tolerance, "index %g + %g i, cos %g: %.9g instead of %.9g",
-                          (double)ETA[m], (double)K[m], (double)c, value, exact);
+            REQUIRE_MSG(fabs(value - exact) < tolerance, "index %g + %g i, cos %g: %.9g instead of %.9g",
+                        (double)ETA[m], (double)K[m], (double)c, value, exact);
         }
     for (int n = 0; n <= 100; ++n) { /* k = 0: a dielectric */
         float c = (float)n / 100.0f;
-        ck_assert_double_lt(fabs((double)(fresnel_conductor(c, 1.5f, 0.0f) - fresnel_dielectric(c, 1.5f))), 1e-6);
+        REQUIRE(fabs((double)(fresnel_conductor(c, 1.5f, 0.0f) - fresnel_dielectric(c, 1.5f))) < 1e-6);
     }
-    ck_assert(float_finite(fresnel_conductor(0.0f, 1.0f, 0.0f)) && float_finite(fresnel_conductor(1.0f, 0.0f, 0.0f)));
+    REQUIRE(float_finite(fresnel_conductor(0.0f, 1.0f, 0.0f)) && float_finite(fresnel_conductor(1.0f, 0.0f, 0.0f)));
 }
 END_TEST
 
@@ -142,21 +143,21 @@ START_TEST(test_conductor_reflectance)
     for (int n = 0; n <= 1000; ++n) {
         float r = (float)n / 1000.0f;
         Vec3 f = fresnel_conductor_reflectance(1.0f, vec3(r, 0.5f, 0.0f));
-        ck_assert_double_lt(fabs((double)f.x - fmin((double)r, 0.9999)), 2e-6);
-        ck_assert_double_lt(fabs((double)f.y - 0.5) + fabs((double)f.z), 2e-6);
+        REQUIRE(fabs((double)f.x - fmin((double)r, 0.9999)) < 2e-6);
+        REQUIRE(fabs((double)f.y - 0.5) + fabs((double)f.z) < 2e-6);
         double k = 2.0 * sqrt(0.5) / sqrt(1.0 - 0.5);
         double exact = textbook_fresnel((double)r, 1.0 + k * IMAGINARY);
-        ck_assert_double_lt(fabs((double)fresnel_conductor_reflectance(r, vec3_splat(0.5f)).x - exact), 4e-6);
+        REQUIRE(fabs((double)fresnel_conductor_reflectance(r, vec3_splat(0.5f)).x - exact) < 4e-6);
     }
 }
 END_TEST
 
 static void value_check(BsdfValue value, TextbookValue exact, double tolerance, const char *what)
 {
-    ck_assert_msg(fabs((double)value.f_cos.x - exact.f_cos) <= tolerance * exact.f_cos + 1e-12 &&
-                      fabs((double)value.pdf_w - exact.pdf_w) <= tolerance * exact.pdf_w + 1e-12,
-                  "%s: f cos %.9g, pdf %.9g instead of %.9g, %.9g", what, (double)value.f_cos.x, (double)value.pdf_w,
-                  exact.f_cos, exact.pdf_w);
+    REQUIRE_MSG(fabs((double)value.f_cos.x - exact.f_cos) <= tolerance * exact.f_cos + 1e-12 &&
+                    fabs((double)value.pdf_w - exact.pdf_w) <= tolerance * exact.pdf_w + 1e-12,
+                "%s: f cos %.9g, pdf %.9g instead of %.9g, %.9g", what, (double)value.f_cos.x, (double)value.pdf_w,
+                exact.f_cos, exact.pdf_w);
 }
 
 /* A direction in the lobe (by a sample), so that narrow lobes are compared where they have a value. */
@@ -216,12 +217,12 @@ START_TEST(test_thin_dielectric)
         for (int k = 0; k < 20000 && term > 1e-12; ++k, term *= r * r)
             sum += term;
         BsdfSample sample;
-        ck_assert(bsdf_sample(&scene.view, &bsdf, wo, 0.0f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &sample));
-        ck_assert(!sample.transmitted && sample.delta);
-        ck_assert_double_lt(fabs((double)sample.pdf_w - sum), 1e-5);
-        ck_assert(bsdf_sample(&scene.view, &bsdf, wo, 0.9999999f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &sample));
-        ck_assert(sample.transmitted && sample.wi.x == -wo.x && sample.wi.z == -wo.z && sample.eta == 1.0f);
-        ck_assert_double_lt(fabs((double)sample.pdf_w - (1.0 - sum)), 1e-5);
+        REQUIRE(bsdf_sample(&scene.view, &bsdf, wo, 0.0f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &sample));
+        REQUIRE(!sample.transmitted && sample.delta);
+        REQUIRE(fabs((double)sample.pdf_w - sum) < 1e-5);
+        REQUIRE(bsdf_sample(&scene.view, &bsdf, wo, 0.9999999f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &sample));
+        REQUIRE(sample.transmitted && sample.wi.x == -wo.x && sample.wi.z == -wo.z && sample.eta == 1.0f);
+        REQUIRE(fabs((double)sample.pdf_w - (1.0 - sum)) < 1e-5);
     }
     test_scene_destroy(&scene);
 }

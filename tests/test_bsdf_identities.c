@@ -54,12 +54,12 @@ START_TEST(test_weight_is_value_over_density)
             continue;
         BsdfValue value = bsdf_eval(&scene.view, bsdf, wo, sample.wi, transport);
         float weight = value.f_cos.y / value.pdf_w;
-        ck_assert(value.pdf_w == sample.pdf_w);
-        ck_assert(value.pdf_rev_w == sample.pdf_rev_w);
-        ck_assert_msg(near_float(weight, sample.weight.y, 1e-5f), "kind %u: weight %.9g, f cos / pdf %.9g", bsdf->kind,
-                      (double)sample.weight.y, (double)weight);
-        ck_assert_uint_eq(sample.transmitted, sample.wi.z * wo.z < 0.0f);
-        ck_assert_double_lt(fabs((double)vec3_length(sample.wi) - 1.0), 1e-6);
+        REQUIRE(value.pdf_w == sample.pdf_w);
+        REQUIRE(value.pdf_rev_w == sample.pdf_rev_w);
+        REQUIRE_MSG(near_float(weight, sample.weight.y, 1e-5f), "kind %u: weight %.9g, f cos / pdf %.9g", bsdf->kind,
+                    (double)sample.weight.y, (double)weight);
+        REQUIRE(sample.transmitted == (sample.wi.z * wo.z < 0.0f));
+        REQUIRE(fabs((double)vec3_length(sample.wi) - 1.0) < 1e-6);
         ++compared;
     }
     ck_assert_int_gt(compared, PAIRS / 3);
@@ -90,11 +90,11 @@ static void pair_check(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 w
     float graze = fminf(fabsf(vec3_dot(wo, half)), fabsf(vec3_dot(wi, half))) / h;
     float alpha = fminf(bsdf->alpha_x, bsdf->alpha_y);
     float tolerance = 2e-5f + ((bsdf->flags & BSDF_ROUGH) != 0u ? 3e-6f / (h * fminf(alpha, graze)) : 0.0f);
-    ck_assert_msg(near_float(f_a * eta * eta, f_b, tolerance), "kind %u, alpha %g, eta %g: %.9g and %.9g, |h| = %g",
-                  bsdf->kind, (double)alpha, (double)bsdf->eta, (double)(f_a * eta * eta), (double)f_b, (double)h);
-    ck_assert(near_float(a.pdf_rev_w, b.pdf_w, tolerance) && near_float(a.pdf_w, b.pdf_rev_w, tolerance));
-    ck_assert(near_float(adjoint.f_cos.x, a.f_cos.x * eta * eta, 1e-5f));
-    ck_assert(adjoint.pdf_w == a.pdf_w && adjoint.pdf_rev_w == a.pdf_rev_w);
+    REQUIRE_MSG(near_float(f_a * eta * eta, f_b, tolerance), "kind %u, alpha %g, eta %g: %.9g and %.9g, |h| = %g",
+                bsdf->kind, (double)alpha, (double)bsdf->eta, (double)(f_a * eta * eta), (double)f_b, (double)h);
+    REQUIRE(near_float(a.pdf_rev_w, b.pdf_w, tolerance) && near_float(a.pdf_w, b.pdf_rev_w, tolerance));
+    REQUIRE(near_float(adjoint.f_cos.x, a.f_cos.x * eta * eta, 1e-5f));
+    REQUIRE(adjoint.pdf_w == a.pdf_w && adjoint.pdf_rev_w == a.pdf_rev_w);
 }
 
 START_TEST(test_reciprocity)
@@ -135,16 +135,16 @@ START_TEST(test_smooth_refraction)
             continue;
         ++refracted;
         float eta = wo.z > 0.0f ? 1.5f : 1.0f / 1.5f;
-        ck_assert(forth.eta == eta);
-        ck_assert(near_float(forth.weight.x, 1.0f / (eta * eta), 1e-6f));
-        ck_assert(bsdf_sample(&scene.view, &bsdf, forth.wi, 0.99999f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &back));
-        ck_assert(bsdf_sample(&scene.view, &bsdf, wo, 0.99999f, vec2(0.5f, 0.5f), TRANSPORT_IMPORTANCE, &importance));
-        ck_assert(importance.weight.x == 1.0f);
-        ck_assert(near_float(back.eta, 1.0f / eta, 1e-6f));
-        ck_assert_double_lt((double)vec3_length(vec3_sub(back.wi, wo)), 1e-3); /* sqrt(ulp) where wo or wi is grazing */
-        ck_assert_double_lt(fabs((double)(back.pdf_w - forth.pdf_rev_w)), 4e-3);
+        REQUIRE(forth.eta == eta);
+        REQUIRE(near_float(forth.weight.x, 1.0f / (eta * eta), 1e-6f));
+        REQUIRE(bsdf_sample(&scene.view, &bsdf, forth.wi, 0.99999f, vec2(0.5f, 0.5f), TRANSPORT_RADIANCE, &back));
+        REQUIRE(bsdf_sample(&scene.view, &bsdf, wo, 0.99999f, vec2(0.5f, 0.5f), TRANSPORT_IMPORTANCE, &importance));
+        REQUIRE(importance.weight.x == 1.0f);
+        REQUIRE(near_float(back.eta, 1.0f / eta, 1e-6f));
+        REQUIRE((double)vec3_length(vec3_sub(back.wi, wo)) < 1e-3); /* sqrt(ulp) where wo or wi is grazing */
+        REQUIRE(fabs((double)(back.pdf_w - forth.pdf_rev_w)) < 4e-3);
         /* Snell: sin(theta_o) = eta sin(theta_i), in the same plane. */
-        ck_assert_double_lt(fabs((double)(wo.x + eta * forth.wi.x)) + fabs((double)(wo.y + eta * forth.wi.y)), 1e-6);
+        REQUIRE(fabs((double)(wo.x + eta * forth.wi.x)) + fabs((double)(wo.y + eta * forth.wi.y)) < 1e-6);
     }
     ck_assert_int_gt(refracted, 5000);
     test_scene_destroy(&scene);
@@ -174,7 +174,7 @@ START_TEST(test_extreme_inputs)
     test_scene_init(&scene);
     uint32_t range;
     Error error;
-    ck_assert(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
+    REQUIRE(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
     scene.view.lookup = scene.lookup.data;
     TestRandom random = {4};
     double largest_weight = 0.0;
@@ -194,26 +194,24 @@ START_TEST(test_extreme_inputs)
         if (n & 32)
             wi = n & 64 ? vec3_negate(wo) : vec3(-wo.x, -wo.y, wo.z);
         BsdfValue value = bsdf_eval(&scene.view, &bsdf, wo, wi, (uint)n & 1u);
-        ck_assert_msg(sane(value.f_cos) && sane(vec3(value.pdf_w, value.pdf_rev_w, 0.0f)),
-                      "kind %u alpha %g %g eta %g: f %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x,
-                      (double)bsdf.alpha_y, (double)bsdf.eta, (double)value.f_cos.x, (double)value.pdf_w,
-                      (double)value.pdf_rev_w);
+        REQUIRE_MSG(sane(value.f_cos) && sane(vec3(value.pdf_w, value.pdf_rev_w, 0.0f)),
+                    "kind %u alpha %g %g eta %g: f %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x, (double)bsdf.alpha_y,
+                    (double)bsdf.eta, (double)value.f_cos.x, (double)value.pdf_w, (double)value.pdf_rev_w);
         BsdfSample sample;
         float u_lobe = extreme(&random, NUMBERS, 5), u = extreme(&random, NUMBERS, 5);
         Vec2 u2 = vec2(u < 1.0f ? u : 0.5f, random_float24(&random));
         if (!bsdf_sample(&scene.view, &bsdf, wo, u_lobe < 1.0f ? u_lobe : 0.5f, u2, TRANSPORT_IMPORTANCE, &sample))
             continue;
-        ck_assert_msg(sane(sample.weight) && sane(vec3(sample.pdf_w, sample.pdf_rev_w, sample.eta)) &&
-                          sample.pdf_w > 0.0f && vec3_finite(sample.wi) &&
-                          fabs((double)vec3_length(sample.wi) - 1.0) < 1e-5,
-                      "kind %u alpha %g %g eta %g: weight %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x,
-                      (double)bsdf.alpha_y, (double)bsdf.eta, (double)sample.weight.x, (double)sample.pdf_w,
-                      (double)sample.pdf_rev_w);
+        REQUIRE_MSG(
+            sane(sample.weight) && sane(vec3(sample.pdf_w, sample.pdf_rev_w, sample.eta)) && sample.pdf_w > 0.0f &&
+                vec3_finite(sample.wi) && fabs((double)vec3_length(sample.wi) - 1.0) < 1e-5,
+            "kind %u alpha %g %g eta %g: weight %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x, (double)bsdf.alpha_y,
+            (double)bsdf.eta, (double)sample.weight.x, (double)sample.pdf_w, (double)sample.pdf_rev_w);
         if (bsdf.eta >= 0.5f) /* below, a coat lets light out in a narrow cone that is not sampled as such */
             largest_weight = fmax(largest_weight, (double)vec3_max_component(sample.weight));
     }
     printf("# largest weight of a sample of importance: %.3g\n", largest_weight);
-    ck_assert_double_lt(largest_weight, 20.0);
+    REQUIRE(largest_weight < 20.0);
     test_scene_destroy(&scene);
 }
 END_TEST

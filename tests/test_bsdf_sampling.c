@@ -32,7 +32,8 @@ static Vec3 grid_direction(const LobeGrid *grid, double a, double b, double side
     double t = sinh(grid->z_low + a * grid->z_range), p = sinh((2.0 * b - 1.0) * grid->phi_range);
     double z = fmin(fmax(grid->z0 + grid->z_scale * t, 0.0), 1.0), phi = grid->phi0 + grid->phi_scale * p;
     double sine = sqrt((1.0 - z) * (1.0 + z));
-    *jacobian = grid->z_scale * grid->z_range * sqrt(1.0 + t * t) * grid->phi_scale * 2.0 * grid->phi_range * sqrt(1.0 + p * p);
+    *jacobian =
+        grid->z_scale * grid->z_range * sqrt(1.0 + t * t) * grid->phi_scale * 2.0 * grid->phi_range * sqrt(1.0 + p * p);
     return vec3((float)(sine * cos(phi)), (float)(sine * sin(phi)), (float)(side * z));
 }
 
@@ -121,7 +122,8 @@ static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral
     *integral = 0.0;
     for (int s = 0; s < 2; ++s)
         for (int c = 0; c < CELLS * CELLS; ++c) {
-            double part = lobe_integrate(lobe, s, (double)(c / CELLS) / CELLS, (double)(c % CELLS) / CELLS, 1.0 / CELLS, 7);
+            double part =
+                lobe_integrate(lobe, s, (double)(c / CELLS) / CELLS, (double)(c % CELLS) / CELLS, 1.0 / CELLS, 7);
             expected[s * CELLS * CELLS + c] = part * SAMPLES;
             *integral += part;
         }
@@ -155,19 +157,19 @@ START_TEST(test_samples_follow_density)
     double least = 1.0;
     const struct SamplingKind *kind = &KINDS[_i];
     for (int a = kind->alphas > 1; a < kind->alphas; ++a) {
-        Bsdf bsdf = test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0,
-                              kind->color1);
+        Bsdf bsdf =
+            test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0, kind->color1);
         for (int d = 0; d < TEST_WO_COUNT; ++d, ++cases) {
             LobeCase lobe = lobe_make(&scene, bsdf, test_wo(d));
             double integral, succeeded;
             double p = lobe_p_value(&lobe, (uint64_t)(1000 * _i + 10 * a + d), &integral, &succeeded);
             double deviation = sqrt(succeeded * (1.0 - succeeded) / SAMPLES);
             least = fmin(least, p);
-            ck_assert_msg(p > 1.0 - pow(1.0 - 1e-3, 1.0 / TOTAL_CASES), "%s, alpha %g %g, direction %d: p = %g",
-                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
-            ck_assert_msg(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
-                          "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
-                          kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
+            REQUIRE_MSG(p > 1.0 - pow(1.0 - 1e-3, 1.0 / TOTAL_CASES), "%s, alpha %g %g, direction %d: p = %g",
+                        kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, p);
+            REQUIRE_MSG(fabs(integral - succeeded) < 5.0 * deviation + 1e-3 && integral < 1.0 + 1e-3,
+                        "%s, alpha %g %g, direction %d: the density integrates to %g, %g of the samples succeed",
+                        kind->name, (double)bsdf.alpha_x, (double)bsdf.alpha_y, d, integral, succeeded);
         }
     }
     printf("# %s: %d chi-square tests, least p = %.3g\n", kind->name, cases, least);
@@ -195,14 +197,14 @@ START_TEST(test_delta_lobes_follow_probability)
                     sample.delta) {
                     count[sample.transmitted] += 1.0;
                     probability[sample.transmitted] = (double)sample.pdf_w;
-                    ck_assert(sample.pdf_rev_w == sample.pdf_w);
+                    REQUIRE(sample.pdf_rev_w == sample.pdf_w);
                     BsdfValue value = bsdf_eval(&scene.view, &bsdf, test_wo(d), sample.wi, TRANSPORT_RADIANCE);
-                    ck_assert(DELTA_KINDS[k] == MATERIAL_COATED_DIFFUSE || value.pdf_w == 0.0f);
+                    REQUIRE(DELTA_KINDS[k] == MATERIAL_COATED_DIFFUSE || value.pdf_w == 0.0f);
                 }
             }
             for (int s = 0; s < 2; ++s) {
                 double deviation = sqrt(probability[s] * (1.0 - fmin(probability[s], 1.0)) / SAMPLES);
-                ck_assert_double_lt(fabs(count[s] / SAMPLES - probability[s]), 5.0 * deviation + 1e-6);
+                REQUIRE(fabs(count[s] / SAMPLES - probability[s]) < 5.0 * deviation + 1e-6);
             }
         }
     test_scene_destroy(&scene);

@@ -197,7 +197,7 @@ START_TEST(test_spectrum_file)
     }
     test_file_write(test_path("bad.spd"), bad[1], strlen(bad[1]));
     color_spectrum_file(test_path("bad.spd"), COLOR_REFLECTANCE, rgb, &error);
-    ck_assert_ptr_nonnull(strstr(error.message, "bad.spd:2:5: error: expected a number"));
+    ck_assert_ptr_nonnull(strstr(error.message, "bad.spd:2:5: error: expected a number, not \"x\""));
     ck_assert(!color_spectrum_file(test_path("none.spd"), COLOR_REFLECTANCE, rgb, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "none.spd: No such file"));
 }

@@ -5,6 +5,7 @@
 #include "exr.h"
 #include "image.h"
 
+#include <ImfCRgbaFile.h>
 #include <openexr.h>
 #include <stb_image_write.h>
 #include <stdint.h>
@@ -212,6 +213,36 @@ START_TEST(test_exr_kinds)
 }
 END_TEST
 
+/* DWA goes another way than the rest. */
+static void dwa_make(const char *path, int compression, int channels)
+{
+    static ImfRgba pixels[WIDTH * HEIGHT];
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+        ImfHalf *halves[] = {&pixels[i].r, &pixels[i].g, &pixels[i].b, &pixels[i].a};
+        for (int c = 0; c < 4; ++c)
+            ImfFloatToHalf(smooth(i % WIDTH, i / WIDTH, c), halves[c]);
+    }
+    ImfHeader *header = ImfNewHeader();
+    ImfHeaderSetDataWindow(header, -7, 5, WIDTH - 8, HEIGHT + 4);
+    ImfHeaderSetDisplayWindow(header, -7, 5, WIDTH - 8, HEIGHT + 4);
+    ImfHeaderSetCompression(header, compression);
+    ImfOutputFile *file = ImfOpenOutputFile(path, header, channels);
+    ck_assert_msg(file != NULL, "%s", ImfErrorMessage());
+    ImfOutputSetFrameBuffer(file, (ImfRgba *)((intptr_t)pixels - (5 * WIDTH - 7) * (intptr_t)sizeof *pixels), 1, WIDTH);
+    ck_assert(ImfOutputWritePixels(file, HEIGHT));
+    ImfCloseOutputFile(file);
+    ImfDeleteHeader(header);
+}
+
+START_TEST(test_exr_dwa)
+{
+    dwa_make(test_path("a.exr"), IMF_DWAA_COMPRESSION, IMF_WRITE_RGB);
+    image_check(test_path("a.exr"), 3, true, 0.02);
+    dwa_make(test_path("b.exr"), IMF_DWAB_COMPRESSION, IMF_WRITE_RGBA);
+    image_check(test_path("b.exr"), 4, true, 0.02);
+}
+END_TEST
+
 START_TEST(test_exr_channels)
 {
     const float grey[] = {0.25f, 0.5f};
@@ -253,10 +284,11 @@ static void samples_write(void)
     pfm_make(test_path("a.pfm"), 3, true, 1.0f);
     ck_assert_int_eq(exr_make(test_path("a.exr"), &scanlines), EXR_ERR_SUCCESS);
     ck_assert_int_eq(exr_make(test_path("b.exr"), &tiles), EXR_ERR_SUCCESS);
+    dwa_make(test_path("c.exr"), IMF_DWAA_COMPRESSION, IMF_WRITE_RGB);
 }
 
-static const char *const SAMPLES[] = {"a.png", "a.tga", "a.jpg", "a.hdr", "a.pfm", "a.exr", "b.exr"};
-#define SAMPLE_COUNT 7
+static const char *const SAMPLES[] = {"a.png", "a.tga", "a.jpg", "a.hdr", "a.pfm", "a.exr", "b.exr", "c.exr"};
+#define SAMPLE_COUNT 8
 
 static const char *damaged_path(const char *sample)
 {
@@ -365,6 +397,7 @@ TCase *texture_files_tcase(void)
     tcase_add_test(tcase, test_byte_formats);
     tcase_add_test(tcase, test_float_formats);
     tcase_add_test(tcase, test_exr_kinds);
+    tcase_add_test(tcase, test_exr_dwa);
     tcase_add_test(tcase, test_exr_channels);
     tcase_add_loop_test(tcase, test_truncated, 0, SAMPLE_COUNT);
     tcase_add_loop_test(tcase, test_damaged, 0, SAMPLE_COUNT);
