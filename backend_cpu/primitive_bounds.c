@@ -2,7 +2,9 @@
 
 #include "ray.h"
 
-/* Slab test: 2 products, a difference and a reciprocal of up to 2 units each; primitive test: see triangle_shear. */
+/* Traversal: a product, a difference and a reciprocal, each off by half a unit to one; primitive test: the shear, by
+ * two units. That 4 suffices is measured: test_geometry_rays.c finds no difference to brute force, nor do 1.2 million
+ * rays in a mesh of 1.28 million triangles under two groupings of the triangles. */
 #define MARGIN_ULPS 4.0f
 
 Box box_empty(void)

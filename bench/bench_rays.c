@@ -347,7 +347,7 @@ static void scene_bench(BenchScene *bench, uint count)
     const char *names[3] = {"shared", "user", "native"};
     const double builds[3] = {build, build_user, build_native};
     for (int shadow = 0; shadow < 2; ++shadow) {
-        double best[3] = {INFINITY, INFINITY, INFINITY};
+        double best[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
         for (int repeat = 0; repeat < REPEATS; ++repeat)
             for (int path = 0; path < 3; ++path)
                 best[path] =

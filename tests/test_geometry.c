@@ -4,6 +4,9 @@
 
 #include <string.h>
 
+/* References are computed in long double from floats, on purpose and everywhere. */
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 /* A point of a triangle of the mesh that is as hard as can be: exactly a corner, or on an edge up to rounding. */
 static Vec3 mesh_hard_point(const TestMesh *mesh, TestRandom *random, bool corner)
 {

@@ -4,6 +4,9 @@
 
 #include <string.h>
 
+/* References are computed in long double from floats, on purpose and everywhere. */
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 typedef struct Exact3 {
     long double x, y, z;
 } Exact3;

@@ -104,6 +104,41 @@ START_TEST(test_same_bits_huge)
 }
 END_TEST
 
+/* Rays from a camera far outside, whose rounding is larger than the scene's; the silhouette is hit and missed. */
+START_TEST(test_same_bits_far_camera)
+{
+    static const float distances[] = {10.0f, 300.0f, 1e4f};
+    for (uint k = 0; k < 3; ++k) {
+        TestRandom random = {.seed = 115 + k};
+        TestScene test;
+        TestMesh mesh = mesh_star(9, 11, 0.3f, 11 + k);
+        uint differ = 0, met = 0;
+        test_scene_init(&test);
+        test.scene.camera_settings.world_from_camera[3] = (double)distances[k];
+        test_scene_mesh(&test, &mesh, 0);
+        test_scene_finish(&test);
+        ck_assert(test.scene.frame.ray_epsilon_scale == distances[k]);
+        RaysEmbree *rays = rays_open(&test);
+        for (uint i = 0; i < 60000; ++i) {
+            Vec3 target = vec3_scale(random_direction(&random), 1.0f + 0.2f * random_unit(&random));
+            Vec3 o = vec3_scale(random_direction(&random), 0.99f * distances[k]);
+            if (i % 3 == 0)
+                target = mesh.positions[random_below(&random, (uint)mesh.vertex_count)];
+            Ray ray = {o, vec3_normalize(vec3_sub(target, o)), FLOAT_MAX};
+            Hit a = rays_embree_closest(rays, &ray), b = brute_force(&test, &ray);
+            differ += !hit_same(&a, &b);
+            met += b.primitive != NONE;
+        }
+        rays_embree_destroy(rays);
+        test_scene_destroy(&test);
+        mesh_destroy(&mesh);
+        ck_assert_msg(differ == 0, "camera at %g: %u differ", (double)distances[k], differ);
+        ck_assert_uint_gt(met, 20000);
+        ck_assert_uint_lt(met, 59000);
+    }
+}
+END_TEST
+
 /* Two equal quads: the smaller number wins, in whichever order they come. */
 START_TEST(test_tie_by_id)
 {
@@ -329,6 +364,7 @@ TCase *geometry_rays_tcase(void)
     tcase_add_test(tcase, test_same_bits_coplanar);
     tcase_add_test(tcase, test_same_bits_far);
     tcase_add_test(tcase, test_same_bits_huge);
+    tcase_add_test(tcase, test_same_bits_far_camera);
     tcase_add_test(tcase, test_tie_by_id);
     tcase_add_test(tcase, test_same_bits_instances);
     tcase_add_test(tcase, test_instance_equals_baked);
