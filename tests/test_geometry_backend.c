@@ -61,7 +61,7 @@ static void collect(void *context, const uint *splats, uint count, uint stride)
 /* Runs items [first, end) on `threads` threads. */
 static void walk_run(const TestScene *test, int threads, uint first, uint end, Collector *collector)
 {
-    static const volatile int never = 0;
+    static const atomic_int never = 0;
     Error error = {0};
     const BackendInterface *interface = backend_cpu();
     BackendOptions options = {.threads = threads};
@@ -120,7 +120,7 @@ END_TEST
 START_TEST(test_stop)
 {
     static Collector collector;
-    static const volatile int stopped = 1, never = 0;
+    static const atomic_int stopped = 1, never = 0;
     Error error = {0};
     TestScene test;
     BackendOptions options = {.threads = 2};
@@ -149,7 +149,7 @@ END_TEST
 START_TEST(test_diagnostics)
 {
     static Collector collector;
-    static const volatile int never = 0;
+    static const atomic_int never = 0;
     static const Step steps[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},
                                  {.kind = STEP_KERNEL, .kernel = KERNEL_walk_splat}};
     Error error = {0};
@@ -199,7 +199,7 @@ static void denormal_sink(void *context, const uint *splats, uint count, uint st
 
 START_TEST(test_denormals_kept)
 {
-    static const volatile int never = 0;
+    static const atomic_int never = 0;
     Error error = {0};
     TestScene test;
     DenormalSum sum = {.chunks = 0};
