@@ -264,6 +264,18 @@ static bool emission_read(PbrtImport *im, ShapeContext *context)
     return true;
 }
 
+/* pbrt takes an area light of alpha 0 for a light that nobody sees. */
+static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const ShapeContext *context)
+{
+    if (!context->emits || context->shape.alpha == NONE)
+        return true;
+    const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
+    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f)
+        return true;
+    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)",
+                              "it does not shine either", "use a point light");
+}
+
 static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
 {
     *context = (ShapeContext){.place = im->place};
@@ -275,7 +287,8 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
     context->shape.flags =
         (reverse ? SHAPE_REVERSE : 0u) | (reverse != matrix_swaps_handedness(&context->ctm) ? SHAPE_FLIP_NORMAL : 0u);
     context->shape.first_light = NONE;
-    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context);
+    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context) &&
+           alpha_emission_check(im, list, context);
 }
 
 static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
