@@ -79,7 +79,8 @@ static void scene_star(BenchScene *bench, uint rings, uint sectors, float rough)
 
 static void add_box(BenchScene *bench, Vec3 low, Vec3 high)
 {
-    static const uint faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    static const uint faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
     uint first = bench->vertex_count;
     for (uint k = 0; k < 8; ++k)
         bench->positions[bench->vertex_count++] =
@@ -285,7 +286,8 @@ static void trace_closest_bare(RTCScene scene, const uint *words, uint *hits)
     struct RTCIntersectContext context;
     for (uint t = 0; t < STRIDE; ++t) {
         rtcInitIntersectContext(&context);
-        struct RTCRayHit rayhit = {.ray = embree_ray(ray_load(words, STRIDE, t)), .hit.geomID = RTC_INVALID_GEOMETRY_ID};
+        struct RTCRayHit rayhit = {.ray = embree_ray(ray_load(words, STRIDE, t)),
+                                   .hit.geomID = RTC_INVALID_GEOMETRY_ID};
         rtcIntersect1(scene, &context, &rayhit);
         Hit hit = {rayhit.ray.tfar, rayhit.hit.primID, NONE, rayhit.hit.u, rayhit.hit.v};
         if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID)
@@ -348,8 +350,8 @@ static void scene_bench(BenchScene *bench, uint count)
         double best[3] = {INFINITY, INFINITY, INFINITY};
         for (int repeat = 0; repeat < REPEATS; ++repeat)
             for (int path = 0; path < 3; ++path)
-                best[path] = fmin(best[path], set_trace(&set, path == 0 ? rays : NULL,
-                                                        path == 1 ? user : native, shadow != 0));
+                best[path] =
+                    fmin(best[path], set_trace(&set, path == 0 ? rays : NULL, path == 1 ? user : native, shadow != 0));
         for (int path = 0; path < 3; ++path)
             printf("%s\t%u\t%s\t%s\t%.3f\t%.3f\t%.3f\n", bench->name, bench->triangle_count,
                    shadow ? "shadow" : "closest", names[path], 1e-6 * set.count / best[path], best[path] / best[1],

@@ -7,9 +7,13 @@
 
 #include "primitive.h"
 
-/* Unit vector along a, which may be so short or long that its squared length is no float; zero gives `otherwise`. */
+/* Unit vector along a; zero or not finite gives `otherwise`. a may be so short or long that its squared length is no
+ * normal float. */
 SHARED_FUNCTION Vec3 vec3_direction(Vec3 a, Vec3 otherwise)
 {
+    float square = vec3_length_squared(a);
+    if (square > 1e-30f && square < 1e30f)
+        return vec3_scale(a, 1.0f / float_sqrt(square));
     float size = vec3_max_abs(a);
     if (!(size > 0.0f && size <= FLOAT_MAX))
         return otherwise;
@@ -41,13 +45,15 @@ SHARED_FUNCTION void surface_tangents_around_ns(Surface *surface)
     surface->dpdv = across;
 }
 
-/* Both normals, given the unnormalised geometric one and the interpolated vertex normal (zero: none). */
+/* Both normals, given the unnormalised geometric one and the interpolated vertex normal (used by SHAPE_HAS_NORMALS). */
 SHARED_FUNCTION void surface_normals_set(Surface *surface, Vec3 normal, Vec3 vertex_normal, uint flags)
 {
     Vec3 ng = vec3_direction(normal, vec3(0.0f, 0.0f, 1.0f));
-    surface->ng = (flags & SHAPE_FLIP_NORMAL) ? vec3_negate(ng) : ng;
-    surface->ns = vec3_direction(vertex_normal, surface->ng);
-    surface->ng = vec3_face_forward(surface->ng, surface->ns);
+    surface->ng = surface->ns = (flags & SHAPE_FLIP_NORMAL) ? vec3_negate(ng) : ng;
+    if (flags & SHAPE_HAS_NORMALS) {
+        surface->ns = vec3_direction(vertex_normal, surface->ng);
+        surface->ng = vec3_face_forward(surface->ng, surface->ns);
+    }
 }
 
 /* ---- triangles ------------------------------------------------------------------------------------------------- */

@@ -188,6 +188,7 @@ void test_scene_finish(TestScene *test)
     Error error = {0};
     Scene *scene = &test->scene;
     ck_assert_msg(scene_finish(scene, &error), "%s", error.message);
+    scene->frame.features |= FEATURE_TANGENTS; /* no material here asks for them, but the tests do */
     test->backend = (BackendScene){.frame = &scene->frame,
                                    .geometry = scene->geometry_words.data,
                                    .geometry_words = scene->geometry_words.count,

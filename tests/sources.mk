@@ -1,6 +1,7 @@
 # One Check program per area; each lists every unit of the area that can be wrong.
 TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
-TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+# Check prints floats as doubles.
+TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 
 if HAVE_CHECK
 check_PROGRAMS += \
