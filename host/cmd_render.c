@@ -97,7 +97,8 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->integrator = command->integrator;
     output->seed = command->seed;
     output->max_depth = job->scene.settings.max_depth;
-    return render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
+    return render_output_distinct(output, command->stats, error) && render_output_check(output->exr, error) &&
+           (!output->png[0] || render_output_check(output->png, error)) &&
            (!command->stats || render_output_check(command->stats, error));
 }
 

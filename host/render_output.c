@@ -60,6 +60,36 @@ bool render_output_check(const char *path, Error *error)
     return writable;
 }
 
+/* Whether two names lead to one file: the same file on disk, or the same name of one that is not there yet. */
+static bool path_same(const char *a, const char *b)
+{
+    struct stat status_a, status_b;
+    if (stat(a, &status_a) == 0 && stat(b, &status_b) == 0)
+        return S_ISREG(status_a.st_mode) && status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+    while (strncmp(a, "./", 2) == 0)
+        a += 2;
+    while (strncmp(b, "./", 2) == 0)
+        b += 2;
+    return strcmp(a, b) == 0;
+}
+
+bool render_output_distinct(const RenderOutput *output, const char *stats, Error *error)
+{
+    const struct {
+        const char *what, *path;
+    } files[] = {{"the scene", output->scene_file},
+                 {"the image", output->exr},
+                 {"the PNG", output->png[0] ? output->png : NULL},
+                 {"the statistics", stats}};
+    for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
+        for (size_t j = 0; j < i; ++j)
+            if (files[i].path && files[j].path && path_same(files[i].path, files[j].path)) {
+                error_set(error, "%s would overwrite %s: %s", files[i].what, files[j].what, files[i].path);
+                return error_fix(error, "give each its own name, with --output, --png and --stats");
+            }
+    return true;
+}
+
 static bool exr_output_write(const RenderOutput *output, const Film *film, const float *rgb, double samples_per_pixel,
                              Error *error)
 {

@@ -105,6 +105,14 @@ expect 1 'missing.pbrt' render missing.pbrt
 expect 1 'missing.pbrt' info missing.pbrt
 expect 1 'nowhere/image.exr' render -o nowhere/image.exr "$scene"
 expect 1 'nowhere/stats.json' render --stats=nowhere/stats.json "$scene"
+cp "$scene" scene.exr
+expect 1 'the image would overwrite the scene: scene.exr' render -o scene.exr scene.exr
+expect 1 'the statistics would overwrite the image: ./new.exr' render --stats=./new.exr -o new.exr "$scene"
+expect 1 'the statistics would overwrite the scene: scene.exr' render --stats=scene.exr scene.exr
+cmp -s scene.exr "$scene"
+result 'the scene was overwritten' $?
+file_missing new.exr
+rm -f scene.exr
 mkdir folder.exr
 expect 1 'it is a folder' render -o folder.exr "$scene"
 if [ "$(id -u)" -ne 0 ]; then
