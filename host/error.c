@@ -5,6 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
+void text_make_printable(char *text)
+{
+    for (; *text; ++text)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+}
+
 static void place_print(char *out, size_t size, SourcePlace place)
 {
     if (!place.file)
@@ -24,6 +31,7 @@ static bool error_fill(Error *error, SourcePlace place, const char *format, va_l
     int used = snprintf(error->message, sizeof error->message, "%serror: ", where);
     if (used >= 0 && (size_t)used < sizeof error->message)
         vsnprintf(error->message + used, sizeof error->message - (size_t)used, format, arguments);
+    text_make_printable(error->message);
     error->fix[0] = '\0';
     return false;
 }
@@ -64,6 +72,7 @@ bool error_fix(Error *error, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(error->fix, sizeof error->fix, format, arguments);
     va_end(arguments);
+    text_make_printable(error->fix);
     return false;
 }
 

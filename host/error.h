@@ -17,6 +17,9 @@ typedef struct Error {
     char fix[512]; /* "use diffuse, conductor, dielectric ...", may be empty */
 } Error;
 
+/* Replaces control characters by '?': what a file holds must not steer the terminal, nor break a message in two. */
+void text_make_printable(char *text);
+
 /* Fills `error` with "error: MESSAGE" without a place. Returns false, so that callers can `return error_set(...)`. */
 bool error_set(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

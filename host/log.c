@@ -40,6 +40,7 @@ static void log_write(LogLevel level, const char *where, const char *text)
 {
     char line[2048];
     snprintf(line, sizeof line, "%s%s: %s", where, LEVEL_NAMES[level], text);
+    text_make_printable(line);
     pthread_mutex_lock(&log_mutex);
     if (level == LOG_WARNING)
         ++log_warnings;
