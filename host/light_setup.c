@@ -1,6 +1,6 @@
 #include "light_setup.h"
 
-#include "distribution.h"
+#include "distribution_build.h"
 #include "log.h"
 #include "texture.h"
 

@@ -1,5 +1,6 @@
 #include "matrix.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -150,6 +151,14 @@ bool matrix_finite(const Matrix *matrix)
 {
     for (int i = 0; i < 16; ++i)
         if (!isfinite(matrix->m[i]))
+            return false;
+    return true;
+}
+
+bool matrix_fits_float(const Matrix *matrix)
+{
+    for (int i = 0; i < 16; ++i)
+        if (!(fabs(matrix->m[i]) <= (double)FLT_MAX))
             return false;
     return true;
 }

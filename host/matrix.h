@@ -26,6 +26,10 @@ Matrix matrix_multiply(const Matrix *a, const Matrix *b);
 bool matrix_inverse(const Matrix *matrix, Matrix *out);
 
 bool matrix_finite(const Matrix *matrix);
+
+/* Every element fits a float. */
+bool matrix_fits_float(const Matrix *matrix);
+
 bool matrix_equal(const Matrix *a, const Matrix *b);
 
 /* Determinant of the upper left 3x3 part is negative: left- and right-handed change places. */

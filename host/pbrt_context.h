@@ -17,6 +17,7 @@
 #define IMPORT_ATTRIBUTES_MAX 1024 /* Attribute directives in force at once */
 #define IMPORT_LIGHTS_MAX (1u << 24) /* area lights by instances of emissive objects */
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
+#define IMPORT_COORDINATE_MAX 1e18 /* of a point in world space: its square must fit a float */
 #define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
 
 /* Instead of an index of a material. */
@@ -146,7 +147,10 @@ bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const c
 /* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
 bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
 
-/* The same with its inverse; a singular transform is an error. */
+/* The inverse of a transform. A singular one is an error, and one that does not fit a float. */
+bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
+
+/* Both of the above. */
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
 
 /* A file name of the scene as a path: as it is when absolute, else inside the scene's directory. NULL on no memory. */

@@ -45,14 +45,20 @@ bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
                               "everything stays where it is at StartTime", NULL);
 }
 
+bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse)
+{
+    if (!matrix_inverse(matrix, inverse)) {
+        error_at(im->error, place, "the current transform cannot be inverted");
+        return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+    }
+    if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
+        return true;
+    return error_at(im->error, place, "the current transform or its inverse is beyond the range of a float");
+}
+
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
 {
-    if (!import_ctm(im, place, ctm))
-        return false;
-    if (matrix_inverse(ctm, inverse))
-        return true;
-    error_at(im->error, place, "the current transform cannot be inverted");
-    return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+    return import_ctm(im, place, ctm) && import_inverse(im, place, ctm, inverse);
 }
 
 const char *import_path(PbrtImport *im, const char *name)

@@ -16,9 +16,9 @@ static bool point_transform(const Matrix *matrix, float p[3])
     double in[3] = {(double)p[0], (double)p[1], (double)p[2]}, out[3];
     matrix_point(matrix, in, out);
     for (int k = 0; k < 3; ++k) {
-        p[k] = (float)out[k];
-        if (!isfinite(p[k]))
+        if (!(fabs(out[k]) <= IMPORT_COORDINATE_MAX))
             return false;
+        p[k] = (float)out[k];
     }
     return true;
 }
@@ -39,7 +39,7 @@ static bool mesh_transform(PbrtImport *im, const ShapeContext *context, bool rev
 {
     for (size_t i = 0; i < count; ++i)
         if (!point_transform(&context->ctm, &positions[3 * i])) {
-            error_at(im->error, context->place, "vertex %zu is not finite, or too far away, after the transform", i);
+            error_at(im->error, context->place, "vertex %zu is not finite, or beyond 1e18, after the transform", i);
             return error_fix(im->error, "check the vertices and the current transform for huge numbers");
         }
     for (size_t i = 0; normals && i < count; ++i)
@@ -121,11 +121,24 @@ bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, floa
     return mesh_emit(im, kind, &moved, context->shape, context->emits ? &context->emission : NULL);
 }
 
+/* The corners of the quadric's bounding box stay in range. */
+static bool quadric_fits(PbrtImport *im, const Quadric *quadric, const Matrix *matrix)
+{
+    double radius = fmax((double)quadric->radius, fabs((double)quadric->z_min));
+    for (int i = 0; i < 3; ++i) {
+        const double *row = &matrix->m[4 * i];
+        if (!(fabs(row[3]) + radius * (fabs(row[0]) + fabs(row[1]) + fabs(row[2])) <= IMPORT_COORDINATE_MAX))
+            return error_at(im->error, im->place, "the shape reaches beyond 1e18 after the transform");
+    }
+    return true;
+}
+
 static bool quadric_emit(PbrtImport *im, uint kind, const Quadric *quadric, const Matrix *matrix, const Matrix *inverse,
                          Shape shape, const AreaEmission *emission)
 {
     size_t first_light = im->scene->lights.count;
-    if (!scene_add_quadric(im->scene, kind, *quadric, matrix->m, inverse->m, shape,
+    if (!quadric_fits(im, quadric, matrix) ||
+        !scene_add_quadric(im->scene, kind, *quadric, matrix->m, inverse->m, shape,
                            emission ? emission->radiance : NULL, emission ? emission->flags : 0u, im->error))
         return false;
     if (emission)
@@ -186,8 +199,8 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
     if (quadric)
         context.ctm = matrix_multiply(ctm, &shape->matrix);
-    if (!matrix_inverse(&context.ctm, &context.inverse))
-        return error_at(im->error, im->place, "the transform of this instance cannot be inverted");
+    if (!import_inverse(im, im->place, &context.ctm, &context.inverse))
+        return false;
     return quadric
                ? quadric_emit(im, shape->kind, &shape->quadric, &context.ctm, &context.inverse, flags, &shape->emission)
                : emissive_mesh_add(im, shape, &context, flags);
@@ -251,6 +264,18 @@ static bool emission_read(PbrtImport *im, ShapeContext *context)
     return true;
 }
 
+/* pbrt takes an area light of alpha 0 for a light that nobody sees. */
+static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const ShapeContext *context)
+{
+    if (!context->emits || context->shape.alpha == NONE)
+        return true;
+    const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
+    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f)
+        return true;
+    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)",
+                              "it does not shine either", "use a point light");
+}
+
 static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
 {
     *context = (ShapeContext){.place = im->place};
@@ -262,15 +287,8 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
     context->shape.flags =
         (reverse ? SHAPE_REVERSE : 0u) | (reverse != matrix_swaps_handedness(&context->ctm) ? SHAPE_FLIP_NORMAL : 0u);
     context->shape.first_light = NONE;
-    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context);
-}
-
-static bool inverse_needed(PbrtImport *im, const ShapeContext *context)
-{
-    if (context->has_inverse)
-        return true;
-    error_at(im->error, im->place, "the current transform cannot be inverted");
-    return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context) &&
+           alpha_emission_check(im, list, context);
 }
 
 static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
@@ -293,7 +311,7 @@ static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
     if (!context_make(im, list, &context))
         return false;
     if (quadric)
-        return inverse_needed(im, &context) &&
+        return import_inverse(im, im->place, &context.ctm, &context.inverse) &&
                (kind[0] == 's' ? sphere_read(im, list, &context) : disk_read(im, list, &context));
     return mesh_read(im, kind, list, &context);
 }

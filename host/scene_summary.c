@@ -8,27 +8,17 @@ static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "biline
 static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {
     "diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "diffusetransmission", "mix"};
 static const char *const LIGHT_NAMES[LIGHT_KINDS] = {"area", "point", "spot", "distant", "infinite", "infinite image"};
-static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",
-                                                         "bilinear",
-                                                         "sphere",
-                                                         "disk",
-                                                         "instance",
-                                                         "alpha",
-                                                         "normals",
-                                                         "texture",
-                                                         "bump",
-                                                         "mix",
-                                                         "diffuse",
-                                                         "conductor",
-                                                         "dielectric",
-                                                         "thindielectric",
-                                                         "coateddiffuse",
-                                                         "diffusetransmission",
-                                                         "rough",
-                                                         "area light",
-                                                         "infinite light",
-                                                         "delta light",
-                                                         "lens", "tangents"};
+static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",       "bilinear",
+                                                         "sphere",         "disk",
+                                                         "instance",       "alpha",
+                                                         "normals",        "texture",
+                                                         "bump",           "mix",
+                                                         "diffuse",        "conductor",
+                                                         "dielectric",     "thindielectric",
+                                                         "coateddiffuse",  "diffusetransmission",
+                                                         "rough",          "area light",
+                                                         "infinite light", "delta light",
+                                                         "lens",           "tangents"};
 
 const char *scene_feature_name(int bit)
 {

@@ -12,7 +12,7 @@ libtwinlight_host_la_SOURCES = \
 	host/color_named.c \
 	host/color_tables.h \
 	host/command.h \
-	host/distribution.c host/distribution.h \
+	host/distribution_build.c host/distribution_build.h \
 	host/error.c host/error.h \
 	host/error_image.c host/error_image.h \
 	host/exr.c host/exr.h \

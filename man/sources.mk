@@ -1,4 +1,5 @@
 dist_man_MANS += \
 	man/twinlight-compare.1 \
 	man/twinlight-render.1 \
+	man/twinlight-scene.5 \
 	man/twinlight.1

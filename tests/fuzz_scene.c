@@ -1,10 +1,12 @@
-/* The scene reader against arbitrary bytes. With clang it is a libFuzzer target (make fuzz); with -DREPLAY, or another
- * compiler, a program that replays the files it is given. */
+/* The scene reader, and for bytes that begin with "ply" the PLY reader, against arbitrary bytes. With clang it is a
+ * libFuzzer target (make fuzz); with -DREPLAY, or another compiler, a program that replays the files it is given. */
 #include "log.h"
 #include "pbrt_import.h"
+#include "ply.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -14,8 +16,20 @@ static void log_drop(const char *line, void *context)
     (void)context;
 }
 
+static void ply_try(const uint8_t *data, size_t size)
+{
+    PlyMesh mesh;
+    Error error;
+    if (ply_read_memory("fuzz.ply", (SourcePlace){0}, (const char *)data, size, &mesh, &error))
+        ply_destroy(&mesh);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    if (size >= 3 && memcmp(data, "ply", 3) == 0) {
+        ply_try(data, size);
+        return 0;
+    }
     /* The first byte's lowest bit chooses --lenient, so that both ways through the reader are tried. */
     ImportOptions options = {.lenient = size > 0 && (data[0] & 1)};
     Scene scene;

@@ -1,6 +1,7 @@
 # One Check program per area; each lists every unit of the area that can be wrong.
 TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
-TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS)
+# Check prints floats as doubles.
+TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 
 if HAVE_CHECK
 check_PROGRAMS += \
@@ -13,6 +14,7 @@ check_PROGRAMS += \
 	tests/test_metrics \
 	tests/test_options \
 	tests/test_platform_bits \
+	tests/test_reference \
 	tests/test_render \
 	tests/test_texture
 TESTS += $(check_PROGRAMS)
@@ -110,6 +112,11 @@ endif
 tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
 tests_test_platform_bits_CFLAGS = $(TEST_CFLAGS)
 tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
+
+tests_test_reference_SOURCES = tests/test_reference.c \
+	tests/render_fixture.c
+tests_test_reference_CFLAGS = $(TEST_CFLAGS)
+tests_test_reference_LDADD = $(TEST_LIBS)
 
 tests_test_render_SOURCES = tests/test_render.c \
 	tests/render_fixture.c

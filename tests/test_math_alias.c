@@ -1,7 +1,7 @@
 /* Alias tables: the probabilities they imply, the arithmetic of drawing, refusals. */
 #include "test_math.h"
 
-#include "../host/distribution.h"
+#include "distribution_build.h"
 #include "distribution.h"
 #include "rng.h"
 

@@ -1,7 +1,7 @@
 /* Piecewise-constant densities over the square. */
 #include "test_math.h"
 
-#include "../host/distribution.h"
+#include "distribution_build.h"
 #include "distribution.h"
 #include "rng.h"
 

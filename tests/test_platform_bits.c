@@ -3,7 +3,7 @@
  * such device. */
 #include "test_math.h"
 
-#include "../host/distribution.h"
+#include "distribution_build.h"
 #include "opencl_probe.h"
 #include "scene_types.h"
 

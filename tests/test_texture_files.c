@@ -370,7 +370,7 @@ END_TEST
 START_TEST(test_public_references)
 {
     const char *const scenes[] = {"coffee", "cornell-box", "veach-bidir", "veach-mis"};
-    const char *folder = getenv("TWINLIGHT_SCENES"), *source = getenv("srcdir");
+    const char *folder = getenv("SCENES"), *source = getenv("srcdir");
     for (int i = 0; i < 4; ++i) {
         char path[1024];
         if (folder)

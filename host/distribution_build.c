@@ -1,4 +1,4 @@
-#include "distribution.h"
+#include "distribution_build.h"
 
 #include <assert.h>
 #include <math.h>
