@@ -33,7 +33,6 @@ EXTRA_DIST += \
 	tests/test_light.h \
 	tests/test_math.h \
 	tests/test_util.h \
-	tests/tsan.supp \
 	tests/platform_probe.cl
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
