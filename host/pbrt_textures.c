@@ -85,7 +85,7 @@ static void ops_drop(Builder *b, uint first, uint count)
 
 static bool is_image(const Builder *b, uint first, uint end)
 {
-    return end == first + 1 && b->ops[first].code == TEXTURE_IMAGE;
+    return end == first + 1 && (b->ops[first].code == TEXTURE_IMAGE || b->ops[first].code == TEXTURE_IMAGE_FLOAT);
 }
 
 /* tex * scale. A constant factor of an image goes into the image's own scale, before its inversion, as pbrt does. */
@@ -228,7 +228,7 @@ static void image_options_read(Builder *b, const char *file, TextureImageOptions
 static void imagemap_read(Builder *b)
 {
     TextureImageOptions options = {.gamma = 1.0f};
-    TextureOp op = {.code = TEXTURE_IMAGE};
+    TextureOp op = {.code = b->spectrum ? TEXTURE_IMAGE : TEXTURE_IMAGE_FLOAT};
     const char *file = param_string(b->list, "filename", "");
     if (!*file)
         param_error(b->list, "filename", "imagemap lacks \"string filename\"");

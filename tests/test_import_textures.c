@@ -185,6 +185,28 @@ START_TEST(images)
 }
 END_TEST
 
+/* A float texture that is a colour image counts by its mean, wherever it is used. */
+START_TEST(float_image_in_a_colour_texture)
+{
+    char directory[] = "/tmp/twinlight-import-XXXXXX";
+    Scene scene;
+    image_write(directory);
+    import_text_in("WorldBegin Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.pfm\"\n"
+                   "Texture \"f\" \"float\" \"imagemap\" \"string filename\" \"a.pfm\"\n"
+                   "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"texture scale\" \"f\"\n"
+                   "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                   "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]",
+                   directory, false, &scene);
+    const TextureOp *op =
+        &ELEMENT(&scene, texture_ops, TextureOp, ELEMENT(&scene, materials, Material, 0).color0.program);
+    ck_assert_uint_eq(op[0].code + op[1].code, TEXTURE_IMAGE + TEXTURE_IMAGE_FLOAT);
+    ck_assert_uint_ne(op[0].code, op[1].code);
+    ck_assert_uint_eq(op[2].code, TEXTURE_SCALE);
+    scene_destroy(&scene);
+    image_remove(directory);
+}
+END_TEST
+
 START_TEST(unsupported_textures)
 {
     Scene scene;
@@ -206,6 +228,7 @@ TCase *import_textures_case(void)
     tcase_add_test(tcase, mappings);
     tcase_add_test(tcase, float_textures_of_materials);
     tcase_add_test(tcase, images);
+    tcase_add_test(tcase, float_image_in_a_colour_texture);
     tcase_add_test(tcase, unsupported_textures);
     return tcase;
 }
