@@ -171,7 +171,13 @@ static void instance_intersect_callback(const struct RTCIntersectFunctionNArgume
     if (!object->scene)
         return;
     RayWalk inner = walk_enter(outer, args->primID);
+<<<<<<< HEAD
     struct RTCRayHit rayhit = {.ray = embree_ray(&inner, inner.query.o, inner.query.d)};
+=======
+    if (!ray_traceable(inner.query.o, inner.query.d))
+        return;
+    struct RTCRayHit rayhit = {.ray = embree_ray(&inner)};
+>>>>>>> attack
     rtcIntersect1(object->scene, &inner.context, &rayhit);
     outer->best = inner.best;
     ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t * outer->t_scale;
@@ -183,8 +189,15 @@ static void instance_occluded_callback(const struct RTCOccludedFunctionNArgument
     const ObjectRays *object = &rays->objects[rays->view.instances[args->primID].object];
     if (!object->scene)
         return;
+<<<<<<< HEAD
     RayWalk inner = walk_enter((RayWalk *)args->context, args->primID);
     struct RTCRay ray = embree_ray(&inner, inner.query.o, inner.query.d);
+=======
+    RayWalk inner = walk_enter((const RayWalk *)args->context, args->primID);
+    if (!ray_traceable(inner.query.o, inner.query.d))
+        return;
+    struct RTCRay ray = embree_ray(&inner);
+>>>>>>> attack
     rtcOccluded1(object->scene, &inner.context, &ray);
     if (ray.tfar < 0.0f)
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
@@ -355,7 +368,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
     walk_begin(&walk, rays, ray);
-    if (rays->object_count == 0 || !rays->objects[0].scene)
+    if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
     struct RTCRayHit rayhit = {.ray = embree_ray(&walk, ray->o, ray->d)};
     rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
@@ -365,7 +378,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
-    if (rays->object_count == 0 || !rays->objects[0].scene)
+    if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
     struct RTCRay asked = embree_ray(&walk, ray->o, ray->d);

@@ -175,10 +175,11 @@ static bool exr_write_open(ExrWriter *writer, const char *path, int width, int h
         result = finished;
     if (result == EXR_ERR_SUCCESS && !writer->write_errno)
         return true;
-    return error_set(error, "cannot write %s: %s", path,
-                     writer->write_errno  ? strerror(writer->write_errno)
-                     : writer->message[0] ? writer->message
-                                          : exr_get_default_error_message(result));
+    error_set(error, "cannot write %s: %s", path,
+              writer->write_errno  ? strerror(writer->write_errno)
+              : writer->message[0] ? writer->message
+                                   : exr_get_default_error_message(result));
+    return error_fix_errno(error, writer->write_errno);
 }
 
 bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
