@@ -171,13 +171,9 @@ static void instance_intersect_callback(const struct RTCIntersectFunctionNArgume
     if (!object->scene)
         return;
     RayWalk inner = walk_enter(outer, args->primID);
-<<<<<<< HEAD
-    struct RTCRayHit rayhit = {.ray = embree_ray(&inner, inner.query.o, inner.query.d)};
-=======
     if (!ray_traceable(inner.query.o, inner.query.d))
         return;
-    struct RTCRayHit rayhit = {.ray = embree_ray(&inner)};
->>>>>>> attack
+    struct RTCRayHit rayhit = {.ray = embree_ray(&inner, inner.query.o, inner.query.d)};
     rtcIntersect1(object->scene, &inner.context, &rayhit);
     outer->best = inner.best;
     ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t * outer->t_scale;
@@ -189,15 +185,10 @@ static void instance_occluded_callback(const struct RTCOccludedFunctionNArgument
     const ObjectRays *object = &rays->objects[rays->view.instances[args->primID].object];
     if (!object->scene)
         return;
-<<<<<<< HEAD
     RayWalk inner = walk_enter((RayWalk *)args->context, args->primID);
-    struct RTCRay ray = embree_ray(&inner, inner.query.o, inner.query.d);
-=======
-    RayWalk inner = walk_enter((const RayWalk *)args->context, args->primID);
     if (!ray_traceable(inner.query.o, inner.query.d))
         return;
-    struct RTCRay ray = embree_ray(&inner);
->>>>>>> attack
+    struct RTCRay ray = embree_ray(&inner, inner.query.o, inner.query.d);
     rtcOccluded1(object->scene, &inner.context, &ray);
     if (ray.tfar < 0.0f)
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
