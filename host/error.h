@@ -29,7 +29,7 @@ bool error_in(Error *error, const char *file);
 /* Adds what to do. Returns false. */
 bool error_fix(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* "out of memory (N bytes for WHAT)". Returns false. */
+/* "error: out of memory: N bytes for WHAT". Returns false. */
 bool error_memory(Error *error, unsigned long long bytes, const char *what);
 
 /* Adds what to do about a failure to read or write a file. Returns false. */

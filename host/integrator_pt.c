@@ -27,7 +27,7 @@ static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(D
 
 /* ---- the list of steps ------------------------------------------------------------------------------------------ */
 
-/* Two steps around the loop and at most eight in it. */
+/* Two steps around the loop, seven in it, two in its last turn. */
 static size_t steps_record(Step *steps, uint max_depth)
 {
     size_t n = 0, last = 1 + (size_t)(max_depth - 1) * 7 + 2;

@@ -112,9 +112,8 @@ static uint shape_and_kind(uint shape_index, uint kind, const Shape *shape)
     return shape_index | (kind << PRIMITIVE_KIND_SHIFT) | (shape->alpha != NONE ? PRIMITIVE_ALPHA_BIT : 0u);
 }
 
-/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Primitives of no area
- * are dropped as lights' primitives were dropped before; the others keep the order, so that light and primitive of one
- * shape differ by a constant. */
+/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Those of no area are gone
+ * by now, and lights come in the order of primitives, so that the numbers of both differ by a constant. */
 static bool shape_emit(Scene *scene, uint shape_index, const float *emission, uint light_flags, Error *error)
 {
     Shape *shape = &ARRAY_AT(&scene->shapes, Shape, shape_index);

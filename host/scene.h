@@ -26,7 +26,7 @@ typedef struct SceneCounts {
     unsigned long substitutions; /* --lenient */
 } SceneCounts;
 
-/* Camera as the file gives it, before the film's size is final: scene_camera_set turns it into a Camera. */
+/* Camera as the file gives it, before the film's size is final: camera_setup turns it into a Camera. */
 typedef struct CameraSettings {
     uint kind; /* CAMERA_* */
     float fov; /* degrees, of the shorter side */
@@ -129,11 +129,11 @@ bool scene_add_light(Scene *scene, const Light *light, Error *error);
 /* Surface area of one primitive in world space (double arithmetic). Before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);
 
-/* Derives everything marked "made by scene_finish". Fails when the scene has no light or nothing to render, or when a
+/* Derives everything marked "made by scene_finish". Fails when the scene has no light or reaches too far, and when a
  * count does not fit 32 bits. */
 bool scene_finish(Scene *scene, Error *error);
 
-/* Sets the film's size and crop again (after options) and recomputes camera and filter of `frame`. */
+/* Sets the film's size and crop again (after options) and recomputes the camera of `frame`. */
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error);
 
 /* Bytes held by geometry, tables and texels. */

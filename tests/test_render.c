@@ -9,7 +9,7 @@
     "PixelFilter \"box\"\n"                                                                                            \
     "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
 
-/* ---- analytic scenes (NUMERICS: to 0.5 %) ----------------------------------------------------------------------- */
+/* ---- analytic scenes, to 0.5 % --------------------------------------------------------------------------------- */
 
 /* Inside a sphere of emission L and albedo a, light bounces for ever: the radiance is L / (1 - a) everywhere. */
 START_TEST(test_emitting_sphere_inside)
