@@ -31,7 +31,6 @@
 typedef struct Worker {
     Backend *backend;
     pthread_t thread;
-    uint index;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the chunk */
     uint *buffers[BUFFER_COUNT]; /* per-item buffers and counters */
     size_t buffer_words[BUFFER_COUNT];
@@ -277,7 +276,6 @@ static bool workers_start(Backend *backend, uint count, Error *error)
         return error_memory(error, count * sizeof *backend->workers, "threads");
     for (uint i = 0; i < count; ++i) {
         backend->workers[i].backend = backend;
-        backend->workers[i].index = i;
         if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
             error_set(error, "thread %u of %u cannot be started", i + 1, count);
             return error_fix(error, "ask for fewer with --threads");

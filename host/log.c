@@ -11,7 +11,7 @@ static unsigned long log_warnings;
 static void (*log_sink)(const char *line, void *context);
 static void *log_sink_context;
 
-static const char *const LEVEL_NAMES[] = {"warning", "info", "debug"};
+static const char *const LEVEL_NAMES[] = {"warning", "info"};
 
 void log_level_set(LogLevel level)
 {

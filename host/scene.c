@@ -199,7 +199,6 @@ bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float
     scene->counts.degenerate_triangles += dropped;
     if (emission)
         scene->counts.zero_area_lights += dropped;
-    scene->triangle_count += kept;
     return shape_emit(scene, index, emission, light_flags, error);
 }
 
@@ -322,13 +321,9 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
     Instance *instance = SCENE_GROW(scene, instances, Instance, 1, error);
     if (!instance)
         return false;
-    const double *m = world_from_object;
-    double determinant =
-        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
     instance->world_from_object = affine_from_double(world_from_object);
     instance->object_from_world = affine_from_double(object_from_world);
     instance->object = object;
-    instance->flip = determinant < 0.0;
     return true;
 }
 

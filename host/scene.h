@@ -48,7 +48,6 @@ typedef struct FilterSettings {
 } FilterSettings;
 
 typedef struct Scene {
-    char name[256];
     SceneSettings settings;
     CameraSettings camera_settings;
     FilterSettings filter_settings;
@@ -80,9 +79,8 @@ typedef struct Scene {
 
     /* made by scene_finish */
     float bounds_min[3], bounds_max[3]; /* world space, everything */
-    float largest_coordinate; /* of geometry and camera, absolute */
     uint features;
-    size_t primitive_count, triangle_count, vertex_count; /* geometry arrays are freed once packed */
+    size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
     Array geometry_words; /* uint: the packed buffers */
     Array tables_words; /* uint */

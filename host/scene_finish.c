@@ -163,7 +163,6 @@ static bool scene_bounds(Scene *scene, Error *error)
         largest = fmaxf(largest, fabsf((float)camera[4 * i + 3]));
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
-    scene->largest_coordinate = largest;
     if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
@@ -390,14 +389,12 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     scene->features = scene->frame.features = scene_features(scene);
     scene->primitive_count = scene->primitives.count;
-    scene->vertex_count = scene->positions.count;
     if (!scene_coat_tables(scene, error) ||
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
         !light_setup(scene, error))
         return false;
     scene->frame.light_count = (uint)scene->lights.count;
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
-    scene->frame.instance_count = (uint)scene->instances.count;
     scene->frame.pixel_stride = 1;
     scene->frame.max_depth = (uint)scene->settings.max_depth;
     return scene_pack_tables(scene, error) && scene_pack_geometry(scene, error) &&

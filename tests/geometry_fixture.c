@@ -277,6 +277,12 @@ Hit brute_force(const TestScene *test, const Ray *ray)
     return best;
 }
 
+bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v)
+{
+    RayQuery query = ray_query(*ray);
+    return triangle_query(a, b, c, &query, t, u, v);
+}
+
 bool hit_same(const Hit *a, const Hit *b)
 {
     return memcmp(a, b, sizeof *a) == 0;

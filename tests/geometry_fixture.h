@@ -61,6 +61,9 @@ void matrix_random(TestRandom *random, float low, float high, bool mirror, Vec3 
 /* The closest hit by asking every primitive of the world and of every instance. */
 Hit brute_force(const TestScene *test, const Ray *ray);
 
+/* triangle_query for a ray that is asked about one triangle only. */
+bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v);
+
 /* All members have the same bits. */
 bool hit_same(const Hit *a, const Hit *b);
 
