@@ -66,13 +66,6 @@ struct Backend {
     atomic_bool out_of_memory;
 };
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static uint64_t nanoseconds_now(void)
 {
     struct timespec now;
@@ -297,9 +290,9 @@ static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions
     pthread_cond_init(&backend->begin, NULL);
     pthread_cond_init(&backend->end, NULL);
     uint threads = thread_count(options);
-    double begin = seconds_now();
+    uint64_t begin = nanoseconds_now();
     backend->rays = rays_embree_create(scene, (int)threads, error);
-    backend->build_seconds = seconds_now() - begin;
+    backend->build_seconds = 1e-9 * (double)(nanoseconds_now() - begin);
     if (!backend->rays || !workers_start(backend, threads, error)) {
         backend_cpu_close(backend);
         return NULL;

@@ -130,11 +130,6 @@ static bool backend_build(RenderJob *job, Error *error)
 
 /* ---- rendering -------------------------------------------------------------------------------------------------- */
 
-static double film_pixels(const Film *film)
-{
-    return (double)(film->crop[2] - film->crop[0]) * (double)(film->crop[3] - film->crop[1]);
-}
-
 static void job_progress(void *context, const RenderProgress *progress)
 {
     RenderJob *job = context;
@@ -145,7 +140,7 @@ static void job_progress(void *context, const RenderProgress *progress)
 static bool job_save(void *context, const Film *film, Error *error)
 {
     RenderJob *job = context;
-    return render_output_write(&job->output, film, (double)job->samples_done / film_pixels(film), error);
+    return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
 }
 
 static bool film_render(RenderJob *job, Error *error)

@@ -65,12 +65,11 @@ void log_message(LogLevel level, const char *format, ...)
 void log_message_at(LogLevel level, SourcePlace place, const char *format, ...)
 {
     char text[1536];
-    char where[512] = "";
+    char where[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    if (place.file)
-        snprintf(where, sizeof where, "%s:%d:%d: ", place.file, place.line, place.column);
+    place_print(where, sizeof where, place);
     log_write(level, where, text);
 }

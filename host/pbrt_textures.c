@@ -136,8 +136,7 @@ static void space_set(Builder *b, TextureOp *op)
         b->list->failed = true;
         return;
     }
-    for (int i = 0; i < 12; ++i)
-        op->texture_from_world.m[i] = (float)inverse.m[i];
+    op->texture_from_world = matrix_affine(inverse.m);
 }
 
 static void planar_read(Builder *b, TextureOp *op)
