@@ -110,19 +110,7 @@ static bool scene_load(RenderJob *job, Error *error)
 
 static bool backend_build(RenderJob *job, Error *error)
 {
-    const Scene *scene = &job->scene;
-    const BackendScene view = {
-        .frame = &scene->frame,
-        .geometry = scene->geometry_words.data,
-        .geometry_words = scene->geometry_words.count,
-        .tables = scene->tables_words.data,
-        .tables_words = scene->tables_words.count,
-        .texels = scene->texels.data,
-        .texel_words = scene->texels.count,
-        .primitive_count = scene->primitive_count,
-        .object_count = scene->objects.count,
-        .instance_count = scene->instances.count,
-    };
+    const BackendScene view = scene_backend_view(&job->scene);
     const BackendOptions options = {.threads = job->command->threads};
     job->backend = job->command->backend->open(&view, &options, error);
     return job->backend != NULL;

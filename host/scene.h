@@ -7,7 +7,7 @@
 #define TWINLIGHT_SCENE_H
 
 #include "array.h"
-#include "scene_types.h"
+#include "backend.h"
 
 /* What the scene file says about film, sampling and depth; command-line options override it. */
 typedef struct SceneSettings {
@@ -133,6 +133,9 @@ bool scene_finish(Scene *scene, Error *error);
 
 /* Sets the film's size and crop again (after options) and recomputes the camera of `frame`. */
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error);
+
+/* What a backend gets of a finished scene, which must outlive it. */
+BackendScene scene_backend_view(const Scene *scene);
 
 /* Bytes held by geometry, tables and texels. */
 size_t scene_bytes(const Scene *scene);

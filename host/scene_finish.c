@@ -416,6 +416,20 @@ bool scene_finish(Scene *scene, Error *error)
            scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
 }
 
+BackendScene scene_backend_view(const Scene *scene)
+{
+    return (BackendScene){.frame = &scene->frame,
+                          .geometry = scene->geometry_words.data,
+                          .geometry_words = scene->geometry_words.count,
+                          .tables = scene->tables_words.data,
+                          .tables_words = scene->tables_words.count,
+                          .texels = scene->texels.data,
+                          .texel_words = scene->texels.count,
+                          .primitive_count = scene->primitive_count,
+                          .object_count = scene->objects.count,
+                          .instance_count = scene->instances.count};
+}
+
 size_t scene_bytes(const Scene *scene)
 {
     return 4 * (scene->geometry_words.count + scene->tables_words.count + scene->texels.count);
