@@ -138,6 +138,9 @@ file_missing plain.png
 render --png=other.png --exposure=1 -o named.exr "$scene"
 file_exists other.png
 file_missing named.png
+render -o upper.EXR "$scene"
+file_exists upper.EXR
+file_exists upper.png
 
 render --threads=1 -o one.exr "$scene"
 render --threads=3 -o three.exr "$scene"
