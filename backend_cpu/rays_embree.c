@@ -39,6 +39,7 @@ struct RaysEmbree {
 typedef struct RayWalk {
     struct RTCIntersectContext context; /* first: Embree's pointer to it is one to the walk */
     const RaysEmbree *rays;
+    const Ray *ray; /* NULL once `query` is made from it: many rays meet no box and never need it */
     RayQuery query;
     float t_scale; /* Embree's t over ours: see embree_ray */
     uint instance;
@@ -51,6 +52,15 @@ typedef struct RayWalk {
 #define SHORT_STRETCH 0x1p100f
 
 /* ---- callbacks --------------------------------------------------------------------------------------------------- */
+
+static const RayQuery *walk_query(RayWalk *walk)
+{
+    if (walk->ray) {
+        walk->query = ray_query(*walk->ray);
+        walk->ray = NULL;
+    }
+    return &walk->query;
+}
 
 static struct RTCBounds embree_bounds(Box box)
 {
@@ -73,16 +83,16 @@ static void cluster_intersect_callback(const struct RTCIntersectFunctionNArgumen
 {
     const ObjectRays *object = args->geometryUserPtr;
     RayWalk *walk = (RayWalk *)args->context;
-    if (triangle_cluster_intersect(&object->rays->view, &object->clusters[args->primID], walk->instance, &walk->query,
-                                   &walk->best))
+    if (triangle_cluster_intersect(&object->rays->view, &object->clusters[args->primID], walk->instance,
+                                   walk_query(walk), &walk->best))
         ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t * walk->t_scale;
 }
 
 static void cluster_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
 {
     const ObjectRays *object = args->geometryUserPtr;
-    const RayWalk *walk = (const RayWalk *)args->context;
-    if (triangle_cluster_occludes(&object->rays->view, &object->clusters[args->primID], &walk->query))
+    RayWalk *walk = (RayWalk *)args->context;
+    if (triangle_cluster_occludes(&object->rays->view, &object->clusters[args->primID], walk_query(walk)))
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
 
@@ -97,7 +107,7 @@ static void other_intersect_callback(const struct RTCIntersectFunctionNArguments
 {
     const ObjectRays *object = args->geometryUserPtr;
     RayWalk *walk = (RayWalk *)args->context;
-    if (primitive_intersect(&object->rays->view, object->others[args->primID], walk->instance, &walk->query,
+    if (primitive_intersect(&object->rays->view, object->others[args->primID], walk->instance, walk_query(walk),
                             &walk->best))
         ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t * walk->t_scale;
 }
@@ -105,24 +115,23 @@ static void other_intersect_callback(const struct RTCIntersectFunctionNArguments
 static void other_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
 {
     const ObjectRays *object = args->geometryUserPtr;
-    const RayWalk *walk = (const RayWalk *)args->context;
-    if (primitive_occludes(&object->rays->view, object->others[args->primID], &walk->query))
+    RayWalk *walk = (RayWalk *)args->context;
+    if (primitive_occludes(&object->rays->view, object->others[args->primID], walk_query(walk)))
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
 
 /* The ray up to walk->best.t as Embree gets it. */
-static struct RTCRay embree_ray(RayWalk *walk)
+static struct RTCRay embree_ray(RayWalk *walk, Vec3 o, Vec3 d)
 {
-    const RayQuery *query = &walk->query;
-    bool is_short = vec3_max_abs(query->d) < SHORT_DIRECTION;
+    bool is_short = vec3_max_abs(d) < SHORT_DIRECTION;
     float stretch = is_short ? SHORT_STRETCH : 1.0f;
     walk->t_scale = is_short ? 1.0f / SHORT_STRETCH : 1.0f;
-    return (struct RTCRay){.org_x = query->o.x,
-                           .org_y = query->o.y,
-                           .org_z = query->o.z,
-                           .dir_x = query->d.x * stretch,
-                           .dir_y = query->d.y * stretch,
-                           .dir_z = query->d.z * stretch,
+    return (struct RTCRay){.org_x = o.x,
+                           .org_y = o.y,
+                           .org_z = o.z,
+                           .dir_x = d.x * stretch,
+                           .dir_y = d.y * stretch,
+                           .dir_z = d.z * stretch,
                            .tnear = 0.0f,
                            .tfar = walk->best.t * walk->t_scale,
                            .mask = 0xffffffffu};
@@ -142,12 +151,13 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
 }
 
 /* The walk through an instance's object: the ray in its space, the best hit so far taken along. */
-static RayWalk walk_enter(const RayWalk *outer, uint instance)
+static RayWalk walk_enter(RayWalk *outer, uint instance)
 {
     RayWalk inner;
     rtcInitIntersectContext(&inner.context);
     inner.rays = outer->rays;
-    inner.query = ray_query_transform(outer->rays->view.instances[instance].object_from_world, &outer->query);
+    inner.ray = NULL;
+    inner.query = ray_query_transform(outer->rays->view.instances[instance].object_from_world, walk_query(outer));
     inner.instance = instance;
     inner.best = outer->best;
     return inner;
@@ -163,7 +173,7 @@ static void instance_intersect_callback(const struct RTCIntersectFunctionNArgume
     RayWalk inner = walk_enter(outer, args->primID);
     if (!ray_traceable(inner.query.o, inner.query.d))
         return;
-    struct RTCRayHit rayhit = {.ray = embree_ray(&inner)};
+    struct RTCRayHit rayhit = {.ray = embree_ray(&inner, inner.query.o, inner.query.d)};
     rtcIntersect1(object->scene, &inner.context, &rayhit);
     outer->best = inner.best;
     ((struct RTCRayHit *)args->rayhit)->ray.tfar = outer->best.t * outer->t_scale;
@@ -175,10 +185,10 @@ static void instance_occluded_callback(const struct RTCOccludedFunctionNArgument
     const ObjectRays *object = &rays->objects[rays->view.instances[args->primID].object];
     if (!object->scene)
         return;
-    RayWalk inner = walk_enter((const RayWalk *)args->context, args->primID);
+    RayWalk inner = walk_enter((RayWalk *)args->context, args->primID);
     if (!ray_traceable(inner.query.o, inner.query.d))
         return;
-    struct RTCRay ray = embree_ray(&inner);
+    struct RTCRay ray = embree_ray(&inner, inner.query.o, inner.query.d);
     rtcOccluded1(object->scene, &inner.context, &ray);
     if (ray.tfar < 0.0f)
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
@@ -336,11 +346,11 @@ void rays_embree_destroy(RaysEmbree *rays)
 
 /* ---- asking ------------------------------------------------------------------------------------------------------ */
 
-static void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *ray)
+static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *ray)
 {
     rtcInitIntersectContext(&walk->context);
     walk->rays = rays;
-    walk->query = ray_query(*ray);
+    walk->ray = ray;
     walk->instance = NONE;
     walk->best = hit_none(ray->t_max);
 }
@@ -351,7 +361,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
     walk_begin(&walk, rays, ray);
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
-    struct RTCRayHit rayhit = {.ray = embree_ray(&walk)};
+    struct RTCRayHit rayhit = {.ray = embree_ray(&walk, ray->o, ray->d)};
     rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
     return walk.best;
 }
@@ -362,7 +372,7 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
-    struct RTCRay asked = embree_ray(&walk);
+    struct RTCRay asked = embree_ray(&walk, ray->o, ray->d);
     rtcOccluded1(rays->objects[0].scene, &walk.context, &asked);
     return asked.tfar < 0.0f;
 }

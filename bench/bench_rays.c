@@ -129,13 +129,7 @@ static void scene_prepare(BenchScene *bench)
         !scene_add_mesh(scene, &mesh, (Shape){.alpha = NONE, .first_light = NONE}, NULL, 0, &error) ||
         !scene_finish(scene, &error))
         fail(error.message);
-    bench->backend = (BackendScene){.frame = &scene->frame,
-                                    .geometry = scene->geometry_words.data,
-                                    .geometry_words = scene->geometry_words.count,
-                                    .tables = scene->tables_words.data,
-                                    .tables_words = scene->tables_words.count,
-                                    .primitive_count = scene->primitive_count,
-                                    .object_count = scene->objects.count};
+    bench->backend = scene_backend_view(scene);
 }
 
 /* ---- the two bare paths ------------------------------------------------------------------------------------------ */

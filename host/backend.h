@@ -2,8 +2,7 @@
  *
  * A pass runs the list over items first_item ... first_item + item_count - 1. A step touches only its own item's
  * fields, so a backend may run step by step over all items (OpenCL) or the whole list chunk by chunk (CPU); both give
- * the same bits. At the end of the list every item's splats (SPLATS_PER_ITEM slots) are added to the film by
- * film_add_splats, in any order: the film is integer. */
+ * the same bits. At the end of the list every item's splat goes to the sink, in any order: the film is integer. */
 #ifndef TWINLIGHT_BACKEND_H
 #define TWINLIGHT_BACKEND_H
 
@@ -14,14 +13,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Buffers that kernels name. The first four hold the scene; the others hold `words` 32-bit words per item. */
+/* Buffers that kernels name. The first four hold the scene; the others hold 32-bit words per item (StepList). */
 typedef enum BufferId {
     BUFFER_FRAME,
     BUFFER_GEOMETRY,
     BUFFER_TABLES,
     BUFFER_TEXELS,
     BUFFER_PATHS, /* path_state.h */
-    BUFFER_RAYS, /* ray_state.h: closest-hit rays */
+    BUFFER_RAYS, /* state.h: closest-hit rays */
     BUFFER_HITS,
     BUFFER_SHADOWS, /* shadow rays and their visibility */
     BUFFER_SPLATS, /* what goes to the film */
@@ -72,14 +71,14 @@ typedef struct BackendOptions {
 typedef struct BackendStatistics {
     uint64_t closest_rays;
     uint64_t shadow_rays;
-    double ray_seconds; /* in ray queries, summed over threads; 0 unless profiling */
+    double ray_seconds; /* in ray queries, summed over threads */
     double build_seconds; /* acceleration structure */
     size_t bytes; /* device or backend memory now */
     int threads;
     char device[256]; /* in words */
 } BackendStatistics;
 
-/* Receives one finished chunk's splat buffer: `count` items at `stride`, fields of splat_state.h. Called from many
+/* Receives one finished chunk's splat buffer: `count` items at `stride`, fields of state.h. Called from many
  * threads at once. */
 typedef void (*SplatSink)(void *context, const uint *splats, uint count, uint stride);
 

@@ -1,11 +1,13 @@
 #include "camera_setup.h"
 
+#include "matrix.h"
+
 #include <math.h>
 
 static bool affine_set(const double m[16], Affine *out, Error *error)
 {
+    *out = matrix_affine(m);
     for (int i = 0; i < 12; ++i) {
-        out->m[i] = (float)m[i];
         if (!isfinite(out->m[i])) {
             error_set(error, "the camera's transformation is not finite");
             return error_fix(error, "check the transformations before the Camera directive for a zero scale");
@@ -65,7 +67,7 @@ bool camera_setup(const CameraSettings *settings, int width, int height, Camera 
         return false;
     double scale = 1.0;
     if (settings->kind == CAMERA_PERSPECTIVE)
-        scale = tan((double)settings->fov * (3.14159265358979323846 / 360.0));
+        scale = tan((double)settings->fov * (M_PI / 360.0));
     *out = (Camera){
         .kind = settings->kind, .lens_radius = settings->lens_radius, .focal_distance = settings->focal_distance};
     for (int i = 0; i < 4; ++i)

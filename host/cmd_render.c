@@ -111,30 +111,13 @@ static bool scene_load(RenderJob *job, Error *error)
 
 static bool backend_build(RenderJob *job, Error *error)
 {
-    const Scene *scene = &job->scene;
-    const BackendScene view = {
-        .frame = &scene->frame,
-        .geometry = scene->geometry_words.data,
-        .geometry_words = scene->geometry_words.count,
-        .tables = scene->tables_words.data,
-        .tables_words = scene->tables_words.count,
-        .texels = scene->texels.data,
-        .texel_words = scene->texels.count,
-        .primitive_count = scene->primitive_count,
-        .object_count = scene->objects.count,
-        .instance_count = scene->instances.count,
-    };
+    const BackendScene view = scene_backend_view(&job->scene);
     const BackendOptions options = {.threads = job->command->threads};
     job->backend = job->command->backend->open(&view, &options, error);
     return job->backend != NULL;
 }
 
 /* ---- rendering -------------------------------------------------------------------------------------------------- */
-
-static double film_pixels(const Film *film)
-{
-    return (double)(film->crop[2] - film->crop[0]) * (double)(film->crop[3] - film->crop[1]);
-}
 
 static void job_progress(void *context, const RenderProgress *progress)
 {
@@ -146,7 +129,7 @@ static void job_progress(void *context, const RenderProgress *progress)
 static bool job_save(void *context, const Film *film, Error *error)
 {
     RenderJob *job = context;
-    return render_output_write(&job->output, film, (double)job->samples_done / film_pixels(film), error);
+    return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
 }
 
 static bool film_render(RenderJob *job, Error *error)

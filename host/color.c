@@ -233,7 +233,7 @@ bool color_spectrum_file(const char *path, ColorRole role, float rgb[3], Error *
         error_fix(error, "complete the last pair, or delete it");
     }
     if (good && !color_from_samples(numbers.data, numbers.count / 2, role, rgb, &inner)) {
-        good = error_at(error, place, "%s", inner.message + strlen("error: "));
+        good = error_at(error, place, "%s", error_text(&inner));
         error_fix(error, "%s", inner.fix);
     }
     array_destroy(&numbers);

@@ -1,6 +1,6 @@
 /* Builds the tables that shared/distribution.h draws from. */
-#ifndef TWINLIGHT_HOST_DISTRIBUTION_H
-#define TWINLIGHT_HOST_DISTRIBUTION_H
+#ifndef TWINLIGHT_DISTRIBUTION_BUILD_H
+#define TWINLIGHT_DISTRIBUTION_BUILD_H
 
 #include "array.h"
 #include "scene_types.h"

@@ -12,7 +12,7 @@ void text_make_printable(char *text)
             *text = '?';
 }
 
-static void place_print(char *out, size_t size, SourcePlace place)
+void place_print(char *out, size_t size, SourcePlace place)
 {
     if (!place.file)
         out[0] = '\0';
@@ -52,6 +52,12 @@ bool error_at(Error *error, SourcePlace place, const char *format, ...)
     error_fill(error, place, format, arguments);
     va_end(arguments);
     return false;
+}
+
+const char *error_text(const Error *error)
+{
+    const char *word = strstr(error->message, "error: ");
+    return word ? word + strlen("error: ") : error->message;
 }
 
 bool error_in(Error *error, const char *file)

@@ -4,6 +4,7 @@
 #define TWINLIGHT_ERROR_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* A place in a text file. `file` is borrowed and may be NULL; line and column count from 1, 0 when unknown. */
 typedef struct SourcePlace {
@@ -20,11 +21,17 @@ typedef struct Error {
 /* Replaces control characters by '?': what a file holds must not steer the terminal, nor break a message in two. */
 void text_make_printable(char *text);
 
+/* "file:line:column: ", without what is unknown; "" without a file. */
+void place_print(char *out, size_t size, SourcePlace place);
+
 /* Fills `error` with "error: MESSAGE" without a place. Returns false, so that callers can `return error_set(...)`. */
 bool error_set(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The same behind "file:line:column: ". */
 bool error_at(Error *error, SourcePlace place, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* The message behind its place and the word "error". */
+const char *error_text(const Error *error);
 
 /* Puts "FILE: " before a message that has no place yet. Returns false. */
 bool error_in(Error *error, const char *file);
@@ -32,7 +39,7 @@ bool error_in(Error *error, const char *file);
 /* Adds what to do. Returns false. */
 bool error_fix(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* "out of memory (N bytes for WHAT)". Returns false. */
+/* "error: out of memory: N bytes for WHAT". Returns false. */
 bool error_memory(Error *error, unsigned long long bytes, const char *what);
 
 /* Adds what to do about a failure to read or write a file. Returns false. */

@@ -1,23 +1,16 @@
 #include "error_image.h"
 
 #include "exr.h"
+#include "path_name.h"
 #include "png_write.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
-
-static bool ends_with(const char *path, const char *ending)
-{
-    size_t length = strlen(path), ending_length = strlen(ending);
-    return length > ending_length && strcasecmp(path + length - ending_length, ending) == 0;
-}
 
 bool error_image_path_check(const char *path, Error *error)
 {
-    if (ends_with(path, ".exr") || ends_with(path, ".png"))
+    if (path_ends(path, ".exr") || path_ends(path, ".png"))
         return true;
     error_set(error, "the ending of %s tells no kind of image", path);
     return error_fix(error, "use a name that ends in .exr or .png");
@@ -99,7 +92,7 @@ bool error_image_write(const char *path, const float *image, const float *refere
     if (!relative)
         return error_memory(error, pixels * sizeof *relative, "an error image");
     relative_fill(image, reference, pixels, relative);
-    bool good = ends_with(path, ".exr") ? exr_error_write(path, image, reference, relative, width, height, error)
+    bool good = path_ends(path, ".exr") ? exr_error_write(path, image, reference, relative, width, height, error)
                                         : png_error_write(path, relative, width, height, error);
     free(relative);
     return good;

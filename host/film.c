@@ -18,7 +18,7 @@
 /* A sum beyond this is reported as saturated, long before it could wrap. */
 #define SUM_MAX ((int64_t)1 << 62)
 
-static size_t film_pixels(const Film *film)
+size_t film_pixels(const Film *film)
 {
     return (size_t)(film->crop[2] - film->crop[0]) * (size_t)(film->crop[3] - film->crop[1]);
 }

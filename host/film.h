@@ -22,6 +22,9 @@ typedef struct Film {
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
 void film_destroy(Film *film);
 
+/* Pixels of the crop. */
+size_t film_pixels(const Film *film);
+
 /* Chooses the quantum as a power of two 26 octaves under `mean`, the scene's mean radiance (0 or not finite: 2^-30).
  * Only while the film is empty. */
 void film_quantum_set(Film *film, double mean);

@@ -2,11 +2,9 @@
 
 #include <math.h>
 
-#define PI_DOUBLE 3.14159265358979323846
-
 static double sinc(double x)
 {
-    return fabs(x) < 1e-9 ? 1.0 : sin(PI_DOUBLE * x) / (PI_DOUBLE * x);
+    return fabs(x) < 1e-9 ? 1.0 : sin(M_PI * x) / (M_PI * x);
 }
 
 /* On [0, 2], Mitchell and Netravali 1988, equation 8. */

@@ -2,11 +2,11 @@
 
 #include "color.h"
 #include "image_formats.h"
+#include "path_name.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 #define HEADER_SIZE 26 /* enough for every signature, and for PNG's bit depth at byte 24 */
@@ -41,12 +41,6 @@ bool image_allocate_float(const char *path, long long width, long long height, i
     return image->data || error_memory(error, count * sizeof(float), path);
 }
 
-static bool ends_with(const char *path, const char *ending)
-{
-    size_t length = strlen(path), ending_length = strlen(ending);
-    return length >= ending_length && strcasecmp(path + length - ending_length, ending) == 0;
-}
-
 /* TGA has no signature: what its header must fulfil. Every other format that stb_image knows fails this. */
 static bool is_tga(const unsigned char *header, size_t size)
 {
@@ -66,7 +60,7 @@ static bool image_read_kind(FILE *file, const char *path, const unsigned char *h
         return image_read_stb(file, path, STB_JPEG, false, image, error);
     if (size >= 2 && memcmp(header, "#?", 2) == 0)
         return image_read_stb(file, path, STB_HDR, false, image, error);
-    if (ends_with(path, ".tga") && is_tga(header, size))
+    if (path_ends(path, ".tga") && is_tga(header, size))
         return image_read_stb(file, path, STB_TGA, false, image, error);
     image_error(error, path, size == 0 ? "the file is empty" : "it is of no kind that is known, or truncated");
     return error_fix(error, "use PNG, JPEG, TGA, HDR, EXR or PFM");

@@ -27,7 +27,7 @@ static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(D
 
 /* ---- the list of steps ------------------------------------------------------------------------------------------ */
 
-/* Two steps around the loop and at most eight in it. */
+/* Two steps around the loop, seven in it, two in its last turn. */
 static size_t steps_record(Step *steps, uint max_depth)
 {
     size_t n = 0, last = 1 + (size_t)(max_depth - 1) * 7 + 2;
@@ -265,7 +265,7 @@ bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *b
     loop.frame.seed_low = (uint)options->seed;
     loop.frame.seed_high = (uint)(options->seed >> 32);
     loop.frame.pixel_stride = 1;
-    loop.crop_pixels = (uint64_t)(film->crop[2] - film->crop[0]) * (uint64_t)(film->crop[3] - film->crop[1]);
+    loop.crop_pixels = film_pixels(film);
     loop.total = loop.crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
     memset(result, 0, sizeof *result);
     if (!step_list_make(&loop.list, loop.frame.max_depth, error))

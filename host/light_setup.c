@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PI_DOUBLE 3.14159265358979323846
-
 static double luminance(Vec3 c)
 {
     return (double)rgb_luminance(vec3(float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f)));
@@ -58,7 +56,7 @@ static double row_weight(const Environment *e, int y)
 {
     if ((e->light->flags & LIGHT_EQUIRECTANGULAR) == 0)
         return 1.0;
-    double height = (double)e->image.height, step = PI_DOUBLE / height;
+    double height = (double)e->image.height, step = M_PI / height;
     return 0.5 * height * (cos(step * y) - cos(step * (y + 1)));
 }
 
@@ -121,27 +119,26 @@ static bool environment_setup(Scene *scene, Light *light, double *mean, Error *e
 
 /* ---- power ------------------------------------------------------------------------------------------------------- */
 
-/* Integral of pbrt's falloff over the sphere: the cubic step has the mean 1/2. */
-static double spot_solid_angle(const Light *light)
+/* Integral of pbrt's falloff over the sphere: the cubic step in the cosine has the mean 1/2. */
+double light_spot_solid_angle(double cos_total, double cos_falloff)
 {
-    double total = (double)light->cos_total, falloff = (double)light->cos_falloff;
-    return 2.0 * PI_DOUBLE * ((1.0 - falloff) + 0.5 * (falloff - total));
+    return 2.0 * M_PI * ((1.0 - cos_falloff) + 0.5 * (cos_falloff - cos_total));
 }
 
 /* Luminance of the flux that a light sends into the scene; of an infinite light, through the bounding sphere. */
 static bool light_power(Scene *scene, Light *light, double *power, Error *error)
 {
     double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
-    double disk = PI_DOUBLE * radius * radius, mean = luminance(light->emission);
+    double disk = M_PI * radius * radius, mean = luminance(light->emission);
     switch (light->kind) {
     case LIGHT_AREA:
-        *power = mean * (double)light->area * PI_DOUBLE * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
+        *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
         break;
     case LIGHT_POINT:
-        *power = mean * 4.0 * PI_DOUBLE;
+        *power = mean * 4.0 * M_PI;
         break;
     case LIGHT_SPOT:
-        *power = mean * spot_solid_angle(light);
+        *power = mean * light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
         break;
     case LIGHT_DISTANT:
         *power = mean * disk;
@@ -149,7 +146,7 @@ static bool light_power(Scene *scene, Light *light, double *power, Error *error)
     default:
         if (light->kind == LIGHT_INFINITE_IMAGE && !environment_setup(scene, light, &mean, error))
             return false;
-        *power = mean * 4.0 * PI_DOUBLE * disk;
+        *power = mean * 4.0 * M_PI * disk;
     }
     if (*power >= 0.0 && isfinite(*power) && vec3_finite(light->emission))
         return true;

@@ -10,4 +10,7 @@
  * light has power, and on a light that is not finite. */
 bool light_setup(Scene *scene, Error *error);
 
+/* The solid angle that, filled with a spot light's intensity on its axis, holds all that the light sends out. */
+double light_spot_solid_angle(double cos_total, double cos_falloff);
+
 #endif

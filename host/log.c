@@ -11,7 +11,7 @@ static unsigned long log_warnings;
 static void (*log_sink)(const char *line, void *context);
 static void *log_sink_context;
 
-static const char *const LEVEL_NAMES[] = {"warning", "info", "debug"};
+static const char *const LEVEL_NAMES[] = {"warning", "info"};
 
 void log_level_set(LogLevel level)
 {
@@ -66,12 +66,11 @@ void log_message(LogLevel level, const char *format, ...)
 void log_message_at(LogLevel level, SourcePlace place, const char *format, ...)
 {
     char text[1536];
-    char where[512] = "";
+    char where[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    if (place.file)
-        snprintf(where, sizeof where, "%s:%d:%d: ", place.file, place.line, place.column);
+    place_print(where, sizeof where, place);
     log_write(level, where, text);
 }

@@ -6,14 +6,13 @@
 
 typedef enum LogLevel {
     LOG_WARNING, /* the picture may not be what the scene asks for */
-    LOG_INFO, /* something was understood in a way worth knowing */
-    LOG_DEBUG
+    LOG_INFO /* something was understood in a way worth knowing */
 } LogLevel;
 
 /* Messages above `level` are dropped. Default LOG_INFO. */
 void log_level_set(LogLevel level);
 
-/* "warning: ...", "info: ...", "debug: ..." */
+/* "warning: ...", "info: ..." */
 void log_message(LogLevel level, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* "file:line:column: warning: ..." */

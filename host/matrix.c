@@ -35,7 +35,7 @@ static double dot3(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void cross3(const double a[3], const double b[3], double out[3])
+void vector_cross(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
@@ -60,7 +60,7 @@ Matrix matrix_rotate(double degrees, const double axis[3])
 {
     double a[3] = {axis[0], axis[1], axis[2]};
     normalize3(a);
-    double radians = degrees * (3.14159265358979323846 / 180.0);
+    double radians = degrees * (M_PI / 180.0);
     double s = sin(radians), c = cos(radians);
     Matrix r = matrix_identity();
     for (int i = 0; i < 3; ++i)
@@ -81,10 +81,10 @@ bool matrix_look_at(const double eye[3], const double look[3], const double up[3
     double up_unit[3] = {up[0], up[1], up[2]}, right[3], new_up[3];
     if (!normalize3(direction) || !normalize3(up_unit))
         return false;
-    cross3(up_unit, direction, right);
+    vector_cross(up_unit, direction, right);
     if (!normalize3(right))
         return false;
-    cross3(direction, right, new_up);
+    vector_cross(direction, right, new_up);
     const double *axes[3] = {right, new_up, direction};
     *out = matrix_identity();
     for (int i = 0; i < 3; ++i) {
@@ -145,6 +145,14 @@ bool matrix_inverse(const Matrix *matrix, Matrix *out)
     for (int i = 0; i < 4; ++i)
         memcpy(&out->m[4 * i], &rows[i][4], 4 * sizeof(double));
     return matrix_finite(out);
+}
+
+Affine matrix_affine(const double m[16])
+{
+    Affine a;
+    for (int i = 0; i < 12; ++i)
+        a.m[i] = (float)m[i];
+    return a;
 }
 
 bool matrix_finite(const Matrix *matrix)

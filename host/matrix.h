@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_MATRIX_H
 #define TWINLIGHT_MATRIX_H
 
-#include <stdbool.h>
+#include "vec.h"
 
 typedef struct Matrix {
     double m[16];
@@ -25,6 +25,9 @@ Matrix matrix_multiply(const Matrix *a, const Matrix *b);
 /* False when singular. */
 bool matrix_inverse(const Matrix *matrix, Matrix *out);
 
+/* The upper three rows in single precision. */
+Affine matrix_affine(const double m[16]);
+
 bool matrix_finite(const Matrix *matrix);
 
 /* Every element fits a float. */
@@ -34,6 +37,9 @@ bool matrix_equal(const Matrix *a, const Matrix *b);
 
 /* Determinant of the upper left 3x3 part is negative: left- and right-handed change places. */
 bool matrix_swaps_handedness(const Matrix *matrix);
+
+/* a x b; out must be neither. */
+void vector_cross(const double a[3], const double b[3], double out[3]);
 
 /* out = M (x, y, z, 1), and without the translation; in and out may be the same. */
 void matrix_point(const Matrix *matrix, const double in[3], double out[3]);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RELATIVE_FLOOR 0.01 /* NUMERICS, "Figures of error" */
+#define RELATIVE_FLOOR 0.01 /* keeps relative errors of dark values finite */
 #define TRIMMED_SHARE 1000 /* one pixel in so many is left out */
 
 typedef struct Pixel {

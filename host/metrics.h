@@ -1,4 +1,4 @@
-/* Figures of error of one picture against a reference (NUMERICS, "Figures of error"). All sums in double.
+/* Figures of error of one picture against a reference. All sums in double.
  *
  * I and R: linear RGB values of image and reference; a mean goes over all values (pixels x 3) unless it says blocks.
  *   MSE     mean (I - R)^2

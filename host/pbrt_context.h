@@ -133,7 +133,6 @@ typedef struct PbrtImport {
     float iso;
     float exposure_time; /* of the film, 0: the camera's shutter */
     float shutter_open, shutter_close;
-    SourcePlace camera_place;
 } PbrtImport;
 
 /* What is not supported: an error that says what, or with --lenient a counted warning that states the substitute.

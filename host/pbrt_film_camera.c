@@ -171,7 +171,7 @@ static void filter_check(ParamList *list, const FilterSettings *filter)
     PixelFilter unused;
     array_init(&lookup, sizeof(float));
     if (!filter_setup(filter, &lookup, &unused, &error)) {
-        error_at(list->error, list->place, "%s", error.message + strlen("error: "));
+        error_at(list->error, list->place, "%s", error_text(&error));
         error_fix(list->error, "%s", error.fix);
         list->failed = true;
     }

@@ -124,16 +124,6 @@ static void import_destroy(PbrtImport *im)
     arena_destroy(&im->arena);
 }
 
-/* "room" of "scenes/room.pbrt". */
-static void scene_name_set(Scene *scene, const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    const char *base = slash ? slash + 1 : path;
-    const char *dot = strrchr(base, '.');
-    int length = dot && dot != base ? (int)(dot - base) : (int)strlen(base);
-    snprintf(scene->name, sizeof scene->name, "%.*s", length < 255 ? length : 255, base);
-}
-
 static void counts_report(const Scene *scene)
 {
     const SceneCounts *counts = &scene->counts;
@@ -143,9 +133,8 @@ static void counts_report(const Scene *scene)
         log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
 }
 
-static bool import_read(PbrtImport *im, const char *name)
+static bool import_read(PbrtImport *im)
 {
-    scene_name_set(im->scene, name);
     if (!directives_read(im))
         return false;
     counts_report(im->scene);
@@ -159,7 +148,7 @@ bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, E
     const char *slash = strrchr(path, '/');
     size_t length = slash ? (size_t)(slash - path) + 1 : 0;
     im.directory = arena_text(&im.arena, path, length, error);
-    bool good = im.directory && parser_open_file(&im, path, (SourcePlace){0}, false) && import_read(&im, path);
+    bool good = im.directory && parser_open_file(&im, path, (SourcePlace){0}, false) && import_read(&im);
     import_destroy(&im);
     return good;
 }
@@ -170,7 +159,7 @@ bool pbrt_import_text(const char *text, size_t length, const char *name, const c
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.directory = directory;
-    bool good = parser_open_text(&im, text, length, name, false, error) && import_read(&im, name);
+    bool good = parser_open_text(&im, text, length, name, false, error) && import_read(&im);
     import_destroy(&im);
     return good;
 }

@@ -1,15 +1,17 @@
 /* LightSource and AreaLightSource. Scales as in pbrt-v4: a light's spectrum counts as if its luminance were 1 (an rgb
  * value: as if that of its illuminant were), so that an rgb of 1 1 1 gives pixels of 1 1 1, and everything else is
  * brought to luminance 1 before "scale", "power" or "illuminance" apply. */
+#include "light_setup.h"
 #include "log.h"
 #include "pbrt_values.h"
+#include "warp.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define DEGREES_TO_RADIANS (3.14159265358979323846 / 180.0)
+#define DEGREES_TO_RADIANS (M_PI / 180.0)
 
 typedef struct LightReader {
     PbrtImport *im;
@@ -75,7 +77,7 @@ static void point_read(LightReader *r)
     double scale = (double)scale_read(r->list);
     float power = param_float(r->list, "power", -1.0f);
     if (power > 0.0f)
-        scale *= (double)power / (4.0 * 3.14159265358979323846);
+        scale *= (double)power / (4.0 * M_PI);
     param_vector(r->list, "from", PARAM_POINT3, from);
     r->light.kind = LIGHT_POINT;
     r->light.emission = emission_make(r->list, intensity, scale);
@@ -98,10 +100,8 @@ static void spot_read(LightReader *r)
         param_error(r->list, "conedeltaangle", "\"conedeltaangle\" must be from 0 to coneangle");
     double cos_total = cos((double)cone * DEGREES_TO_RADIANS);
     double cos_falloff = cos(((double)cone - (double)delta) * DEGREES_TO_RADIANS);
-    /* The integral over directions of the smoothstep between the cosines is that of a straight line. */
     if (power > 0.0f)
-        scale *=
-            (double)power / (2.0 * 3.14159265358979323846 * ((1.0 - cos_falloff) + 0.5 * (cos_falloff - cos_total)));
+        scale *= (double)power / light_spot_solid_angle(cos_total, cos_falloff);
     r->light.kind = LIGHT_SPOT;
     r->light.emission = emission_make(r->list, intensity, scale);
     r->light.cos_total = (float)cos_total;
@@ -126,15 +126,6 @@ static void distant_read(LightReader *r)
     direction_set(r, from, to);
 }
 
-/* The direction of a point of the unit square under the equal-area octahedral map (Clarberg, "Fast Equal-Area Mapping
- * of the (Hemi)Sphere using SIMD", JGT 13(3), 2008): its z, which is all that illuminance needs. */
-static double octahedral_z(double u, double v)
-{
-    double distance = 1.0 - (fabs(2.0 * u - 1.0) + fabs(2.0 * v - 1.0));
-    double r = 1.0 - fabs(distance);
-    return distance < 0.0 ? r * r - 1.0 : 1.0 - r * r;
-}
-
 /* Illuminance by the upper half of an octahedral map on a plane that faces up: the mean over the sphere's equal areas
  * of luminance times cosine, times 4 pi. */
 static double map_illuminance(const Image *image, const float *rgb)
@@ -142,12 +133,13 @@ static double map_illuminance(const Image *image, const float *rgb)
     double sum = 0.0;
     for (int y = 0; y < image->height; ++y)
         for (int x = 0; x < image->width; ++x) {
-            double z = octahedral_z((x + 0.5) / image->width, (y + 0.5) / image->height);
+            Vec2 uv = vec2(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height);
+            double z = (double)octahedral_to_sphere(uv).z;
             const float *p = &rgb[3 * ((size_t)y * (size_t)image->width + (size_t)x)];
             if (z > 0.0)
                 sum += z * (double)rgb_luminance(vec3(p[0], p[1], p[2]));
         }
-    return 4.0 * 3.14159265358979323846 * sum / ((double)image->width * (double)image->height);
+    return 4.0 * M_PI * sum / ((double)image->width * (double)image->height);
 }
 
 /* pbrt multiplies by 2 pi where the integral over the sphere asks for 4 pi; the same here, so that both give the same
@@ -225,8 +217,7 @@ static void map_read(LightReader *r, const char *file, float illuminance, double
         return;
     }
     if (!image_read(path, &image, &error)) {
-        const char *colon = strstr(error.message, "error: ");
-        param_error(r->list, "filename", "infinite light: %s", colon ? colon + strlen("error: ") : error.message);
+        param_error(r->list, "filename", "infinite light: %s", error_text(&error));
         error_fix(r->list->error, "%s", error.fix);
         return;
     }
@@ -247,16 +238,14 @@ static void infinite_read(LightReader *r)
                                               "the light comes from everywhere", NULL);
     if (has_radiance && *file)
         param_error(r->list, "filename", "an infinite light takes either L or filename");
-    for (int i = 0; i < 12; ++i) {
-        r->light.world_from_light.m[i] = (float)r->ctm.m[i];
-        r->light.light_from_world.m[i] = (float)r->inverse.m[i];
-    }
+    r->light.world_from_light = matrix_affine(r->ctm.m);
+    r->light.light_from_world = matrix_affine(r->inverse.m);
     if (*file) {
         map_read(r, file, illuminance, scale);
         return;
     }
     if (illuminance > 0.0f)
-        scale *= (double)illuminance / 3.14159265358979323846;
+        scale *= (double)illuminance / M_PI;
     r->light.kind = LIGHT_INFINITE;
     r->light.emission = emission_make(r->list, radiance, scale);
 }

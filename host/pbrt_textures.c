@@ -1,10 +1,10 @@
 /* Texture directives: expressions become postfix programs, constants are folded. */
 #include "log.h"
+#include "path_name.h"
 #include "pbrt_values.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* Ops of one texture, all that it refers to included: named textures can double at each step. */
 #define TEXTURE_OPS_MAX 256
@@ -86,7 +86,7 @@ static void ops_drop(Builder *b, uint first, uint count)
 
 static bool is_image(const Builder *b, uint first, uint end)
 {
-    return end == first + 1 && b->ops[first].code == TEXTURE_IMAGE;
+    return end == first + 1 && (b->ops[first].code == TEXTURE_IMAGE || b->ops[first].code == TEXTURE_IMAGE_FLOAT);
 }
 
 /* tex * scale. A constant factor of an image goes into the image's own scale, before its inversion, as pbrt does. */
@@ -136,8 +136,7 @@ static void space_set(Builder *b, TextureOp *op)
         b->list->failed = true;
         return;
     }
-    for (int i = 0; i < 12; ++i)
-        op->texture_from_world.m[i] = (float)inverse.m[i];
+    op->texture_from_world = matrix_affine(inverse.m);
 }
 
 static void planar_read(Builder *b, TextureOp *op)
@@ -191,12 +190,6 @@ static void checkerboard_read(Builder *b)
     ops_add(b, &op, 1);
 }
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot + 1, extension) == 0;
-}
-
 static uint choice_read(Builder *b, const char *name, const char *fallback, const char *const *known, size_t count)
 {
     const char *value = param_string(b->list, name, fallback);
@@ -215,7 +208,7 @@ static void image_options_read(Builder *b, const char *file, TextureImageOptions
     static const char *const FILTERS[] = {"bilinear", "point", "trilinear", "ewa", "EWA"};
     param_float(b->list, "maxanisotropy", 8.0f);
     uint filter = choice_read(b, "filter", "bilinear", FILTERS, 5);
-    const char *encoding = param_string(b->list, "encoding", has_extension(file, "png") ? "sRGB" : "linear");
+    const char *encoding = param_string(b->list, "encoding", path_ends(file, ".png") ? "sRGB" : "linear");
     options->wrap = choice_read(b, "wrap", "repeat", WRAPS, 4);
     options->filter = filter == 1 ? FILTER_POINT : FILTER_BILINEAR;
     if (filter > 1)
@@ -229,7 +222,7 @@ static void image_options_read(Builder *b, const char *file, TextureImageOptions
 static void imagemap_read(Builder *b)
 {
     TextureImageOptions options = {.gamma = 1.0f};
-    TextureOp op = {.code = TEXTURE_IMAGE};
+    TextureOp op = {.code = b->spectrum ? TEXTURE_IMAGE : TEXTURE_IMAGE_FLOAT};
     const char *file = param_string(b->list, "filename", "");
     if (!*file)
         param_error(b->list, "filename", "imagemap lacks \"string filename\"");

@@ -8,10 +8,7 @@
 /* Moves an error without a place, from a part that knows nothing of the scene's text, to the parameter. */
 static void error_move(ParamList *list, const Param *param, const Error *found)
 {
-    const char *prefix = "error: ";
-    const char *text =
-        strncmp(found->message, prefix, strlen(prefix)) == 0 ? found->message + strlen(prefix) : found->message;
-    error_at(list->error, param->place, "%s", text);
+    error_at(list->error, param->place, "%s", error_text(found));
     if (found->fix[0])
         error_fix(list->error, "%s", found->fix);
     list->failed = true;
@@ -213,8 +210,7 @@ bool value_image(PbrtImport *im, SourcePlace place, const char *path, const Text
     Error error = {{0}, {0}};
     if (texture_image_load(im->scene, &im->images, path, options, index, &error))
         return true;
-    const char *colon = strstr(error.message, "error: ");
-    error_at(im->error, place, "%s: %s", what, colon ? colon + strlen("error: ") : error.message);
+    error_at(im->error, place, "%s: %s", what, error_text(&error));
     if (error.fix[0])
         error_fix(im->error, "%s", error.fix);
     return false;

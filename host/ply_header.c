@@ -125,7 +125,8 @@ static bool property_read(const PlySource *source, const Line *line, PlyHeader *
     if (property->type == PLY_NONE ||
         (list && (property->count_type == PLY_NONE || property->count_type >= PLY_FLOAT32)))
         return ply_error(source, "line %d: unknown type of a property", line->number);
-    snprintf(property->name, sizeof property->name, "%.*s", (int)line->lengths[name], line->words[name]);
+    snprintf(property->name, sizeof property->name, "%.*s",
+             (int)(line->lengths[name] < PLY_NAME_MAX ? line->lengths[name] : PLY_NAME_MAX), line->words[name]);
     return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include "option_values.h"
 #include "options.h"
+#include "path_name.h"
 
 #include <string.h>
 
@@ -109,16 +110,10 @@ static bool number_set(RenderCommand *command, int index, const char *value, Err
     }
 }
 
-static bool name_ends(const char *name, const char *ending)
-{
-    size_t length = strlen(name), tail = strlen(ending);
-    return length > tail && strcmp(name + length - tail, ending) == 0;
-}
-
 static bool path_set(const char **path, int index, const char *value, const char *ending, Error *error)
 {
     *path = value;
-    if (!ending || name_ends(value, ending))
+    if (!ending || path_ends(value, ending))
         return true;
     error_set(error, "--%s=%s: the name does not end in %s", SPECS[index].name, value, ending);
     return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);

@@ -4,33 +4,28 @@
 
 #include "exr.h"
 #include "output_file.h"
+#include "path_name.h"
 #include "png_write.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
-static const char *path_file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/* target = `path` with its ending (if it has one) replaced by `ending`. */
+/* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any case. */
 static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
 {
     const char *name = path_file_name(path);
     const char *dot = strrchr(name, '.');
-    size_t stem = dot && dot != name ? (size_t)(dot - path) : strlen(path);
+    bool ends = path_ends(path, ending);
+    size_t stem = dot && dot != name && !ends ? (size_t)(dot - path) : strlen(path);
     if (stem + strlen(ending) >= PATH_MAX) {
         error_set(error, "the file name is too long: %.200s...", path);
         return error_fix(error, "give a shorter one with --output");
     }
     memcpy(target, path, stem);
-    strcpy(target + stem, ending);
+    strcpy(target + stem, ends ? "" : ending);
     return true;
 }
 

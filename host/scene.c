@@ -1,5 +1,7 @@
 #include "scene.h"
 
+#include "matrix.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -112,9 +114,8 @@ static uint shape_and_kind(uint shape_index, uint kind, const Shape *shape)
     return shape_index | (kind << PRIMITIVE_KIND_SHIFT) | (shape->alpha != NONE ? PRIMITIVE_ALPHA_BIT : 0u);
 }
 
-/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Primitives of no area
- * are dropped as lights' primitives were dropped before; the others keep the order, so that light and primitive of one
- * shape differ by a constant. */
+/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Those of no area are gone
+ * by now, and lights come in the order of primitives, so that the numbers of both differ by a constant. */
 static bool shape_emit(Scene *scene, uint shape_index, const float *emission, uint light_flags, Error *error)
 {
     Shape *shape = &ARRAY_AT(&scene->shapes, Shape, shape_index);
@@ -145,13 +146,6 @@ static double length3(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void cross3(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void edge3(Vec3 from, Vec3 to, double out[3])
 {
     out[0] = (double)to.x - (double)from.x;
@@ -164,7 +158,7 @@ static double triangle_area(Vec3 a, Vec3 b, Vec3 c)
     double ab[3], ac[3], n[3];
     edge3(a, b, ab);
     edge3(a, c, ac);
-    cross3(ab, ac, n);
+    vector_cross(ab, ac, n);
     return 0.5 * length3(n);
 }
 
@@ -200,7 +194,6 @@ bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float
     scene->counts.degenerate_triangles += dropped;
     if (emission)
         scene->counts.zero_area_lights += dropped;
-    scene->triangle_count += kept;
     return shape_emit(scene, index, emission, light_flags, error);
 }
 
@@ -234,14 +227,6 @@ bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const fl
     return shape_emit(scene, index, emission, light_flags, error);
 }
 
-static Affine affine_from_double(const double m[16])
-{
-    Affine a;
-    for (int i = 0; i < 12; ++i)
-        a.m[i] = (float)m[i];
-    return a;
-}
-
 /* The factor of a similarity transform (rotation, reflection, uniform scale), or 0 when it is none to 1e-5. */
 static double similarity_scale(const double m[16])
 {
@@ -267,8 +252,8 @@ bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double wo
 {
     uint index;
     MeshData no_vertices = {0};
-    quadric.world_from_object = affine_from_double(world_from_object);
-    quadric.object_from_world = affine_from_double(object_from_world);
+    quadric.world_from_object = matrix_affine(world_from_object);
+    quadric.object_from_world = matrix_affine(object_from_world);
     double scale = similarity_scale(world_from_object);
     bool full = kind == PRIMITIVE_SPHERE && quadric.z_min <= -quadric.radius && quadric.z_max >= quadric.radius &&
                 quadric.phi_max >= 6.2831850f;
@@ -323,13 +308,9 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
     Instance *instance = SCENE_GROW(scene, instances, Instance, 1, error);
     if (!instance)
         return false;
-    const double *m = world_from_object;
-    double determinant =
-        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-    instance->world_from_object = affine_from_double(world_from_object);
-    instance->object_from_world = affine_from_double(object_from_world);
+    instance->world_from_object = matrix_affine(world_from_object);
+    instance->object_from_world = matrix_affine(object_from_world);
     instance->object = object;
-    instance->flip = determinant < 0.0;
     return true;
 }
 
@@ -370,7 +351,7 @@ static double patch_area(const Vec3 *positions, const Patch *patch)
                 du[k] = (1.0 - v) * du0[k] + v * du1[k];
                 dv[k] = (1.0 - u) * dv0[k] + u * dv1[k];
             }
-            cross3(du, dv, n);
+            vector_cross(du, dv, n);
             sum += length3(n);
         }
     return sum / (STEPS * STEPS);
@@ -385,7 +366,7 @@ static double area_stretch(const Quadric *quadric, const double n[3])
     double b[3] = {(double)m[1], (double)m[5], (double)m[9]};
     double c[3] = {(double)m[2], (double)m[6], (double)m[10]};
     double bc[3], transformed[3];
-    cross3(b, c, bc);
+    vector_cross(b, c, bc);
     double determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
     for (int j = 0; j < 3; ++j)
         transformed[j] = (double)w[j] * n[0] + (double)w[4 + j] * n[1] + (double)w[8 + j] * n[2];
@@ -418,9 +399,9 @@ static double disk_area(const Quadric *quadric)
     return 0.5 * (double)quadric->phi_max * fmax(0.0, r * r - inner * inner) * area_stretch(quadric, n);
 }
 
-double scene_primitive_area(const Scene *scene, uint index)
+double scene_primitive_area(const Scene *scene, uint primitive)
 {
-    const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, index);
+    const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, primitive);
     const Vec3 *positions = scene->positions.data;
     switch (p->shape_and_kind >> PRIMITIVE_KIND_SHIFT) {
     case PRIMITIVE_TRIANGLE:

@@ -7,7 +7,7 @@
 #define TWINLIGHT_SCENE_H
 
 #include "array.h"
-#include "scene_types.h"
+#include "backend.h"
 
 /* What the scene file says about film, sampling and depth; command-line options override it. */
 typedef struct SceneSettings {
@@ -26,7 +26,7 @@ typedef struct SceneCounts {
     unsigned long substitutions; /* --lenient */
 } SceneCounts;
 
-/* Camera as the file gives it, before the film's size is final: scene_camera_set turns it into a Camera. */
+/* Camera as the file gives it, before the film's size is final: camera_setup turns it into a Camera. */
 typedef struct CameraSettings {
     uint kind; /* CAMERA_* */
     float fov; /* degrees, of the shorter side */
@@ -48,7 +48,6 @@ typedef struct FilterSettings {
 } FilterSettings;
 
 typedef struct Scene {
-    char name[256];
     SceneSettings settings;
     CameraSettings camera_settings;
     FilterSettings filter_settings;
@@ -80,9 +79,8 @@ typedef struct Scene {
 
     /* made by scene_finish */
     float bounds_min[3], bounds_max[3]; /* world space, everything */
-    float largest_coordinate; /* of geometry and camera, absolute */
     uint features;
-    size_t primitive_count, triangle_count, vertex_count; /* geometry arrays are freed once packed */
+    size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
     Array geometry_words; /* uint: the packed buffers */
     Array tables_words; /* uint */
@@ -129,12 +127,15 @@ bool scene_add_light(Scene *scene, const Light *light, Error *error);
 /* Surface area of one primitive in world space (double arithmetic). Before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);
 
-/* Derives everything marked "made by scene_finish". Fails when the scene has no light or nothing to render, or when a
+/* Derives everything marked "made by scene_finish". Fails when the scene has no light or reaches too far, and when a
  * count does not fit 32 bits. */
 bool scene_finish(Scene *scene, Error *error);
 
-/* Sets the film's size and crop again (after options) and recomputes camera and filter of `frame`. */
+/* Sets the film's size and crop again (after options) and recomputes the camera of `frame`. */
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error);
+
+/* What a backend gets of a finished scene, which must outlive it. */
+BackendScene scene_backend_view(const Scene *scene);
 
 /* Bytes held by geometry, tables and texels. */
 size_t scene_bytes(const Scene *scene);

@@ -5,6 +5,7 @@
 #include "coat_table.h"
 #include "filter_setup.h"
 #include "light_setup.h"
+#include "material.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -163,7 +164,6 @@ static bool scene_bounds(Scene *scene, Error *error)
         largest = fmaxf(largest, fabsf((float)camera[4 * i + 3]));
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
-    scene->largest_coordinate = largest;
     if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
@@ -191,12 +191,15 @@ static const uint FEATURE_OF_MATERIAL[] = {
     [MATERIAL_MIX] = FEATURE_MIX,
 };
 
+/* What the kernels make of a constant roughness. */
+static float material_alpha(const Material *m, const FloatParam *roughness)
+{
+    return alpha_from_roughness(m->flags, roughness->value);
+}
+
 static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
 {
-    if (roughness->program != NONE)
-        return true;
-    float alpha = m->flags & MATERIAL_REMAP_ROUGHNESS ? sqrtf(roughness->value) : roughness->value;
-    return alpha >= 1e-3f;
+    return roughness->program != NONE || material_alpha(m, roughness) >= ALPHA_DELTA;
 }
 
 static bool material_is_rough(const Material *m)
@@ -256,9 +259,28 @@ static uint scene_features(const Scene *scene)
 
 /* ---- tables of rough coats --------------------------------------------------------------------------------------- */
 
-static float material_alpha(const Material *m, const FloatParam *roughness)
+static bool roughness_is_textured(const Material *m)
 {
-    return m->flags & MATERIAL_REMAP_ROUGHNESS ? sqrtf(roughness->value) : roughness->value;
+    return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
+}
+
+/* Whether the table of `other` serves m. */
+static bool coat_serves(const Material *m, const Material *other)
+{
+    if (other->kind != MATERIAL_COATED_DIFFUSE || other->coat_table == NONE || other->eta != m->eta ||
+        roughness_is_textured(m) != roughness_is_textured(other))
+        return false;
+    return roughness_is_textured(m) ||
+           (material_alpha(m, &m->roughness_u) == material_alpha(other, &other->roughness_u) &&
+            material_alpha(m, &m->roughness_v) == material_alpha(other, &other->roughness_v));
+}
+
+static bool coat_build(Material *m, Array *lookup, Error *error)
+{
+    if (roughness_is_textured(m))
+        return coat_table_build_range(m->eta, lookup, &m->coat_table, error);
+    return coat_table_build(material_alpha(m, &m->roughness_u), material_alpha(m, &m->roughness_v), m->eta, lookup,
+                            &m->coat_table, error);
 }
 
 /* Materials of equal coat share a table. */
@@ -267,25 +289,17 @@ static bool scene_coat_tables(Scene *scene, Error *error)
     for (size_t i = 0; i < scene->materials.count; ++i) {
         Material *m = &ARRAY_AT(&scene->materials, Material, i);
         m->coat_table = NONE;
-        if (m->kind == MATERIAL_COATED_DIFFUSE)
-            m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        if (m->kind != MATERIAL_COATED_DIFFUSE || !material_is_rough(m))
+        if (m->kind != MATERIAL_COATED_DIFFUSE)
             continue;
-        float alpha_x = material_alpha(m, &m->roughness_u), alpha_y = material_alpha(m, &m->roughness_v);
-        bool textured = m->roughness_u.program != NONE || m->roughness_v.program != NONE;
+        m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
+        if (!material_is_rough(m))
+            continue;
         for (size_t j = 0; j < i && m->coat_table == NONE; ++j) {
             const Material *other = &ARRAY_AT(&scene->materials, Material, j);
-            if (other->kind != MATERIAL_COATED_DIFFUSE || other->coat_table == NONE || other->eta != m->eta)
-                continue;
-            bool other_textured = other->roughness_u.program != NONE || other->roughness_v.program != NONE;
-            if (textured ? other_textured
-                         : !other_textured && material_alpha(other, &other->roughness_u) == alpha_x &&
-                               material_alpha(other, &other->roughness_v) == alpha_y)
+            if (coat_serves(m, other))
                 m->coat_table = other->coat_table;
         }
-        if (m->coat_table == NONE &&
-            !(textured ? coat_table_build_range(m->eta, &scene->lookup, &m->coat_table, error)
-                       : coat_table_build(alpha_x, alpha_y, m->eta, &scene->lookup, &m->coat_table, error)))
+        if (m->coat_table == NONE && !coat_build(m, &scene->lookup, error))
             return false;
     }
     return true;
@@ -390,18 +404,30 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     scene->features = scene->frame.features = scene_features(scene);
     scene->primitive_count = scene->primitives.count;
-    scene->vertex_count = scene->positions.count;
     if (!scene_coat_tables(scene, error) ||
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
         !light_setup(scene, error))
         return false;
     scene->frame.light_count = (uint)scene->lights.count;
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
-    scene->frame.instance_count = (uint)scene->instances.count;
     scene->frame.pixel_stride = 1;
     scene->frame.max_depth = (uint)scene->settings.max_depth;
     return scene_pack_tables(scene, error) && scene_pack_geometry(scene, error) &&
            scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
+}
+
+BackendScene scene_backend_view(const Scene *scene)
+{
+    return (BackendScene){.frame = &scene->frame,
+                          .geometry = scene->geometry_words.data,
+                          .geometry_words = scene->geometry_words.count,
+                          .tables = scene->tables_words.data,
+                          .tables_words = scene->tables_words.count,
+                          .texels = scene->texels.data,
+                          .texel_words = scene->texels.count,
+                          .primitive_count = scene->primitive_count,
+                          .object_count = scene->objects.count,
+                          .instance_count = scene->instances.count};
 }
 
 size_t scene_bytes(const Scene *scene)

@@ -20,11 +20,6 @@ static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",       "bili
                                                          "infinite light", "delta light",
                                                          "lens",           "tangents"};
 
-const char *scene_feature_name(int bit)
-{
-    return FEATURE_NAMES[bit];
-}
-
 void scene_summary(const Scene *scene, SceneSummary *summary)
 {
     memset(summary, 0, sizeof *summary);

@@ -22,9 +22,6 @@ typedef struct SceneSummary {
 
 void scene_summary(const Scene *scene, SceneSummary *summary);
 
-/* Name of feature bit `bit` (0 ... FEATURE_COUNT - 1) of the feature mask. */
-const char *scene_feature_name(int bit);
-
 void scene_summary_text(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 void scene_summary_json(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 

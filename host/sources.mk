@@ -36,6 +36,7 @@ libtwinlight_host_la_SOURCES = \
 	host/option_values.c host/option_values.h \
 	host/options.c host/options.h \
 	host/output_file.c host/output_file.h \
+	host/path_name.c host/path_name.h \
 	host/pbrt_context.h \
 	host/pbrt_directives.c host/pbrt_directives.h \
 	host/pbrt_film_camera.c \

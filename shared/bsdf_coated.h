@@ -1,4 +1,4 @@
-/* A dielectric coat, smooth or rough, over a Lambertian base (pbrt-v4's coateddiffuse, without its medium), in closed
+/* A dielectric coat, smooth or rough, over a Lambertian base (pbrt-v4's coateddiffuse, its medium absorbing only), in closed
  * form. Light that meets the coat from below is treated like light from above, as pbrt does.
  *
  * Derivation. Let E be irradiance from direction wi. T(wi) E passes the coat. The base reflects it with albedo rho into

@@ -1,4 +1,4 @@
-/* Discrete distributions that the host tabulates (host/distribution.h) and kernels draw from. */
+/* Discrete distributions that the host tabulates (host/distribution_build.h) and kernels draw from. */
 #ifndef TWINLIGHT_DISTRIBUTION_H
 #define TWINLIGHT_DISTRIBUTION_H
 

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_PATH_STATE_H
 #define TWINLIGHT_PATH_STATE_H
 
+#include "scene_view.h"
 #include "state.h"
 
 #define PATH_PIXEL 0u /* y * width + x of the whole film */
@@ -31,29 +32,48 @@
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction came from a delta lobe (or the camera): no light sample competes */
 
-SHARED_FUNCTION void path_store_bsdf(__global uint *paths, uint stride, uint t, const Bsdf *bsdf)
+/* Materials whose Bsdf has a second colour, and those with an index of refraction. */
+#define FEATURES_COLOR1 (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_DIFFUSE_TRANSMISSION)
+#define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE)
+
+/* Only what some material of the scene uses is stored. */
+SHARED_FUNCTION void path_store_bsdf(const SceneView *scene, __global uint *paths, uint stride, uint t,
+                                     const Bsdf *bsdf)
 {
     state_store(paths, stride, PATH_BSDF_KIND, t, bsdf->kind);
     state_store(paths, stride, PATH_BSDF_FLAGS, t, bsdf->flags);
     state_store_vec3(paths, stride, PATH_BSDF_COLOR0, t, bsdf->color0);
-    state_store_vec3(paths, stride, PATH_BSDF_COLOR1, t, bsdf->color1);
-    state_store_float(paths, stride, PATH_BSDF_ALPHA_X, t, bsdf->alpha_x);
-    state_store_float(paths, stride, PATH_BSDF_ALPHA_Y, t, bsdf->alpha_y);
-    state_store_float(paths, stride, PATH_BSDF_ETA, t, bsdf->eta);
-    state_store(paths, stride, PATH_BSDF_COAT, t, bsdf->coat_table);
+    if (SCENE_HAS(scene, FEATURES_COLOR1))
+        state_store_vec3(paths, stride, PATH_BSDF_COLOR1, t, bsdf->color1);
+    if (SCENE_HAS(scene, FEATURES_ETA))
+        state_store_float(paths, stride, PATH_BSDF_ETA, t, bsdf->eta);
+    if (SCENE_HAS(scene, FEATURE_ROUGH)) {
+        state_store_float(paths, stride, PATH_BSDF_ALPHA_X, t, bsdf->alpha_x);
+        state_store_float(paths, stride, PATH_BSDF_ALPHA_Y, t, bsdf->alpha_y);
+        state_store(paths, stride, PATH_BSDF_COAT, t, bsdf->coat_table);
+    }
 }
 
-SHARED_FUNCTION Bsdf path_load_bsdf(__global const uint *paths, uint stride, uint t)
+SHARED_FUNCTION Bsdf path_load_bsdf(const SceneView *scene, __global const uint *paths, uint stride, uint t)
 {
     Bsdf bsdf;
     bsdf.kind = state_load(paths, stride, PATH_BSDF_KIND, t);
     bsdf.flags = state_load(paths, stride, PATH_BSDF_FLAGS, t);
     bsdf.color0 = state_load_vec3(paths, stride, PATH_BSDF_COLOR0, t);
-    bsdf.color1 = state_load_vec3(paths, stride, PATH_BSDF_COLOR1, t);
-    bsdf.alpha_x = state_load_float(paths, stride, PATH_BSDF_ALPHA_X, t);
-    bsdf.alpha_y = state_load_float(paths, stride, PATH_BSDF_ALPHA_Y, t);
-    bsdf.eta = state_load_float(paths, stride, PATH_BSDF_ETA, t);
-    bsdf.coat_table = state_load(paths, stride, PATH_BSDF_COAT, t);
+    bsdf.color1 = vec3_splat(0.0f);
+    bsdf.eta = 1.0f;
+    bsdf.alpha_x = 0.0f;
+    bsdf.alpha_y = 0.0f;
+    bsdf.coat_table = NONE;
+    if (SCENE_HAS(scene, FEATURES_COLOR1))
+        bsdf.color1 = state_load_vec3(paths, stride, PATH_BSDF_COLOR1, t);
+    if (SCENE_HAS(scene, FEATURES_ETA))
+        bsdf.eta = state_load_float(paths, stride, PATH_BSDF_ETA, t);
+    if (SCENE_HAS(scene, FEATURE_ROUGH)) {
+        bsdf.alpha_x = state_load_float(paths, stride, PATH_BSDF_ALPHA_X, t);
+        bsdf.alpha_y = state_load_float(paths, stride, PATH_BSDF_ALPHA_Y, t);
+        bsdf.coat_table = state_load(paths, stride, PATH_BSDF_COAT, t);
+    }
     return bsdf;
 }
 

@@ -30,8 +30,6 @@ typedef struct Surface {
     Vec2 uv; /* texture coordinates */
     float u, v; /* as in Hit: where on the primitive */
     uint shape;
-    uint primitive;
-    uint instance;
 } Surface;
 
 /* Which quantity a path carries: radiance from the light to the camera is scaled by eta^2 at a refraction, importance

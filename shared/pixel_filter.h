@@ -4,6 +4,7 @@
 #ifndef TWINLIGHT_PIXEL_FILTER_H
 #define TWINLIGHT_PIXEL_FILTER_H
 
+#include "distribution.h"
 #include "scene_view.h"
 
 /* Triangle filter on [-1, 1], by inverting its distribution function on either half. */
@@ -13,22 +14,14 @@ SHARED_FUNCTION float pixel_filter_triangle(float u)
 }
 
 /* Inverts the table that begins at `table` in `lookup`. Returns the offset in units of the radius, in [-1, 1], and
- * multiplies *sign by the cell's sign. A cell without mass is never chosen: the search keeps cdf[low] <= u <
- * cdf[high]. */
+ * multiplies *sign by the cell's sign. A cell without mass is never chosen. */
 SHARED_FUNCTION float pixel_filter_invert(const SceneView *scene, uint table, float u, float *sign)
 {
     __global const float *cdf = scene->lookup + table;
-    uint low = 0u, high = PIXEL_FILTER_CELLS;
-    while (high - low > 1u) {
-        uint middle = (low + high) / 2u;
-        if (cdf[middle] <= u)
-            low = middle;
-        else
-            high = middle;
-    }
-    float inside = (u - cdf[low]) / (cdf[low + 1u] - cdf[low]);
-    *sign *= cdf[PIXEL_FILTER_CELLS + 1u + low];
-    return ((float)low + inside) * (2.0f / (float)PIXEL_FILTER_CELLS) - 1.0f;
+    uint cell = distribution_cell(scene->lookup, table, PIXEL_FILTER_CELLS, u);
+    float inside = (u - cdf[cell]) / (cdf[cell + 1u] - cdf[cell]);
+    *sign *= cdf[PIXEL_FILTER_CELLS + 1u + cell];
+    return ((float)cell + inside) * (2.0f / (float)PIXEL_FILTER_CELLS) - 1.0f;
 }
 
 /* Offset from the pixel's centre in pixels, drawn from |f| with u in [0, 1)^2. *weight is +-(integral of |f|) /

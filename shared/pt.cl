@@ -146,7 +146,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
     state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
     path_store_frame(paths, stride, t, shading);
-    path_store_bsdf(paths, stride, t, &bsdf);
+    path_store_bsdf(&scene, paths, stride, t, &bsdf);
 }
 
 /* The segment between a vertex and its light sample. */
@@ -175,7 +175,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     LightSample sample;
     if (!light_sample(&scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return;
-    Bsdf bsdf = path_load_bsdf(paths, stride, t);
+    Bsdf bsdf = path_load_bsdf(&scene, paths, stride, t);
     Frame shading = path_load_frame(paths, stride, t);
     BsdfValue value = bsdf_eval(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
                                 frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
@@ -214,7 +214,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
                                  state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
-    Bsdf bsdf = path_load_bsdf(paths, stride, t);
+    Bsdf bsdf = path_load_bsdf(&scene, paths, stride, t);
     BsdfSample sample;
     if (!bsdf_sample(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
                      vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {

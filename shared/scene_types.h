@@ -99,15 +99,12 @@ typedef struct Quadric {
 typedef struct Object {
     uint first_primitive;
     uint primitive_count;
-    uint bvh_root; /* OpenCL backend: first node */
-    uint reserved;
 } Object;
 
 typedef struct Instance {
     Affine world_from_object;
     Affine object_from_world;
     uint object;
-    uint flip; /* 1: the transform swaps handedness */
 } Instance;
 
 /* ---- textures -------------------------------------------------------------------------------------------------- */
@@ -233,7 +230,6 @@ typedef struct Light {
     float cos_total; /* spot: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle */
     uint distribution; /* infinite image: index into `distributions2d` */
-    uint reserved[2];
     Affine world_from_light; /* infinite: rotation */
     Affine light_from_world;
 } Light;
@@ -264,7 +260,6 @@ typedef struct Camera {
     uint kind;
     float lens_radius;
     float focal_distance;
-    float reserved;
     float screen[4]; /* x_min x_max y_min y_max on the plane z = 1 (perspective) or in world units (orthographic) */
     Affine world_from_camera;
     Affine camera_from_world;
@@ -307,7 +302,6 @@ typedef struct FrameParams {
     uint features;
     uint light_count;
     uint infinite_light_count;
-    uint instance_count;
     Camera camera;
     PixelFilter filter;
     uint width, height; /* of the whole film, pixels */

@@ -1,5 +1,5 @@
-/* Access to structure-of-arrays state: field f of item t lives at f * stride + t ("transposed indexing" of the paper),
- * so that neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
+/* Access to structure-of-arrays state: field f of item t lives at f * stride + t, so that
+ * neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
 #ifndef TWINLIGHT_STATE_H
 #define TWINLIGHT_STATE_H
 

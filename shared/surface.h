@@ -255,8 +255,6 @@ SHARED_FUNCTION Surface surface_from_hit(const SceneView *scene, const Ray *ray,
     Vec3 o = ray->o, d = ray->d;
     Surface surface;
     surface.shape = primitive.shape_and_kind & PRIMITIVE_SHAPE_MASK;
-    surface.primitive = hit.primitive;
-    surface.instance = hit.instance;
     surface.u = hit.u;
     surface.v = hit.v;
     bool instanced = SCENE_HAS(scene, FEATURE_INSTANCE) && hit.instance != NONE;

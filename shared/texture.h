@@ -117,13 +117,6 @@ SHARED_FUNCTION Vec3 image_lookup(const SceneView *scene, uint index, Vec2 uv)
     return image_filter(scene, &image, uv, IMAGE_READ_COLOR);
 }
 
-/* The fourth channel; 1 when there is none. */
-SHARED_FUNCTION float image_lookup_alpha(const SceneView *scene, uint index, Vec2 uv)
-{
-    TextureImage image = scene->images[index];
-    return image.channels == 4u ? image_filter(scene, &image, uv, IMAGE_READ_ALPHA).x : 1.0f;
-}
-
 /* The image as a number, as pbrt's float textures: grey, the mean of RGB, the alpha of RGBA. */
 SHARED_FUNCTION float image_lookup_float(const SceneView *scene, uint index, Vec2 uv)
 {

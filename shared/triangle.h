@@ -188,11 +188,4 @@ SHARED_FUNCTION bool triangle_query(Vec3 a, Vec3 b, Vec3 c, const RayQuery *quer
     return triangle_finish(a, b, c, sa, sb, sc, e, query, t, u, v);
 }
 
-/* The same for a ray that is asked about one triangle only. */
-SHARED_FUNCTION bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v)
-{
-    RayQuery query = ray_query(*ray);
-    return triangle_query(a, b, c, &query, t, u, v);
-}
-
 #endif

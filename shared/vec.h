@@ -59,11 +59,6 @@ SHARED_FUNCTION Vec3 vec3_mul(Vec3 a, Vec3 b)
     return vec3(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
-SHARED_FUNCTION Vec3 vec3_div(Vec3 a, Vec3 b)
-{
-    return vec3(a.x / b.x, a.y / b.y, a.z / b.z);
-}
-
 SHARED_FUNCTION Vec3 vec3_scale(Vec3 a, float s)
 {
     return vec3(a.x * s, a.y * s, a.z * s);

@@ -1,5 +1,5 @@
-/* Random walks that ask for rays and nothing else: what the tests of the backends and bench_rays run, so that the
- * bits of hits can be compared across threads, backends and devices without a light or material in play. The walk
+/* Random walks that ask for rays and nothing else: what the tests of the backends run, so that the bits
+ * of hits can be compared across threads, backends and devices without a light or material in play. The walk
  * leaves each hit in a uniform direction on a random side, and draws a segment to an earlier point of itself. */
 #ifndef TWINLIGHT_WALK_CL
 #define TWINLIGHT_WALK_CL

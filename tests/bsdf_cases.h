@@ -1,6 +1,6 @@
 /* What the BSDF tests share: a scene that has every feature, BSDFs in it, directions, random numbers. */
-#ifndef TWINLIGHT_TESTS_BSDF_CASES_H
-#define TWINLIGHT_TESTS_BSDF_CASES_H
+#ifndef TWINLIGHT_BSDF_CASES_H
+#define TWINLIGHT_BSDF_CASES_H
 
 #include "coat_table.h"
 #include "test_util.h"

@@ -177,7 +177,7 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
 {
     Error error = {0};
     double inverse[16];
-    matrix_inverse(world_from_object, inverse);
+    test_matrix_inverse(world_from_object, inverse);
     ck_assert_msg(
         scene_add_quadric(&test->scene, kind, quadric, world_from_object, inverse, shape_plain(0), NULL, 0, &error),
         "%s", error.message);
@@ -189,53 +189,13 @@ void test_scene_finish(TestScene *test)
     Scene *scene = &test->scene;
     ck_assert_msg(scene_finish(scene, &error), "%s", error.message);
     scene->frame.features |= FEATURE_TANGENTS; /* no material here asks for them, but the tests do */
-    test->backend = (BackendScene){.frame = &scene->frame,
-                                   .geometry = scene->geometry_words.data,
-                                   .geometry_words = scene->geometry_words.count,
-                                   .tables = scene->tables_words.data,
-                                   .tables_words = scene->tables_words.count,
-                                   .texels = scene->texels.data,
-                                   .texel_words = scene->texels.count,
-                                   .primitive_count = scene->primitive_count,
-                                   .object_count = scene->objects.count,
-                                   .instance_count = scene->instances.count};
+    test->backend = scene_backend_view(scene);
     test->view = scene_view(test->backend.frame, test->backend.geometry, test->backend.tables, test->backend.texels);
 }
 
 void test_scene_destroy(TestScene *test)
 {
     scene_destroy(&test->scene);
-}
-
-void matrix_inverse(const double m[16], double out[16])
-{
-    double a[4][8];
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) {
-            a[i][j] = m[4 * i + j];
-            a[i][j + 4] = i == j;
-        }
-    for (int k = 0; k < 4; ++k) {
-        int pivot = k;
-        for (int i = k; i < 4; ++i)
-            pivot = fabs(a[i][k]) > fabs(a[pivot][k]) ? i : pivot;
-        for (int j = 0; j < 8; ++j) {
-            double swap = a[k][j];
-            a[k][j] = a[pivot][j];
-            a[pivot][j] = swap;
-        }
-        double scale = 1.0 / a[k][k];
-        for (int j = 0; j < 8; ++j)
-            a[k][j] *= scale;
-        for (int i = 0; i < 4; ++i) {
-            double factor = a[i][k];
-            for (int j = 0; i != k && j < 8; ++j)
-                a[i][j] -= factor * a[k][j];
-        }
-    }
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            out[4 * i + j] = a[i][j + 4];
 }
 
 void matrix_random(TestRandom *random, float low, float high, bool mirror, Vec3 shift, double out[16])
@@ -275,6 +235,12 @@ Hit brute_force(const TestScene *test, const Ray *ray)
         brute_force_object(test, test->view.instances[i].object, i, &inner, &best);
     }
     return best;
+}
+
+bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v)
+{
+    RayQuery query = ray_query(*ray);
+    return triangle_query(a, b, c, &query, t, u, v);
 }
 
 bool hit_same(const Hit *a, const Hit *b)

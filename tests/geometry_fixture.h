@@ -7,6 +7,7 @@
 #include "rng.h"
 #include "scene.h"
 #include "surface.h"
+#include "test_matrix.h"
 #include "test_util.h"
 
 /* A sequence of numbers from the program's own generator: (seed, n) names a number for ever. */
@@ -53,13 +54,14 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
 void test_scene_finish(TestScene *test);
 void test_scene_destroy(TestScene *test);
 
-/* 4x4, row-major. */
-void matrix_inverse(const double m[16], double out[16]);
-/* Rotation about a random axis times scales in [low, high] (negative with even odds when `mirror`), then a shift. */
+/* 4x4, row-major. Rotation about a random axis times scales in [low, high] (negative with even odds when `mirror`), then a shift. */
 void matrix_random(TestRandom *random, float low, float high, bool mirror, Vec3 shift, double out[16]);
 
 /* The closest hit by asking every primitive of the world and of every instance. */
 Hit brute_force(const TestScene *test, const Ray *ray);
+
+/* triangle_query for a ray that is asked about one triangle only. */
+bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v);
 
 /* All members have the same bits. */
 bool hit_same(const Hit *a, const Hit *b);

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_LIGHT_FIXTURE_H
 #define TWINLIGHT_LIGHT_FIXTURE_H
 
+#include "test_matrix.h"
 #include "test_util.h"
 
 #include "light.h"
@@ -75,23 +76,6 @@ static inline void fixture_add_polygon(LightFixture *f, const float *positions, 
     ck_assert_msg(ok, "%s", error.message);
 }
 
-/* Inverse of an affine 4x4 matrix, row-major. */
-static inline void fixture_invert(const double m[16], double out[16])
-{
-    double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9], i = m[10];
-    double det = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-    double r[9] = {e * i - f * h, c * h - b * i, b * f - c * e, f * g - d * i, a * i - c * g,
-                   c * d - a * f, d * h - e * g, b * g - a * h, a * e - b * d};
-    for (int j = 0; j < 16; ++j)
-        out[j] = j == 15 ? 1.0 : 0.0;
-    for (int row = 0; row < 3; ++row) {
-        for (int k = 0; k < 3; ++k)
-            out[4 * row + k] = r[3 * row + k] / det;
-        for (int k = 0; k < 3; ++k)
-            out[4 * row + 3] -= out[4 * row + k] * m[4 * k + 3];
-    }
-}
-
 /* A sphere or disk that emits `radiance`. */
 static inline void fixture_add_quadric(LightFixture *f, uint kind, Quadric quadric, const double matrix[16],
                                        float radiance, uint shape_flags, uint light_flags)
@@ -99,7 +83,7 @@ static inline void fixture_add_quadric(LightFixture *f, uint kind, Quadric quadr
     const float emission[3] = {radiance, radiance, radiance};
     double inverse[16];
     Error error = {0};
-    fixture_invert(matrix, inverse);
+    test_matrix_inverse(matrix, inverse);
     ck_assert_msg(scene_add_quadric(&f->scene, kind, quadric, matrix, inverse, fixture_shape(shape_flags), emission,
                                     light_flags, &error),
                   "%s", error.message);

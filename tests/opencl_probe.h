@@ -1,6 +1,6 @@
 /* The smallest OpenCL host that tests need: one CPU device, one program, kernels with two inputs and one output. */
-#ifndef TWINLIGHT_TEST_OPENCL_PROBE_H
-#define TWINLIGHT_TEST_OPENCL_PROBE_H
+#ifndef TWINLIGHT_OPENCL_PROBE_H
+#define TWINLIGHT_OPENCL_PROBE_H
 
 #include <stdbool.h>
 #include <stddef.h>

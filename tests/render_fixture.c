@@ -5,10 +5,8 @@
 
 #include <check.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static void require(bool done, const Error *error)
 {
@@ -35,16 +33,7 @@ static void scene_load(const RenderSetup *setup, Scene *scene)
 static Backend *backend_open(const Scene *scene, int threads)
 {
     Error error = {0};
-    BackendScene view = {.frame = &scene->frame,
-                         .geometry = scene->geometry_words.data,
-                         .geometry_words = scene->geometry_words.count,
-                         .tables = scene->tables_words.data,
-                         .tables_words = scene->tables_words.count,
-                         .texels = scene->texels.data,
-                         .texel_words = scene->texels.count,
-                         .primitive_count = scene->primitive_count,
-                         .object_count = scene->objects.count,
-                         .instance_count = scene->instances.count};
+    BackendScene view = scene_backend_view(scene);
     BackendOptions options = {.threads = threads};
     Backend *backend = backend_cpu()->open(&view, &options, &error);
     require(backend != NULL, &error);
@@ -110,15 +99,4 @@ double fixture_block_difference(const float *rgb, const float *reference, int wi
             sum += fabs(a - b) / (b + floor_value);
         }
     return sum / (grid * grid);
-}
-
-const char *fixture_public_scenes(void)
-{
-    static char path[1024];
-    const char *given = getenv("SCENES"), *source = getenv("srcdir");
-    if (given)
-        snprintf(path, sizeof path, "%s", given);
-    else
-        snprintf(path, sizeof path, "%s/../shared/scenes", source ? source : ".");
-    return access(path, R_OK) == 0 ? path : NULL;
 }

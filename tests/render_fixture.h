@@ -37,7 +37,4 @@ double fixture_block_mean(const float *rgb, int width, int x0, int y0, int x1, i
 /* Mean over a grid x grid of blocks of |a - b| / (b + 0.01 mean b), b the blocks of `reference`. */
 double fixture_block_difference(const float *rgb, const float *reference, int width, int height, int grid);
 
-/* Folder of the public scenes: $SCENES, else scenes/ beside the checkout. NULL when it is not there. */
-const char *fixture_public_scenes(void);
-
 #endif

@@ -32,6 +32,7 @@ EXTRA_DIST += \
 	tests/test_import.h \
 	tests/test_light.h \
 	tests/test_math.h \
+	tests/test_matrix.h \
 	tests/test_util.h \
 	tests/platform_probe.cl
 
@@ -108,7 +109,6 @@ tests_test_platform_bits_SOURCES += tests/opencl_probe.c
 else
 tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
 endif
-tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
 tests_test_platform_bits_CFLAGS = $(TEST_CFLAGS)
 tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 

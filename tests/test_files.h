@@ -4,7 +4,6 @@
 
 #include <check.h>
 #include <dirent.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,19 +68,6 @@ static inline unsigned char *test_file_read(const char *path, size_t *size)
     fclose(file);
     return bytes;
 }
-
-/* For loops: Check's own assertions record every success in a file, which takes a microsecond each. */
-#define TEST_NEAR(got, expected, tolerance)                                                                            \
-    do {                                                                                                               \
-        double test_got = (double)(got), test_expected = (double)(expected);                                           \
-        if (!(fabs(test_got - test_expected) <= (tolerance)))                                                          \
-            ck_abort_msg("%s is %.9g, not %.9g", #got, test_got, test_expected);                                       \
-    } while (0)
-#define TEST_TRUE(condition)                                                                                           \
-    do {                                                                                                               \
-        if (!(condition))                                                                                              \
-            ck_abort_msg("%s is false", #condition);                                                                   \
-    } while (0)
 
 /* A small generator for test data (Numerical Recipes' quick one). */
 static inline unsigned test_random(unsigned *state)

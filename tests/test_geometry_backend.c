@@ -5,12 +5,12 @@
 #include "kernel_list.h"
 #include "rays_embree.h"
 #include "state.h"
+#include "walk.cl"
 
 #include <pthread.h>
 #include <string.h>
 
 #define ITEMS 5003u
-#define WALK_STATE_WORDS 8u
 
 static const Step WALK_STEPS[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},
                                   {.kind = STEP_TRACE_CLOSEST},
@@ -26,7 +26,7 @@ static const Step WALK_STEPS[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_st
 static StepList walk_list(void)
 {
     StepList list = {.steps = WALK_STEPS, .count = sizeof WALK_STEPS / sizeof *WALK_STEPS};
-    list.words_per_item[BUFFER_PATHS] = WALK_STATE_WORDS;
+    list.words_per_item[BUFFER_PATHS] = WALK_WORDS;
     list.words_per_item[BUFFER_RAYS] = RAY_WORDS;
     list.words_per_item[BUFFER_HITS] = HIT_WORDS;
     list.words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;

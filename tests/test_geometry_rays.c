@@ -217,7 +217,7 @@ static void instances_scene(TestScene *test, TestRandom *random, uint instances)
     for (uint i = 0; i < instances; ++i) {
         double m[16], inverse[16];
         matrix_random(random, 0.3f, 1.0f, true, vec3_scale(random_direction(random), 2.5f), m);
-        matrix_inverse(m, inverse);
+        test_matrix_inverse(m, inverse);
         ck_assert(scene_add_instance(&test->scene, object, m, inverse, &error));
     }
     test_scene_finish(test);
@@ -263,7 +263,7 @@ static void instance_compare(bool mirror, uint seed)
     matrix_random(&random, 0.5f, 1.5f, false, vec3(3.0f, -2.0f, 5.0f), m);
     for (int i = 0; mirror && i < 3; ++i)
         m[4 * i] = -m[4 * i];
-    matrix_inverse(m, inverse);
+    test_matrix_inverse(m, inverse);
     test_scene_init(&instanced);
     ck_assert(scene_object_begin(&instanced.scene, &object, &error));
     test_scene_mesh(&instanced, &mesh, 0);
@@ -315,7 +315,7 @@ START_TEST(test_instance_self_intersection)
         uint object;
         Vec3 shift = vec3_scale(random_direction(&random), k % 3 == 0 ? 0.0f : k % 3 == 1 ? 10.0f : 1e4f);
         matrix_random(&random, 0.1f, 10.0f, true, shift, m);
-        matrix_inverse(m, inverse);
+        test_matrix_inverse(m, inverse);
         test_scene_init(&test);
         ck_assert(scene_object_begin(&test.scene, &object, &error));
         test_scene_mesh(&test, &mesh, 0);

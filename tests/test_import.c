@@ -24,8 +24,7 @@ const char *import_log(void)
 const char *import_tests_dir(void)
 {
     static char path[1024];
-    const char *source = getenv("srcdir");
-    snprintf(path, sizeof path, "%s/tests", source ? source : "..");
+    snprintf(path, sizeof path, "%s/tests", test_source_folder());
     return path;
 }
 

@@ -1,74 +1,42 @@
 /* Include and Import, the limits that hostile files meet, the public scenes, and the folders of bad and of fuzzed
  * files. */
+#include "test_files.h"
 #include "test_import.h"
 
-#include <dirent.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-static char folder[64];
-
-static void folder_make(void)
-{
-    strcpy(folder, "/tmp/twinlight-files-XXXXXX");
-    ck_assert_ptr_nonnull(mkdtemp(folder));
-}
 
 static void file_write(const char *name, const char *text)
 {
-    char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    ck_assert_ptr_nonnull(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-static void folder_remove(void)
-{
-    DIR *directory = opendir(folder);
-    for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        unlink(path);
-    }
-    if (directory)
-        closedir(directory);
-    rmdir(folder);
+    test_file_write(test_path(name), text, strlen(text));
 }
 
 START_TEST(include_shares_the_state)
 {
     Scene scene;
-    folder_make();
     file_write("part.inc", "Translate 1 0 0\nMaterial \"dielectric\"\nShape \"sphere\"");
-    import_text_in("WorldBegin Include \"part.inc\" \"float radius\" 2 Shape \"sphere\"", folder, false, &scene);
+    import_text_in("WorldBegin Include \"part.inc\" \"float radius\" 2 Shape \"sphere\"", test_folder, false, &scene);
     /* The included file's last parameter list goes on in the file that included it, as in pbrt. */
     ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 0).radius, 2.0f);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 1).center, 1, 0, 0, 0.0f);
     ck_assert_uint_eq(scene.materials.count, 1);
     scene_destroy(&scene);
-    folder_remove();
 }
 END_TEST
 
 START_TEST(import_has_its_own_state)
 {
     Scene scene;
-    folder_make();
     file_write("part.inc", "Translate 1 0 0\nMakeNamedMaterial \"m\" \"string type\" \"dielectric\"\n"
                            "ReverseOrientation Include \"inner.inc\" Shape \"sphere\"");
     file_write("inner.inc", "Translate 2 0 0");
-    import_text_in("WorldBegin Translate 0 5 0 Import \"part.inc\" NamedMaterial \"m\" Shape \"sphere\"", folder, false,
-                   &scene);
+    import_text_in("WorldBegin Translate 0 5 0 Import \"part.inc\" NamedMaterial \"m\" Shape \"sphere\"", test_folder,
+                   false, &scene);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 3, 5, 0, 0.0f);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 1).center, 0, 5, 0, 0.0f);
     ck_assert_uint_eq(ELEMENT(&scene, shapes, Shape, 1).flags, 0);
     const Material *m = &ELEMENT(&scene, materials, Material, ELEMENT(&scene, shapes, Shape, 1).material);
     ck_assert_uint_eq(m->kind, MATERIAL_DIELECTRIC);
     scene_destroy(&scene);
-    folder_remove();
 }
 END_TEST
 
@@ -77,17 +45,13 @@ START_TEST(cycles_end)
     Error error;
     Scene scene;
     ImportOptions options = {.lenient = true};
-    char path[128];
-    folder_make();
     file_write("a.pbrt", "WorldBegin Include \"b.inc\"");
     file_write("b.inc", "\n  Include \"a.pbrt\"");
-    snprintf(path, sizeof path, "%s/a.pbrt", folder);
     scene_init(&scene);
-    ck_assert(!pbrt_import(path, &options, &scene, &error));
+    ck_assert(!pbrt_import(test_path("a.pbrt"), &options, &scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "b.inc:2:11: error: "));
     ck_assert_ptr_nonnull(strstr(error.message, "a.pbrt includes itself"));
     scene_destroy(&scene);
-    folder_remove();
 }
 END_TEST
 
@@ -108,7 +72,6 @@ START_TEST(includes_are_bounded)
     Error error;
     Scene scene;
     ImportOptions options = {.lenient = true};
-    folder_make();
     for (int i = 0; i < 70; ++i) {
         char name[32], text[64];
         snprintf(name, sizeof name, "%d", i);
@@ -116,10 +79,9 @@ START_TEST(includes_are_bounded)
         file_write(name, text);
     }
     scene_init(&scene);
-    ck_assert(!pbrt_import_text("Include \"0\"", 11, "t", folder, &options, &scene, &error));
+    ck_assert(!pbrt_import_text("Include \"0\"", 11, "t", test_folder, &options, &scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "/62:1:9: error: files included more than 64 deep"));
     scene_destroy(&scene);
-    folder_remove();
 }
 END_TEST
 
@@ -146,14 +108,8 @@ static const struct {
 START_TEST(public_scenes)
 {
     char path[1200];
-    struct stat status;
-    const char *scenes = getenv("SCENES");
-    snprintf(path, sizeof path, "%s%s/%s", scenes ? scenes : import_tests_dir(), scenes ? "" : "/../../shared/scenes",
-             PUBLIC[_i].name);
-    if (stat(path, &status) != 0) {
-        fprintf(stderr, "skipped: no public scene at %s (set SCENES)\n", path);
+    if (!test_public_scene(PUBLIC[_i].name, path, sizeof path))
         return;
-    }
     Scene scene;
     Error error = {{0}, {0}};
     ImportOptions options = {.lenient = false};
@@ -177,6 +133,7 @@ TCase *import_files_case(void)
 {
     TCase *tcase = tcase_create("files");
     tcase_set_timeout(tcase, 60);
+    tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, include_shares_the_state);
     tcase_add_test(tcase, import_has_its_own_state);
     tcase_add_test(tcase, cycles_end);

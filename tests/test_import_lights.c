@@ -1,4 +1,5 @@
 /* Lights: pbrt's scales. An rgb value of 1 1 1 emits 1 1 1; every other spectrum counts at luminance 1. */
+#include "test_files.h"
 #include "test_import.h"
 
 #include "color.h"
@@ -9,7 +10,9 @@
 
 static Light light_of(const char *text, Scene *scene)
 {
-    import_world(text, scene);
+    char whole[512];
+    snprintf(whole, sizeof whole, "WorldBegin\n%s", text);
+    import_text_in(whole, test_folder, false, scene);
     ck_assert_uint_ge(scene->lights.count, 1);
     return ELEMENT(scene, lights, Light, 0);
 }
@@ -142,29 +145,28 @@ START_TEST(light_attributes)
 }
 END_TEST
 
-/* A square PFM of `side` pixels, white above z = 0 of the octahedral map and below. */
-static void map_write(const char *path, int width, int height)
+/* map.pfm: width x height pixels of 1/2. */
+static void map_write(int width, int height)
 {
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(test_path("map.pfm"), "wb");
     ck_assert_ptr_nonnull(file);
     fprintf(file, "PF\n%d %d\n-1.0\n", width, height);
     for (int i = 0; i < 3 * width * height; ++i) {
-        float one = 0.5f;
-        fwrite(&one, sizeof one, 1, file);
+        float half = 0.5f;
+        fwrite(&half, sizeof half, 1, file);
     }
     fclose(file);
 }
 
 START_TEST(environment_maps)
 {
-    char path[] = "/tmp/twinlight-map-XXXXXX", text[512];
-    int descriptor = mkstemp(path);
-    ck_assert_int_ge(descriptor, 0);
+    static const char MAP[] = "WorldBegin LightSource \"infinite\" \"string filename\" \"map.pfm\"";
+    ImportOptions options = {.lenient = false};
+    Error error;
     Scene scene;
-    map_write(path, 64, 64);
-    snprintf(text, sizeof text, "Rotate 90 0 0 1 LightSource \"infinite\" \"string filename\" \"%s\" \"float scale\" 3",
-             path);
-    Light light = light_of(text, &scene);
+    map_write(64, 64);
+    Light light =
+        light_of("Rotate 90 0 0 1 LightSource \"infinite\" \"string filename\" \"map.pfm\" \"float scale\" 3", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_INFINITE_IMAGE);
     ck_assert_uint_eq(light.flags, 0);
     assert_vec3(light.emission, 3, 3, 3, 0.0f);
@@ -173,23 +175,24 @@ START_TEST(environment_maps)
     scene_destroy(&scene);
     /* A constant map of radiance 1/2 lights a plane with pi / 2; pbrt measures half of that, so it doubles the scale
      * that a constant light gets. */
-    snprintf(text, sizeof text, "LightSource \"infinite\" \"string filename\" \"%s\" \"float illuminance\" 5", path);
-    light = light_of(text, &scene);
+    light = light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"float illuminance\" 5", &scene);
     ASSERT_NEAR(light.emission.x * 0.5f, 2.0f * 5.0f / PI, 0.01f);
     scene_destroy(&scene);
-    map_write(path, 4, 2);
-    snprintf(text, sizeof text, "WorldBegin LightSource \"infinite\" \"string filename\" \"%s\"", path);
-    ck_assert_ptr_nonnull(strstr(import_error(text), "an infinite light's image that is not square (4 x 2)"));
-    import_text_in(text, "", true, &scene);
+    map_write(4, 2);
+    scene_init(&scene);
+    ck_assert(!pbrt_import_text(MAP, strlen(MAP), "test.pbrt", test_folder, &options, &scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "an infinite light's image that is not square (4 x 2)"));
+    scene_destroy(&scene);
+    import_text_in(MAP, test_folder, true, &scene);
     ck_assert_uint_eq(ELEMENT(&scene, lights, Light, 0).flags, LIGHT_EQUIRECTANGULAR);
     scene_destroy(&scene);
-    remove(path);
 }
 END_TEST
 
 TCase *import_lights_case(void)
 {
     TCase *tcase = tcase_create("lights");
+    tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, rgb_is_taken_as_it_is);
     tcase_add_test(tcase, other_spectra_have_luminance_one);
     tcase_add_test(tcase, power_and_illuminance);

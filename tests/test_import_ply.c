@@ -1,4 +1,5 @@
 /* PLY files of every form give the same mesh; damaged ones an error. */
+#include "test_files.h"
 #include "test_import.h"
 
 #include "ply.h"
@@ -136,13 +137,12 @@ END_TEST
 
 START_TEST(gzip)
 {
-    char path[] = "/tmp/twinlight-ply-XXXXXX";
-    int descriptor = mkstemp(path);
+    const char *path = test_path("a.ply.gz");
     static Bytes bytes;
     Error error = {{0}, {0}};
     PlyMesh mesh;
     binary_make(&bytes, false, "u");
-    gzFile file = gzdopen(descriptor, "wb");
+    gzFile file = gzopen(path, "wb");
     ck_assert_int_eq(gzwrite(file, bytes.data, (unsigned)bytes.size), (int)bytes.size);
     gzclose(file);
     ck_assert_msg(ply_read(path, (SourcePlace){0}, &mesh, &error), "%s", error.message);
@@ -150,10 +150,9 @@ START_TEST(gzip)
     ply_destroy(&mesh);
     ck_assert_int_eq(truncate(path, 100), 0);
     ck_assert(!ply_read(path, (SourcePlace){"s.pbrt", 3, 4}, &mesh, &error));
-    ck_assert_ptr_nonnull(strstr(error.message, "s.pbrt:3:4: error: /tmp/twinlight-ply"));
+    ck_assert_ptr_nonnull(strstr(error.message, "s.pbrt:3:4: error: ./scratch-"));
     ck_assert_ptr_nonnull(strstr(error.message, "damaged or incomplete"));
     ck_assert_ptr_null(mesh.positions);
-    remove(path);
 }
 END_TEST
 
@@ -209,6 +208,8 @@ START_TEST(damaged_headers)
 }
 END_TEST
 
+static const char PLY_SCENE[] = "WorldBegin Shape \"plymesh\" \"string filename\" \"a.ply\"";
+
 static bool million_write(const char *path)
 {
     enum { SIDE = 708 };
@@ -238,17 +239,11 @@ static bool million_write(const char *path)
 /* A million triangles from file to scene; the bound of one second leaves room for a slow machine and sanitizers. */
 START_TEST(a_million_triangles)
 {
-    char path[] = "/tmp/twinlight-ply-XXXXXX", text[256];
-    int descriptor = mkstemp(path);
-    ck_assert_int_ge(descriptor, 0);
-    close(descriptor);
-    ck_assert(million_write(path));
-    snprintf(text, sizeof text, "Shape \"plymesh\" \"string filename\" \"%s\"", path);
+    ck_assert(million_write(test_path("a.ply")));
     Scene scene;
     clock_t begin = clock();
-    import_world(text, &scene);
+    import_text_in(PLY_SCENE, test_folder, false, &scene);
     double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
-    remove(path);
     ck_assert_uint_eq(scene.primitives.count, 999698);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && defined(__OPTIMIZE__)
     ck_assert_double_lt(seconds, 1.0);
@@ -261,16 +256,11 @@ END_TEST
 
 START_TEST(quads_become_patches)
 {
-    char path[] = "/tmp/twinlight-ply-XXXXXX", text[256];
-    int descriptor = mkstemp(path);
     static Bytes bytes;
     binary_make(&bytes, false, "u");
-    ck_assert_int_eq(write(descriptor, bytes.data, bytes.size), (ssize_t)bytes.size);
-    close(descriptor);
-    snprintf(text, sizeof text, "Shape \"plymesh\" \"string filename\" \"%s\"", path);
+    test_file_write(test_path("a.ply"), bytes.data, bytes.size);
     Scene scene;
-    import_world(text, &scene);
-    remove(path);
+    import_text_in(PLY_SCENE, test_folder, false, &scene);
     ck_assert_uint_eq(scene.shapes.count, 2);
     ck_assert_uint_eq(scene.primitives.count, 2);
     /* Around the face 0 1 2 3; as a patch p00 p10 p01 p11. */
@@ -283,6 +273,7 @@ END_TEST
 TCase *import_ply_case(void)
 {
     TCase *tcase = tcase_create("ply");
+    tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, every_format_gives_the_same_mesh);
     tcase_add_test(tcase, gzip);

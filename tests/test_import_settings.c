@@ -20,7 +20,6 @@ START_TEST(defaults_of_an_empty_scene)
     ck_assert_uint_eq(scene.filter_settings.kind, PIXEL_FILTER_GAUSSIAN);
     ASSERT_FLOAT(scene.filter_settings.radius_x, 1.5f);
     ASSERT_FLOAT(scene.filter_settings.sigma, 0.5f);
-    ck_assert_str_eq(scene.name, "test");
     scene_destroy(&scene);
 }
 END_TEST

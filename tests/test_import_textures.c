@@ -1,8 +1,8 @@
 /* Texture expressions: their programs, folding, mappings, images. */
+#include "test_files.h"
 #include "test_import.h"
 
 #include <string.h>
-#include <unistd.h>
 
 /* Codes of the program of the last material's colour, as digits; "" when it is constant. */
 static const char *program_codes(const char *textures, Scene *scene, const TextureOp **ops)
@@ -133,40 +133,28 @@ START_TEST(float_textures_of_materials)
 }
 END_TEST
 
-/* A 2 x 1 PFM image in a new folder. */
-static void image_write(char *directory)
+/* a.pfm: a 2 x 1 image. */
+static void image_write(void)
 {
-    char path[256];
+    static const char HEAD[] = "PF\n2 1\n-1.0\n";
     static const float PIXELS[6] = {0.25f, 0.5f, 0.75f, 1, 1, 1};
-    ck_assert_ptr_nonnull(mkdtemp(directory));
-    snprintf(path, sizeof path, "%s/a.pfm", directory);
-    FILE *file = fopen(path, "wb");
-    ck_assert_ptr_nonnull(file);
-    fputs("PF\n2 1\n-1.0\n", file);
-    fwrite(PIXELS, sizeof PIXELS, 1, file);
-    fclose(file);
-}
-
-static void image_remove(const char *directory)
-{
-    char path[256];
-    snprintf(path, sizeof path, "%s/a.pfm", directory);
-    unlink(path);
-    rmdir(directory);
+    char file[sizeof HEAD - 1 + sizeof PIXELS];
+    memcpy(file, HEAD, sizeof HEAD - 1);
+    memcpy(file + sizeof HEAD - 1, PIXELS, sizeof PIXELS);
+    test_file_write(test_path("a.pfm"), file, sizeof file);
 }
 
 START_TEST(images)
 {
-    char directory[] = "/tmp/twinlight-import-XXXXXX";
     Scene scene;
-    image_write(directory);
+    image_write();
     import_text_in(
         "WorldBegin Texture \"i\" \"spectrum\" \"imagemap\" \"string filename\" \"a.pfm\" \"float scale\" 2\n"
         "\"bool invert\" true \"string wrap\" \"clamp\" \"string filter\" \"point\"\n"
         "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"i\" \"float scale\" 0.25\n"
         "Material \"diffuse\" \"texture reflectance\" \"t\" \"string normalmap\" \"a.pfm\"\n"
         "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]",
-        directory, false, &scene);
+        test_folder, false, &scene);
     const Material *m = &ELEMENT(&scene, materials, Material, 0);
     const TextureOp *op = &ELEMENT(&scene, texture_ops, TextureOp, m->color0.program);
     ck_assert_uint_eq(op[0].code, TEXTURE_IMAGE);
@@ -181,7 +169,26 @@ START_TEST(images)
     ck_assert_uint_ne(m->normal_map, NONE);
     ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, m->normal_map).wrap, WRAP_REPEAT);
     scene_destroy(&scene);
-    image_remove(directory);
+}
+END_TEST
+
+/* A float texture that is a colour image counts by its mean, wherever it is used. */
+START_TEST(float_image_in_a_colour_texture)
+{
+    Scene scene;
+    image_write();
+    import_text_in("WorldBegin Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.pfm\"\n"
+                   "Texture \"f\" \"float\" \"imagemap\" \"string filename\" \"a.pfm\"\n"
+                   "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"c\" \"texture scale\" \"f\"\n"
+                   "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+                   "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]",
+                   test_folder, false, &scene);
+    const TextureOp *op =
+        &ELEMENT(&scene, texture_ops, TextureOp, ELEMENT(&scene, materials, Material, 0).color0.program);
+    ck_assert_uint_eq(op[0].code + op[1].code, TEXTURE_IMAGE + TEXTURE_IMAGE_FLOAT);
+    ck_assert_uint_ne(op[0].code, op[1].code);
+    ck_assert_uint_eq(op[2].code, TEXTURE_SCALE);
+    scene_destroy(&scene);
 }
 END_TEST
 
@@ -200,12 +207,14 @@ END_TEST
 TCase *import_textures_case(void)
 {
     TCase *tcase = tcase_create("textures");
+    tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, constants_fold);
     tcase_add_test(tcase, postfix_programs);
     tcase_add_test(tcase, a_texture_used_twice_has_one_program);
     tcase_add_test(tcase, mappings);
     tcase_add_test(tcase, float_textures_of_materials);
     tcase_add_test(tcase, images);
+    tcase_add_test(tcase, float_image_in_a_colour_texture);
     tcase_add_test(tcase, unsupported_textures);
     return tcase;
 }

@@ -156,7 +156,7 @@ static void shape_invert(const AreaShape *s, const double p[3], double ab[2])
         ab[0] = (dot(d, axes[2]) - low) / (1.0 - low);
         ab[1] = turn(dot(d, axes[1]), dot(d, axes[0]), 2.0 * M_PI);
     } else {
-        fixture_invert(s->matrix, inverse);
+        test_matrix_inverse(s->matrix, inverse);
         transform(inverse, p, local);
         double r = hypot(local[0], local[1]), low = (double)q->z_min, inner = (double)q->inner_radius;
         ab[0] = s->kind == PRIMITIVE_SPHERE ? (local[2] - low) / ((double)q->z_max - low)

@@ -19,7 +19,7 @@ static CameraSettings settings_placed(uint kind, float fov)
 {
     CameraSettings settings = settings_identity(kind, fov);
     memcpy(settings.world_from_camera, WORLD_FROM_CAMERA, sizeof WORLD_FROM_CAMERA);
-    fixture_invert(settings.world_from_camera, settings.camera_from_world);
+    test_matrix_inverse(settings.world_from_camera, settings.camera_from_world);
     return settings;
 }
 

@@ -80,17 +80,11 @@ static bool layout_lists(const char *type)
     return false;
 }
 
-static const char *source_directory(void)
-{
-    const char *directory = getenv("srcdir"); /* set by make check */
-    return directory ? directory : TEST_SRCDIR;
-}
-
 /* Every struct of scene_types.h is in platform_layout.h. */
 START_TEST(test_layout_structs)
 {
     char path[4096], line[512], type[64];
-    snprintf(path, sizeof path, "%s/shared/scene_types.h", source_directory());
+    snprintf(path, sizeof path, "%s/shared/scene_types.h", test_source_folder());
     FILE *file = fopen(path, "r");
     ck_assert_msg(file != NULL, "cannot read %s", path);
     int count = 0;
@@ -229,7 +223,7 @@ int main(void)
     bool absent;
     setenv("POCL_KERNEL_CACHE", "0", 0); /* a cache does not see that an included header has changed */
     snprintf(options, sizeof options, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -I%s/shared -I%s/tests",
-             source_directory(), source_directory());
+             test_source_folder(), test_source_folder());
     probe = opencl_probe_open("#include \"platform_probe.cl\"\n", options, message, sizeof message, &absent);
     if (!probe) {
         fprintf(stderr, "%s: %s\n", absent ? "skipped" : "failed", message);

@@ -37,14 +37,13 @@ static float *reference_read(const char *path, const RenderedImage *image)
 START_TEST(test_reference)
 {
     const ReferenceCase *test = &CASES[_i];
-    const char *folder = fixture_public_scenes();
-    char scene[1200], reference_path[1200];
-    if (!folder) {
-        fprintf(stderr, "public scenes not found: set SCENES to their folder; %s is not tested\n", test->scene);
+    char name[64], scene[1200], reference_path[1200];
+    snprintf(name, sizeof name, "%s/gray.pbrt", test->scene);
+    if (!test_public_scene(name, scene, sizeof scene))
         return;
-    }
-    snprintf(scene, sizeof scene, "%s/%s/gray.pbrt", folder, test->scene);
-    snprintf(reference_path, sizeof reference_path, "%s/%s/gray_pbrt-v4.exr", folder, test->scene);
+    snprintf(name, sizeof name, "%s/gray_pbrt-v4.exr", test->scene);
+    if (!test_public_scene(name, reference_path, sizeof reference_path))
+        return;
     RenderSetup setup = {.path = scene, .samples = test->samples, .seed = 3};
     RenderedImage image;
     fixture_render(&setup, &image);

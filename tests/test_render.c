@@ -9,7 +9,7 @@
     "PixelFilter \"box\"\n"                                                                                            \
     "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
 
-/* ---- analytic scenes (NUMERICS: to 0.5 %) ----------------------------------------------------------------------- */
+/* ---- analytic scenes, to 0.5 % --------------------------------------------------------------------------------- */
 
 /* Inside a sphere of emission L and albedo a, light bounces for ever: the radiance is L / (1 - a) everywhere. */
 START_TEST(test_emitting_sphere_inside)
@@ -148,17 +148,6 @@ static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/
                                             "coffee/gray.pbrt"};
 #define PUBLIC_SCENE_COUNT ((int)(sizeof PUBLIC_SCENES / sizeof PUBLIC_SCENES[0]))
 
-static bool public_scene_path(int index, char *path, size_t size)
-{
-    const char *folder = fixture_public_scenes();
-    if (folder)
-        snprintf(path, size, "%s/%s", folder, PUBLIC_SCENES[index]);
-    else
-        fprintf(stderr, "public scenes not found: set SCENES to their folder; %s is not tested\n",
-                PUBLIC_SCENES[index]);
-    return folder != NULL;
-}
-
 static void films_equal(const Film *a, const Film *b)
 {
     size_t pixels = (size_t)(a->crop[2] - a->crop[0]) * (size_t)(a->crop[3] - a->crop[1]);
@@ -174,7 +163,7 @@ START_TEST(test_same_bits_for_any_threads)
 {
     static const int THREADS[] = {2, 3, 8};
     char path[1200];
-    if (!public_scene_path(_i, path, sizeof path))
+    if (!test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
         return;
     RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 4, .threads = 1, .seed = 7};
     RenderedImage one, other;
@@ -195,7 +184,7 @@ START_TEST(test_same_bits_in_two_parts)
 {
     char path[1200];
     Error error = {0};
-    if (!public_scene_path(_i, path, sizeof path))
+    if (!test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
         return;
     RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 7, .seed = 9};
     RenderedImage whole, first, second;

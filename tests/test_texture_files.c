@@ -370,14 +370,10 @@ END_TEST
 START_TEST(test_public_references)
 {
     const char *const scenes[] = {"coffee", "cornell-box", "veach-bidir", "veach-mis"};
-    const char *folder = getenv("SCENES"), *source = getenv("srcdir");
     for (int i = 0; i < 4; ++i) {
-        char path[1024];
-        if (folder)
-            snprintf(path, sizeof path, "%s/%s/TungstenRender.exr", folder, scenes[i]);
-        else
-            snprintf(path, sizeof path, "%s/../shared/scenes/%s/TungstenRender.exr", source ? source : ".", scenes[i]);
-        if (access(path, R_OK) != 0)
+        char name[64], path[1024];
+        snprintf(name, sizeof name, "%s/TungstenRender.exr", scenes[i]);
+        if (!test_public_scene(name, path, sizeof path))
             continue;
         Image image = read_good(path);
         double sum = 0.0;

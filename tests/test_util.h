@@ -1,11 +1,14 @@
-/* What every Check program needs: its main function and statistics for tests of sampling. */
+/* What every Check program needs: its main function, cheap assertions, where files are, and statistics for tests of
+ * sampling. */
 #ifndef TWINLIGHT_TEST_UTIL_H
 #define TWINLIGHT_TEST_UTIL_H
 
 #include <check.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 /* Runs the suite; the program's exit status is the result. */
 static inline int test_run(Suite *suite)
@@ -15,6 +18,41 @@ static inline int test_run(Suite *suite)
     int failed = srunner_ntests_failed(runner);
     srunner_free(runner);
     return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/* For loops: Check's own assertions record every success in a file, which takes a microsecond each. */
+#define TEST_NEAR(got, expected, tolerance)                                                                            \
+    do {                                                                                                               \
+        double test_got = (double)(got), test_expected = (double)(expected);                                           \
+        if (!(fabs(test_got - test_expected) <= (tolerance)))                                                          \
+            ck_abort_msg("%s is %.9g, not %.9g", #got, test_got, test_expected);                                       \
+    } while (0)
+#define TEST_TRUE(condition)                                                                                           \
+    do {                                                                                                               \
+        if (!(condition))                                                                                              \
+            ck_abort_msg("%s is false", #condition);                                                                   \
+    } while (0)
+
+/* The top folder of the sources: make check sets srcdir; by hand, tests run in the build folder below it. */
+static inline const char *test_source_folder(void)
+{
+    const char *folder = getenv("srcdir");
+    return folder ? folder : "..";
+}
+
+/* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line on
+ * standard error, when it is not there. */
+static inline bool test_public_scene(const char *name, char *path, size_t size)
+{
+    const char *folder = getenv("SCENES");
+    if (folder)
+        snprintf(path, size, "%s/%s", folder, name);
+    else
+        snprintf(path, size, "%s/../shared/scenes/%s", test_source_folder(), name);
+    if (access(path, R_OK) == 0)
+        return true;
+    fprintf(stderr, "skipped: there is no public scene %s (set SCENES to their folder)\n", path);
+    return false;
 }
 
 /* Regularised upper incomplete gamma function Q(a, x) by series or continued fraction (Abramowitz and Stegun 6.5.29,
