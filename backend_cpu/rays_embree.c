@@ -1,7 +1,7 @@
 #include "rays_embree.h"
 
+#include "box.h"
 #include "primitive.h"
-#include "primitive_bounds.h"
 #include "state.h"
 #include "triangle_cluster.h"
 
@@ -145,7 +145,7 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
     Box box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
     if (object->scene) {
         Box inner = box_inflate(object->box, object->margin);
-        box = box_inflate(box_transform(&inner, &instance->world_from_object), rays->objects[0].margin);
+        box = box_inflate(box_transform(&inner, instance->world_from_object), rays->objects[0].margin);
     }
     *args->bounds_o = embree_bounds(box);
 }

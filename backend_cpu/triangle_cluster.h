@@ -5,9 +5,9 @@
 #ifndef TWINLIGHT_TRIANGLE_CLUSTER_H
 #define TWINLIGHT_TRIANGLE_CLUSTER_H
 
+#include "box.h"
 #include "error.h"
 #include "primitive.h"
-#include "primitive_bounds.h"
 
 #include <embree3/rtcore.h>
 

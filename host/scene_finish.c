@@ -1,6 +1,7 @@
 /* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables, buffers. */
 #include "scene.h"
 
+#include "box.h"
 #include "camera_setup.h"
 #include "coat_table.h"
 #include "filter_setup.h"
@@ -73,108 +74,86 @@ static bool primitives_group_by_object(Scene *scene, Error *error)
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
-typedef struct Bounds {
-    float low[3], high[3];
-} Bounds;
-
-static Bounds bounds_empty(void)
+/* What of a view primitive_box reads, over the arrays as they are before packing. */
+static SceneView geometry_view(const Scene *scene)
 {
-    return (Bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    return (SceneView){.positions = scene->positions.data,
+                       .primitives = scene->primitives.data,
+                       .patches = scene->patches.data,
+                       .quadrics = scene->quadrics.data};
 }
 
-static void bounds_add(Bounds *bounds, Vec3 p)
+static Box object_box(const Scene *scene, const Object *object)
 {
-    const float c[3] = {p.x, p.y, p.z};
-    for (int i = 0; i < 3; ++i) {
-        bounds->low[i] = fminf(bounds->low[i], c[i]);
-        bounds->high[i] = fmaxf(bounds->high[i], c[i]);
+    SceneView view = geometry_view(scene);
+    Box box = box_empty();
+    for (uint i = 0; i < object->primitive_count; ++i) {
+        Box primitive = primitive_box(&view, object->first_primitive + i);
+        box_join(&box, &primitive);
     }
+    return box;
 }
 
-static void bounds_add_box(Bounds *bounds, const Bounds *box, const Affine *transform)
-{
-    for (int corner = 0; corner < 8; ++corner)
-        bounds_add(bounds, affine_point(*transform, vec3(corner & 1 ? box->high[0] : box->low[0],
-                                                         corner & 2 ? box->high[1] : box->low[1],
-                                                         corner & 4 ? box->high[2] : box->low[2])));
-}
-
-static void bounds_add_primitive(Bounds *bounds, const Scene *scene, const Primitive *p)
-{
-    const Vec3 *positions = scene->positions.data;
-    uint kind = p->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    if (kind == PRIMITIVE_TRIANGLE) {
-        bounds_add(bounds, positions[p->a]);
-        bounds_add(bounds, positions[p->b]);
-        bounds_add(bounds, positions[p->c]);
-    } else if (kind == PRIMITIVE_BILINEAR) {
-        for (int k = 0; k < 4; ++k)
-            bounds_add(bounds, positions[ARRAY_AT(&scene->patches, Patch, p->a).v[k]]);
-    } else {
-        const Quadric *q = &ARRAY_AT(&scene->quadrics, Quadric, p->a);
-        float low = kind == PRIMITIVE_DISK ? q->z_min : -q->radius;
-        float high = kind == PRIMITIVE_DISK ? q->z_min : q->radius;
-        Bounds box = {{-q->radius, -q->radius, low}, {q->radius, q->radius, high}};
-        bounds_add_box(bounds, &box, &q->world_from_object);
-    }
-}
-
-static Bounds bounds_of_object(const Scene *scene, const Object *object)
-{
-    Bounds bounds = bounds_empty();
-    for (uint i = 0; i < object->primitive_count; ++i)
-        bounds_add_primitive(&bounds, scene, &ARRAY_AT(&scene->primitives, Primitive, object->first_primitive + i));
-    return bounds;
-}
-
-static float bounds_largest(const Bounds *bounds)
+static float box_largest(const Box *box)
 {
     float largest = 0.0f;
-    for (int i = 0; i < 3; ++i)
-        if (bounds->low[i] <= bounds->high[i])
-            largest = fmaxf(largest, fmaxf(fabsf(bounds->low[i]), fabsf(bounds->high[i])));
+    for (int i = 0; i < 3 && !box_is_empty(box); ++i)
+        largest = fmaxf(largest, fmaxf(fabsf(box->low[i]), fabsf(box->high[i])));
     return largest;
+}
+
+/* The box of everything in world space; *largest is raised to the largest coordinate in the space of any object. */
+static bool world_box(const Scene *scene, Box *world, float *largest, Error *error)
+{
+    Box *objects = malloc(scene->objects.count * sizeof *objects);
+    if (!objects)
+        return error_memory(error, scene->objects.count * sizeof *objects, "bounds");
+    for (size_t o = 0; o < scene->objects.count; ++o) {
+        objects[o] = object_box(scene, &ARRAY_AT(&scene->objects, Object, o));
+        *largest = fmaxf(*largest, box_largest(&objects[o]));
+    }
+    *world = objects[0];
+    for (size_t i = 0; i < scene->instances.count; ++i) {
+        const Instance *instance = &ARRAY_AT(&scene->instances, Instance, i);
+        if (box_is_empty(&objects[instance->object]))
+            continue;
+        Box placed = box_transform(&objects[instance->object], instance->world_from_object);
+        box_join(world, &placed);
+    }
+    free(objects);
+    if (box_is_empty(world)) /* nothing to hit: an environment alone is a scene all the same */
+        *world = (Box){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    *largest = fmaxf(*largest, box_largest(world));
+    return true;
+}
+
+static void world_sphere_set(FrameParams *frame, const Box *world)
+{
+    double square = 0.0, center[3];
+    for (int i = 0; i < 3; ++i) {
+        double half = 0.5 * ((double)world->high[i] - (double)world->low[i]);
+        center[i] = 0.5 * ((double)world->low[i] + (double)world->high[i]);
+        square += half * half;
+    }
+    frame->world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
+    frame->world_radius = (float)(sqrt(square) * 1.0001);
 }
 
 static bool scene_bounds(Scene *scene, Error *error)
 {
-    Bounds world = bounds_empty();
+    Box world;
     float largest = 0.0f;
-    Bounds *objects = malloc(scene->objects.count * sizeof *objects);
-    if (!objects)
-        return error_memory(error, scene->objects.count * sizeof *objects, "bounds");
-    for (size_t o = 0; o < scene->objects.count; ++o) {
-        objects[o] = bounds_of_object(scene, &ARRAY_AT(&scene->objects, Object, o));
-        largest = fmaxf(largest, bounds_largest(&objects[o]));
-    }
-    world = objects[0];
-    for (size_t i = 0; i < scene->instances.count; ++i) {
-        const Instance *instance = &ARRAY_AT(&scene->instances, Instance, i);
-        if (ARRAY_AT(&scene->objects, Object, instance->object).primitive_count > 0)
-            bounds_add_box(&world, &objects[instance->object], &instance->world_from_object);
-    }
-    free(objects);
-    if (!(world.low[0] <= world.high[0])) {
-        /* Nothing to hit: an environment alone is a scene all the same. */
-        world = (Bounds){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    }
-    const double *camera = scene->camera_settings.world_from_camera;
-    largest = fmaxf(largest, bounds_largest(&world));
+    if (!world_box(scene, &world, &largest, error))
+        return false;
     for (int i = 0; i < 3; ++i)
-        largest = fmaxf(largest, fabsf((float)camera[4 * i + 3]));
+        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
     if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
     }
-    double radius = 0.0, center[3];
-    for (int i = 0; i < 3; ++i) {
-        center[i] = 0.5 * ((double)world.low[i] + (double)world.high[i]);
-        radius += pow(0.5 * ((double)world.high[i] - (double)world.low[i]), 2.0);
-    }
-    scene->frame.world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
-    scene->frame.world_radius = (float)(sqrt(radius) * 1.0001);
+    world_sphere_set(&scene->frame, &world);
     scene->frame.ray_epsilon_scale = largest;
     return true;
 }

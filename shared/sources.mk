@@ -1,6 +1,7 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
 	shared/bilinear.h \
+	shared/box.h \
 	shared/bsdf.h \
 	shared/bsdf_coated.h \
 	shared/bsdf_conductor.h \
