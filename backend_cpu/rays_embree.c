@@ -171,6 +171,8 @@ static void instance_intersect_callback(const struct RTCIntersectFunctionNArgume
     if (!object->scene)
         return;
     RayWalk inner = walk_enter(outer, args->primID);
+    if (!ray_traceable(inner.query.o, inner.query.d))
+        return;
     struct RTCRayHit rayhit = {.ray = embree_ray(&inner, inner.query.o, inner.query.d)};
     rtcIntersect1(object->scene, &inner.context, &rayhit);
     outer->best = inner.best;
@@ -184,6 +186,8 @@ static void instance_occluded_callback(const struct RTCOccludedFunctionNArgument
     if (!object->scene)
         return;
     RayWalk inner = walk_enter((RayWalk *)args->context, args->primID);
+    if (!ray_traceable(inner.query.o, inner.query.d))
+        return;
     struct RTCRay ray = embree_ray(&inner, inner.query.o, inner.query.d);
     rtcOccluded1(object->scene, &inner.context, &ray);
     if (ray.tfar < 0.0f)
@@ -355,7 +359,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
     walk_begin(&walk, rays, ray);
-    if (rays->object_count == 0 || !rays->objects[0].scene)
+    if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
     struct RTCRayHit rayhit = {.ray = embree_ray(&walk, ray->o, ray->d)};
     rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
@@ -365,7 +369,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
-    if (rays->object_count == 0 || !rays->objects[0].scene)
+    if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
     struct RTCRay asked = embree_ray(&walk, ray->o, ray->d);

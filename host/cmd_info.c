@@ -44,7 +44,7 @@ static int info_print(const InfoCommand *command, const char *path, Error *error
     ImportOptions options = {.lenient = command->lenient};
     Scene scene;
     scene_init(&scene);
-    bool loaded = pbrt_import(path, &options, &scene, error) && scene_finish(&scene, error);
+    bool loaded = pbrt_import(path, &options, &scene, error) && (scene_finish(&scene, error) || error_in(error, path));
     if (loaded) {
         SceneSummary summary;
         scene_summary(&scene, &summary);

@@ -104,7 +104,8 @@ static bool outputs_name(RenderJob *job, Error *error)
 static bool scene_load(RenderJob *job, Error *error)
 {
     ImportOptions options = {.lenient = job->command->lenient};
-    return pbrt_import(job->command->scene, &options, &job->scene, error) && scene_finish(&job->scene, error);
+    return pbrt_import(job->command->scene, &options, &job->scene, error) &&
+           (scene_finish(&job->scene, error) || error_in(error, job->command->scene));
 }
 
 static bool backend_build(RenderJob *job, Error *error)

@@ -110,17 +110,25 @@ void color_blackbody(float kelvin, float rgb[3])
 
 static bool samples_check(const float *pairs, size_t n, Error *error)
 {
-    if (n == 0)
-        return error_set(error, "a spectrum without samples");
+    if (n == 0) {
+        error_set(error, "a spectrum without samples");
+        return error_fix(error, "give pairs of wavelength in nm and value");
+    }
     for (size_t i = 0; i < n; ++i) {
         double wavelength = (double)pairs[2 * i], value = (double)pairs[2 * i + 1];
-        if (!isfinite(wavelength) || !isfinite(value))
-            return error_set(error, "sample %zu of a spectrum is not a finite number", i + 1);
-        if (value < 0.0)
-            return error_set(error, "sample %zu of a spectrum, at %g nm, is negative: %g", i + 1, wavelength, value);
-        if (i > 0 && wavelength <= (double)pairs[2 * i - 2])
-            return error_set(error, "wavelengths of a spectrum must increase: sample %zu at %g nm follows %g nm", i + 1,
-                             wavelength, (double)pairs[2 * i - 2]);
+        if (!isfinite(wavelength) || !isfinite(value)) {
+            error_set(error, "sample %zu of a spectrum is not a finite number", i + 1);
+            return error_fix(error, "give pairs of wavelength in nm and value");
+        }
+        if (value < 0.0) {
+            error_set(error, "sample %zu of a spectrum, at %g nm, is negative: %g", i + 1, wavelength, value);
+            return error_fix(error, "values of a spectrum are 0 or above");
+        }
+        if (i > 0 && wavelength <= (double)pairs[2 * i - 2]) {
+            error_set(error, "wavelengths of a spectrum must increase: sample %zu at %g nm follows %g nm", i + 1,
+                      wavelength, (double)pairs[2 * i - 2]);
+            return error_fix(error, "sort the samples by wavelength, each once");
+        }
     }
     return true;
 }
@@ -177,10 +185,14 @@ static bool line_read(char *line, SourcePlace place, Array *numbers, Error *erro
         size_t length = strcspn(text, SPACES);
         float value = 0.0f;
         place.column = (int)(text - line) + 1;
-        if (number_float(text, length, &value) != NUMBER_OK)
-            return error_at(error, place, "expected a number, not \"%.*s\"", length < 40 ? (int)length : 40, text);
-        if (numbers->count >= SPECTRUM_NUMBERS_MAX)
-            return error_at(error, place, "more than %d numbers in a spectrum", SPECTRUM_NUMBERS_MAX);
+        if (number_float(text, length, &value) != NUMBER_OK) {
+            error_at(error, place, "expected a number, not \"%.*s\"", length < 40 ? (int)length : 40, text);
+            return error_fix(error, "a spectrum file holds pairs of wavelength in nm and value, and # comments");
+        }
+        if (numbers->count >= SPECTRUM_NUMBERS_MAX) {
+            error_at(error, place, "more than %d numbers in a spectrum", SPECTRUM_NUMBERS_MAX);
+            return error_fix(error, "thin it out: a sample every 5 nm is plenty");
+        }
         float *to = array_grow(numbers, 1, error);
         if (!to)
             return false;
@@ -195,8 +207,10 @@ static bool numbers_read(const char *path, Array *numbers, Error *error)
     char *line = NULL;
     size_t line_size = 0;
     FILE *file = fopen(path, "r");
-    if (!file)
-        return error_errno(error, "open the spectrum", path);
+    if (!file) {
+        error_errno(error, "open the spectrum", path);
+        return error_fix(error, "check the name; it is relative to the scene's folder");
+    }
     bool good = true;
     for (int number = 1; good && getline(&line, &line_size, file) >= 0; ++number)
         good = line_read(line, (SourcePlace){path, number, 0}, numbers, error);
@@ -214,8 +228,10 @@ bool color_spectrum_file(const char *path, ColorRole role, float rgb[3], Error *
     SourcePlace place = {path, 0, 0};
     array_init(&numbers, sizeof(float));
     bool good = numbers_read(path, &numbers, error);
-    if (good && numbers.count % 2 != 0)
+    if (good && numbers.count % 2 != 0) {
         good = error_at(error, place, "a spectrum needs pairs of numbers, but has %zu", numbers.count);
+        error_fix(error, "complete the last pair, or delete it");
+    }
     if (good && !color_from_samples(numbers.data, numbers.count / 2, role, rgb, &inner)) {
         good = error_at(error, place, "%s", inner.message + strlen("error: "));
         error_fix(error, "%s", inner.fix);

@@ -82,9 +82,11 @@ bool color_named_spectrum(const char *name, ColorRole role, float rgb[3], Error 
         const NamedSpectrum *spectrum = &NAMED_SPECTRA[i];
         if (strcmp(name, spectrum->name) != 0)
             continue;
-        if (role != spectrum->role)
-            return error_set(error, "the spectrum \"%s\" stands for: %s; wanted: %s", name, ROLE_NAMES[spectrum->role],
-                             ROLE_NAMES[role]);
+        if (role != spectrum->role) {
+            error_set(error, "the spectrum \"%s\" stands for: %s; wanted: %s", name, ROLE_NAMES[spectrum->role],
+                      ROLE_NAMES[role]);
+            return error_fix(error, "use a spectrum of the other kind, or rgb");
+        }
         memcpy(rgb, spectrum->rgb, sizeof spectrum->rgb);
         return true;
     }

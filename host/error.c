@@ -46,6 +46,18 @@ bool error_at(Error *error, SourcePlace place, const char *format, ...)
     return false;
 }
 
+bool error_in(Error *error, const char *file)
+{
+    char text[sizeof error->message];
+    if (strncmp(error->message, "error: ", strlen("error: ")) != 0)
+        return false;
+    memcpy(text, error->message, sizeof text);
+    int used = snprintf(error->message, sizeof error->message, "%.400s: ", file);
+    int room = (int)sizeof error->message - used - 1;
+    snprintf(error->message + used, (size_t)room + 1, "%.*s", room, text);
+    return false;
+}
+
 bool error_fix(Error *error, const char *format, ...)
 {
     va_list arguments;
@@ -61,8 +73,33 @@ bool error_memory(Error *error, unsigned long long bytes, const char *what)
     return error_fix(error, "use a smaller scene, fewer threads, or a machine with more memory");
 }
 
+bool error_fix_errno(Error *error, int number)
+{
+    switch (number) {
+    case ENOENT:
+    case ENOTDIR:
+    case ENAMETOOLONG:
+        return error_fix(error, "check the name and its folder");
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return error_fix(error, "check the permissions, or use another folder");
+    case ENOSPC:
+    case EDQUOT:
+        return error_fix(error, "free some space, or use another disk");
+    case EFBIG:
+        return error_fix(error, "use a smaller file");
+    case EISDIR:
+    case ENOTSUP:
+        return error_fix(error, "give the name of an ordinary file");
+    default:
+        return error_fix(error, "try again, or use another file");
+    }
+}
+
 bool error_errno(Error *error, const char *verb, const char *path)
 {
     int number = errno;
-    return error_set(error, "cannot %s %s: %s", verb, path, strerror(number));
+    error_set(error, "cannot %s %s: %s", verb, path, strerror(number));
+    return error_fix_errno(error, number);
 }

@@ -23,13 +23,19 @@ bool error_set(Error *error, const char *format, ...) __attribute__((format(prin
 /* The same behind "file:line:column: ". */
 bool error_at(Error *error, SourcePlace place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/* Puts "FILE: " before a message that has no place yet. Returns false. */
+bool error_in(Error *error, const char *file);
+
 /* Adds what to do. Returns false. */
 bool error_fix(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* "out of memory (N bytes for WHAT)". Returns false. */
 bool error_memory(Error *error, unsigned long long bytes, const char *what);
 
-/* "error: cannot VERB PATH: strerror(errno)". Returns false. */
+/* Adds what to do about a failure to read or write a file. Returns false. */
+bool error_fix_errno(Error *error, int number);
+
+/* "error: cannot VERB PATH: strerror(errno)" with its fix. Returns false. */
 bool error_errno(Error *error, const char *verb, const char *path);
 
 #endif

@@ -120,9 +120,24 @@ static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder
     }
 }
 
+typedef exr_result_t (*CompressFunction)(exr_encode_pipeline_t *encoder);
+
+/* A chunk whose size compression does not lower must be stored as it is, for that is how readers tell the two apart.
+ * OpenEXR before 3.4.8 stores the compressed bytes when both sizes are equal, which readers take for pixels
+ * (AcademySoftwareFoundation/openexr issue 2306). */
+static exr_result_t chunk_compress(exr_encode_pipeline_t *encoder)
+{
+    const CompressFunction *library = encoder->encoding_user_data;
+    exr_result_t result = (*library)(encoder);
+    if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
+        memcpy(encoder->compressed_buffer, encoder->packed_buffer, encoder->packed_bytes);
+    return result;
+}
+
 static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, int first_line)
 {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    CompressFunction library = NULL;
     int32_t step = 1;
     bool begun = false;
     exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &step);
@@ -138,8 +153,12 @@ static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer,
         if (result != EXR_ERR_SUCCESS)
             break;
         chunk_gather(writer, &encoder, plane, y, chunk.height);
-        if (!begun)
+        if (!begun) {
             result = exr_encoding_choose_default_routines(context, 0, &encoder);
+            library = encoder.compress_fn;
+            encoder.compress_fn = library ? chunk_compress : NULL;
+            encoder.encoding_user_data = &library;
+        }
         begun = true;
         if (result == EXR_ERR_SUCCESS)
             result = exr_encoding_run(context, 0, &encoder);
@@ -175,10 +194,11 @@ static bool exr_write_open(ExrWriter *writer, const char *path, int width, int h
         result = finished;
     if (result == EXR_ERR_SUCCESS && !writer->write_errno)
         return true;
-    return error_set(error, "cannot write %s: %s", path,
-                     writer->write_errno  ? strerror(writer->write_errno)
-                     : writer->message[0] ? writer->message
-                                          : exr_get_default_error_message(result));
+    error_set(error, "cannot write %s: %s", path,
+              writer->write_errno  ? strerror(writer->write_errno)
+              : writer->message[0] ? writer->message
+                                   : exr_get_default_error_message(result));
+    return error_fix_errno(error, writer->write_errno);
 }
 
 bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,

@@ -61,5 +61,6 @@ bool file_read(const char *path, size_t limit, SourcePlace place, FileData *file
         close(descriptor);
     if (failure == 0)
         return true;
-    return error_at(error, place, "cannot read %s: %s", path, strerror(failure));
+    error_at(error, place, "cannot read %s: %s", path, strerror(failure));
+    return error_fix_errno(error, failure);
 }

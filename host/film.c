@@ -34,8 +34,10 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
         return error_fix(error, "x0 < x1 and y0 < y1 inside the film");
     }
     /* Splats name pixels by 32 bits, and all ones mean none. */
-    if ((uint64_t)width * (uint64_t)height >= NONE)
-        return error_set(error, "a film of %d x %d pixels is too large", width, height);
+    if ((uint64_t)width * (uint64_t)height >= NONE) {
+        error_set(error, "a film of %d x %d pixels is too large", width, height);
+        return error_fix(error, "choose a smaller --resolution");
+    }
     size_t pixels = film_pixels(film);
     film->sums = calloc(pixels * 3, sizeof *film->sums);
     film->counts = calloc(pixels, sizeof *film->counts);

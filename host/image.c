@@ -13,13 +13,16 @@
 
 bool image_error(Error *error, const char *path, const char *why)
 {
-    return error_set(error, "cannot read the image %s: %s", path, why);
+    error_set(error, "cannot read the image %s: %s", path, why);
+    return error_fix(error, "convert it again, or use another of: exr, hdr, pfm, png, jpg, tga");
 }
 
 bool image_size_check(const char *path, long long width, long long height, Error *error)
 {
-    if (width < 1 || height < 1)
-        return error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, width, height);
+    if (width < 1 || height < 1) {
+        error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, width, height);
+        return error_fix(error, "scale it down");
+    }
     if (width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX || width * height > IMAGE_PIXELS_MAX) {
         error_set(error, "the image %s is too large: %lld x %lld pixels", path, width, height);
         return error_fix(error, "use one of at most %u pixels, no side longer than %d", IMAGE_PIXELS_MAX,
@@ -77,6 +80,7 @@ bool image_read(const char *path, Image *image, Error *error)
     FILE *file = fopen(path, "rb");
     if (!file || fstat(fileno(file), &status) != 0) {
         error_errno(error, "open the image", path);
+        error_fix(error, "check the name; those in a scene are relative to the scene's folder");
         if (file)
             fclose(file);
         return false;

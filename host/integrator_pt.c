@@ -111,22 +111,24 @@ static uint stride_coprime(uint n)
     }
 }
 
-/* Mean radiance from a few thousand paths over the whole image. The sum is taken in the order of pixels, so it does
- * not depend on threads. */
+/* Mean radiance from a few thousand paths over the whole film, so that a crop has the quantum and with it the bits of
+ * the whole picture. The sum is taken in the order of pixels, so it does not depend on threads. */
 static bool pilot_run(const BackendInterface *interface, Backend *backend, FrameParams frame, const StepList *list,
                       double *mean, Error *error)
 {
-    uint crop_pixels = (frame.crop_x1 - frame.crop_x0) * (frame.crop_y1 - frame.crop_y0);
     static const atomic_int never = 0;
     Pilot *pilot = malloc(sizeof *pilot);
     if (!pilot)
         return error_memory(error, sizeof *pilot, "the pilot");
     pilot->count = 0;
     pthread_mutex_init(&pilot->mutex, NULL);
+    frame.crop_x0 = frame.crop_y0 = 0;
+    frame.crop_x1 = frame.width;
+    frame.crop_y1 = frame.height;
     frame.first_item = 0;
     frame.item_count = PILOT_ITEMS;
     frame.sample_index = PILOT_SAMPLE;
-    frame.pixel_stride = stride_coprime(crop_pixels);
+    frame.pixel_stride = stride_coprime(frame.width * frame.height);
     bool done = interface->run(backend, &frame, list, pilot_sink, pilot, &never, NULL, error);
     double sum = 0.0;
     qsort(pilot->samples, pilot->count, sizeof pilot->samples[0], pilot_compare);
@@ -154,7 +156,7 @@ typedef struct PassLoop {
     FrameParams frame;
     Film *film;
     uint64_t crop_pixels;
-    uint64_t next, total; /* items; total UINT64_MAX without a limit */
+    uint64_t next, total; /* items; without a limit as many as there are sample numbers */
     uint64_t done;
     double start, last_save;
 } PassLoop;
@@ -264,7 +266,7 @@ bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *b
     loop.frame.seed_high = (uint)(options->seed >> 32);
     loop.frame.pixel_stride = 1;
     loop.crop_pixels = (uint64_t)(film->crop[2] - film->crop[0]) * (uint64_t)(film->crop[3] - film->crop[1]);
-    loop.total = options->samples > 0 ? loop.crop_pixels * options->samples : UINT64_MAX;
+    loop.total = loop.crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
     memset(result, 0, sizeof *result);
     if (!step_list_make(&loop.list, loop.frame.max_depth, error))
         return false;

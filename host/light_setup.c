@@ -100,8 +100,10 @@ static bool environment_setup(Scene *scene, Light *light, double *mean, Error *e
     e.view.lookup = scene->lookup.data;
     e.view.texels = scene->texels.data;
     size_t cells = (size_t)e.image.width * e.image.height;
-    if (cells == 0)
-        return error_set(error, "an infinite light's image is empty");
+    if (cells == 0) {
+        error_set(error, "an infinite light's image is empty");
+        return error_fix(error, "give another image");
+    }
     float *weights = malloc(2 * cells * sizeof *weights);
     if (!weights)
         return error_memory(error, 2 * cells * sizeof *weights, "an infinite light");

@@ -17,7 +17,7 @@
 #define IMPORT_ATTRIBUTES_MAX 1024 /* Attribute directives in force at once */
 #define IMPORT_LIGHTS_MAX (1u << 24) /* area lights by instances of emissive objects */
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
-#define IMPORT_COORDINATE_MAX 1e18 /* of a point in world space: its square must fit a float */
+#define IMPORT_COORDINATE_MAX 1e12 /* of a point in world space: products of three must fit a float */
 #define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
 
 /* Instead of an index of a material. */

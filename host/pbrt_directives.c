@@ -47,8 +47,10 @@ static bool directive_rotate(PbrtImport *im)
     double v[4];
     if (!parser_floats(im, 4, v))
         return false;
-    if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
-        return error_at(im->error, im->place, "Rotate about an axis of length 0");
+    if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0) {
+        error_at(im->error, im->place, "Rotate about an axis of length 0");
+        return error_fix(im->error, "write Rotate DEGREES X Y Z with an axis other than 0 0 0");
+    }
     Matrix m = matrix_rotate(v[0], v + 1);
     return state_concat(im, &m);
 }
@@ -331,12 +333,18 @@ static bool directive_unknown(PbrtImport *im, const Token *token)
 
 static bool directive_run(PbrtImport *im, const Directive *directive)
 {
-    if (directive->plain == directive_world_begin && im->in_world)
-        return error_at(im->error, im->place, "a second WorldBegin");
-    if (directive->where == BEFORE_WORLD && im->in_world)
-        return error_at(im->error, im->place, "%s must stand before WorldBegin", directive->name);
-    if (directive->where == IN_WORLD && !im->in_world)
-        return error_at(im->error, im->place, "%s must stand after WorldBegin", directive->name);
+    if (directive->plain == directive_world_begin && im->in_world) {
+        error_at(im->error, im->place, "a second WorldBegin");
+        return error_fix(im->error, "delete it: a file holds one scene");
+    }
+    if (directive->where == BEFORE_WORLD && im->in_world) {
+        error_at(im->error, im->place, "%s must stand before WorldBegin", directive->name);
+        return error_fix(im->error, "move it up: WorldBegin ends the options, camera and film");
+    }
+    if (directive->where == IN_WORLD && !im->in_world) {
+        error_at(im->error, im->place, "%s must stand after WorldBegin", directive->name);
+        return error_fix(im->error, "move it down, or add WorldBegin above it");
+    }
     if (directive->plain)
         return directive->plain(im);
     const char *kind;
@@ -360,12 +368,19 @@ static bool file_end(PbrtImport *im)
     size_t open = im->saved.count - file->nesting;
     if (open > 0) {
         const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
-        return error_at(im->error, save->place, "%s without its end", save->opened_by);
+        error_at(im->error, save->place, "%s without its end", save->opened_by);
+        return error_fix(im->error, "add the missing end, or delete this line");
     }
     if (!file->is_import)
         return true;
     parser_close(im);
     return state_pop(im, "Import", "the end of the file");
+}
+
+static bool world_missing(PbrtImport *im)
+{
+    error_at(im->error, im->place, "the file ends before WorldBegin");
+    return error_fix(im->error, "give the scene file itself, or add WorldBegin after the camera and the film");
 }
 
 bool directives_read(PbrtImport *im)
@@ -384,6 +399,6 @@ bool directives_read(PbrtImport *im)
         if (!file_end(im))
             return false;
         if (last)
-            return im->in_world || error_at(im->error, im->place, "the file ends before WorldBegin");
+            return im->in_world || world_missing(im);
     }
 }

@@ -1,4 +1,5 @@
 /* Film, PixelFilter and Camera. */
+#include "filter_setup.h"
 #include "log.h"
 #include "pbrt_state.h"
 
@@ -117,6 +118,9 @@ bool import_film(PbrtImport *im, const char *kind)
     import_list(im, &list, "the film", -1);
     film->width = side_read(&list, "xresolution", 1280);
     film->height = side_read(&list, "yresolution", 720);
+    if ((int64_t)film->width * film->height > INT32_MAX)
+        param_error(&list, "yresolution", "a film of %d x %d pixels is too large: 2^31 - 1 pixels at most", film->width,
+                    film->height);
     int crop[4] = {0, 0, film->width, film->height};
     if (!list.failed) {
         pixel_bounds_read(&list, film, crop);
@@ -159,6 +163,21 @@ static float radius_read(ParamList *list, const char *name, float fallback)
     return radius;
 }
 
+/* Parameters that leave nothing of the filter are found here, where the place is known. */
+static void filter_check(ParamList *list, const FilterSettings *filter)
+{
+    Error error = {{0}, {0}};
+    Array lookup;
+    PixelFilter unused;
+    array_init(&lookup, sizeof(float));
+    if (!filter_setup(filter, &lookup, &unused, &error)) {
+        error_at(list->error, list->place, "%s", error.message + strlen("error: "));
+        error_fix(list->error, "%s", error.fix);
+        list->failed = true;
+    }
+    array_destroy(&lookup);
+}
+
 bool import_filter(PbrtImport *im, const char *kind)
 {
     const char *names[FILTER_COUNT];
@@ -184,6 +203,8 @@ bool import_filter(PbrtImport *im, const char *kind)
     }
     if (filter->kind == PIXEL_FILTER_SINC)
         filter->tau = positive_read(&list, "tau", 3.0f);
+    if (!list.failed)
+        filter_check(&list, filter);
     return list_end(im, &list);
 }
 
@@ -285,5 +306,6 @@ bool import_settings_finish(PbrtImport *im)
     im->scene->settings.film_scale = time * im->iso / 100.0f;
     if (float_finite(im->scene->settings.film_scale) && im->scene->settings.film_scale > 0.0f)
         return true;
-    return error_at(im->error, im->place, "the exposure, shutter time x iso / 100, is out of range");
+    error_at(im->error, im->place, "the exposure, shutter time x iso / 100, is out of range");
+    return error_fix(im->error, "check \"iso\" and \"exposuretime\" of the Film and the Camera's shutter");
 }

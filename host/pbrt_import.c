@@ -53,7 +53,8 @@ bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Mat
     }
     if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
         return true;
-    return error_at(im->error, place, "the current transform or its inverse is beyond the range of a float");
+    error_at(im->error, place, "the current transform or its inverse is beyond the range of a float");
+    return error_fix(im->error, "look for a Scale or Transform with huge or tiny numbers");
 }
 
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)

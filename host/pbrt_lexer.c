@@ -130,11 +130,14 @@ bool token_unexpected(const Token *token, const char *wanted, Error *error)
     int shown = token->length < TOKEN_SHOWN ? (int)token->length : TOKEN_SHOWN;
     switch (token->kind) {
     case TOKEN_END:
-        return error_at(error, token->place, "expected %s, found the end of the file", wanted);
+        error_at(error, token->place, "expected %s, found the end of the file", wanted);
+        return error_fix(error, "the file seems to be cut short: complete its last directive");
     case TOKEN_STRING:
-        return error_at(error, token->place, "expected %s, found the string \"%.*s\"", wanted, shown, token->text);
+        error_at(error, token->place, "expected %s, found the string \"%.*s\"", wanted, shown, token->text);
+        return error_fix(error, "write %s in its place", wanted);
     default:
-        return error_at(error, token->place, "expected %s, found %.*s", wanted, shown, token->text);
+        error_at(error, token->place, "expected %s, found %.*s", wanted, shown, token->text);
+        return error_fix(error, "write %s in its place", wanted);
     }
 }
 
@@ -142,9 +145,11 @@ bool token_float(const Token *token, float *value, Error *error)
 {
     NumberStatus status =
         token->kind == TOKEN_WORD ? number_float(token->text, token->length, value) : NUMBER_MALFORMED;
-    if (status == NUMBER_OVERFLOW)
-        return error_at(error, token->place, "%.*s is beyond the range of a float",
-                        (int)(token->length < TOKEN_SHOWN ? token->length : TOKEN_SHOWN), token->text);
+    if (status == NUMBER_OVERFLOW) {
+        error_at(error, token->place, "%.*s is beyond the range of a float",
+                 (int)(token->length < TOKEN_SHOWN ? token->length : TOKEN_SHOWN), token->text);
+        return error_fix(error, "give a number from -3.4e38 to 3.4e38");
+    }
     return status == NUMBER_OK || token_unexpected(token, "a number", error);
 }
 
@@ -152,8 +157,10 @@ bool token_integer(const Token *token, int *value, Error *error)
 {
     NumberStatus status =
         token->kind == TOKEN_WORD ? number_integer(token->text, token->length, value) : NUMBER_MALFORMED;
-    if (status == NUMBER_OVERFLOW)
-        return error_at(error, token->place, "%.*s is beyond the range of an integer",
-                        (int)(token->length < TOKEN_SHOWN ? token->length : TOKEN_SHOWN), token->text);
+    if (status == NUMBER_OVERFLOW) {
+        error_at(error, token->place, "%.*s is beyond the range of an integer",
+                 (int)(token->length < TOKEN_SHOWN ? token->length : TOKEN_SHOWN), token->text);
+        return error_fix(error, "give a whole number from -2147483648 to 2147483647");
+    }
     return status == NUMBER_OK || token_unexpected(token, "an integer", error);
 }

@@ -304,8 +304,10 @@ static bool named_read(PbrtImport *im, ParamList *list, const char *name, Source
 {
     uint index;
     const char *kind = param_string(list, "type", NULL);
-    if (name_table_find(&im->materials, name) != NONE)
-        return error_at(im->error, name_place, "the material \"%s\" is defined twice", name);
+    if (name_table_find(&im->materials, name) != NONE) {
+        error_at(im->error, name_place, "the material \"%s\" is defined twice", name);
+        return error_fix(im->error, "rename one of the two");
+    }
     if (!kind) {
         param_error(list, "type", "%s lacks \"string type\"", list->owner);
         return error_fix(im->error, "add \"string type\" \"diffuse\" or another kind of material");

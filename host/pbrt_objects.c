@@ -6,10 +6,14 @@
 
 bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_place)
 {
-    if (im->open_object >= 0)
-        return error_at(im->error, im->place, "ObjectBegin inside an object definition");
-    if (name_table_find(&im->objects, name) != NONE)
-        return error_at(im->error, name_place, "the object \"%s\" is defined twice", name);
+    if (im->open_object >= 0) {
+        error_at(im->error, im->place, "ObjectBegin inside an object definition");
+        return error_fix(im->error, "close the other with ObjectEnd first; objects do not nest");
+    }
+    if (name_table_find(&im->objects, name) != NONE) {
+        error_at(im->error, name_place, "the object \"%s\" is defined twice", name);
+        return error_fix(im->error, "rename one of the two");
+    }
     uint index = (uint)im->object_definitions.count;
     const char *kept = arena_text(&im->arena, name, strlen(name), im->error);
     ImportObject *object = kept ? array_grow(&im->object_definitions, 1, im->error) : NULL;
@@ -34,8 +38,10 @@ bool import_object_end(PbrtImport *im)
 bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_place)
 {
     Matrix ctm, inverse;
-    if (im->open_object >= 0)
-        return error_at(im->error, im->place, "ObjectInstance inside an object definition");
+    if (im->open_object >= 0) {
+        error_at(im->error, im->place, "ObjectInstance inside an object definition");
+        return error_fix(im->error, "place instances after ObjectEnd; objects do not nest");
+    }
     uint index = name_table_find(&im->objects, name);
     if (index == NONE) {
         char known[400];

@@ -172,6 +172,10 @@ void param_error(ParamList *list, const char *name, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     error_at(list->error, param_place(list, name), "%s", text);
+    if (entry_use(list, name))
+        error_fix(list->error, "change \"%s\", or leave it out where it has a default", name);
+    else
+        error_fix(list->error, "add \"%s\" to %s", name, list->owner);
     list->failed = true;
 }
 

@@ -189,17 +189,22 @@ bool param_end(ParamBuffer *buffer, Error *error)
 {
     const Param *param = &ARRAY_AT(&buffer->params, Param, buffer->params.count - 1);
     unsigned per_item = TYPES[param->type].per_item;
-    if (param->count == 0)
-        return error_at(error, param->place, "the parameter \"%s %s\" has no value", TYPES[param->type].name,
-                        param->name);
-    if (param->count % per_item != 0)
-        return error_at(error, param->place, "\"%s %s\" has %zu values, not a multiple of %u", TYPES[param->type].name,
-                        param->name, param->count, per_item);
-    if (param->type == PARAM_SPECTRUM && !param->is_text && param->count % 2 != 0)
-        return error_at(error, param->place,
-                        "\"spectrum %s\" has %zu values, which are not pairs of wavelength and "
-                        "value",
-                        param->name, param->count);
+    if (param->count == 0) {
+        error_at(error, param->place, "the parameter \"%s %s\" has no value", TYPES[param->type].name, param->name);
+        return error_fix(error, "give it one, or delete it");
+    }
+    if (param->count % per_item != 0) {
+        error_at(error, param->place, "\"%s %s\" has %zu values, not a multiple of %u", TYPES[param->type].name,
+                 param->name, param->count, per_item);
+        return error_fix(error, "complete the last item, or delete it");
+    }
+    if (param->type == PARAM_SPECTRUM && !param->is_text && param->count % 2 != 0) {
+        error_at(error, param->place,
+                 "\"spectrum %s\" has %zu values, which are not pairs of wavelength and "
+                 "value",
+                 param->name, param->count);
+        return error_fix(error, "complete the last pair, or delete it");
+    }
     return true;
 }
 

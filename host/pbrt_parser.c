@@ -29,10 +29,14 @@ static bool include_cyclic(const PbrtImport *im, const FileData *file)
 
 static bool include_counted(PbrtImport *im, SourcePlace place)
 {
-    if (im->file_count >= IMPORT_INCLUDE_MAX)
-        return error_at(im->error, place, "files included more than %d deep", IMPORT_INCLUDE_MAX);
-    if (++im->files_opened > IMPORT_FILES_MAX)
-        return error_at(im->error, place, "more than %d files included", IMPORT_FILES_MAX);
+    if (im->file_count >= IMPORT_INCLUDE_MAX) {
+        error_at(im->error, place, "files included more than %d deep", IMPORT_INCLUDE_MAX);
+        return error_fix(im->error, "put what they share into one file");
+    }
+    if (++im->files_opened > IMPORT_FILES_MAX) {
+        error_at(im->error, place, "more than %d files included", IMPORT_FILES_MAX);
+        return error_fix(im->error, "join some of the files");
+    }
     return true;
 }
 
@@ -47,7 +51,8 @@ bool parser_open_file(PbrtImport *im, const char *name, SourcePlace place, bool 
         return false;
     if (include_cyclic(im, &data)) {
         free(data.data);
-        return error_at(im->error, place, "%s includes itself", path);
+        error_at(im->error, place, "%s includes itself", path);
+        return error_fix(im->error, "delete this line");
     }
     if (!parser_open_text(im, data.data, data.size, shown, true, im->error))
         return false;

@@ -39,7 +39,8 @@ static bool mesh_transform(PbrtImport *im, const ShapeContext *context, bool rev
 {
     for (size_t i = 0; i < count; ++i)
         if (!point_transform(&context->ctm, &positions[3 * i])) {
-            error_at(im->error, context->place, "vertex %zu is not finite, or beyond 1e18, after the transform", i);
+            error_at(im->error, context->place, "vertex %zu is not finite, or beyond %g, after the transform", i,
+                     IMPORT_COORDINATE_MAX);
             return error_fix(im->error, "check the vertices and the current transform for huge numbers");
         }
     for (size_t i = 0; normals && i < count; ++i)
@@ -127,8 +128,10 @@ static bool quadric_fits(PbrtImport *im, const Quadric *quadric, const Matrix *m
     double radius = fmax((double)quadric->radius, fabs((double)quadric->z_min));
     for (int i = 0; i < 3; ++i) {
         const double *row = &matrix->m[4 * i];
-        if (!(fabs(row[3]) + radius * (fabs(row[0]) + fabs(row[1]) + fabs(row[2])) <= IMPORT_COORDINATE_MAX))
-            return error_at(im->error, im->place, "the shape reaches beyond 1e18 after the transform");
+        if (!(fabs(row[3]) + radius * (fabs(row[0]) + fabs(row[1]) + fabs(row[2])) <= IMPORT_COORDINATE_MAX)) {
+            error_at(im->error, im->place, "the shape reaches beyond %g after the transform", IMPORT_COORDINATE_MAX);
+            return error_fix(im->error, "check the shape and the current transform for huge numbers");
+        }
     }
     return true;
 }

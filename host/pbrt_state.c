@@ -16,7 +16,8 @@ static bool transform_check(PbrtImport *im)
 {
     if (matrix_finite(&im->state.ctm[0]) && matrix_finite(&im->state.ctm[1]))
         return true;
-    return error_at(im->error, im->place, "the current transform overflows here");
+    error_at(im->error, im->place, "the current transform overflows here");
+    return error_fix(im->error, "look for Scale, Translate or Transform with huge numbers above");
 }
 
 bool state_concat(PbrtImport *im, const Matrix *matrix)
@@ -52,8 +53,10 @@ bool state_pop(PbrtImport *im, const char *opened_by, const char *closed_by)
 {
     size_t floor =
         im->file_count > 0 && im->files[im->file_count - 1].is_import ? im->files[im->file_count - 1].nesting : 0;
-    if (im->saved.count <= floor)
-        return error_at(im->error, im->place, "%s without %s", closed_by, opened_by);
+    if (im->saved.count <= floor) {
+        error_at(im->error, im->place, "%s without %s", closed_by, opened_by);
+        return error_fix(im->error, "delete it, or add %s before it", opened_by);
+    }
     const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
     if (strcmp(save->opened_by, opened_by) != 0) {
         error_at(im->error, im->place, "%s, but the innermost open scope is the %s of line %d", closed_by,
@@ -101,8 +104,10 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
         const ParamSet *older = im->state.attributes[i];
         if (im->params.params.count == 0)
             return true;
-        if (older && older->depth >= IMPORT_ATTRIBUTES_MAX)
-            return error_at(im->error, im->place, "more than %d Attribute directives in force", IMPORT_ATTRIBUTES_MAX);
+        if (older && older->depth >= IMPORT_ATTRIBUTES_MAX) {
+            error_at(im->error, im->place, "more than %d Attribute directives in force", IMPORT_ATTRIBUTES_MAX);
+            return error_fix(im->error, "put AttributeBegin and AttributeEnd around what they are for");
+        }
         im->state.attributes[i] = param_set_make(&im->params, older, &im->arena, im->error);
         return im->state.attributes[i] != NULL;
     }

@@ -24,6 +24,7 @@ static void ops_add(Builder *b, const TextureOp *ops, uint count)
         return;
     if (count > TEXTURE_OPS_MAX - b->count) {
         error_at(b->im->error, b->im->place, "a texture of more than %d operations", TEXTURE_OPS_MAX);
+        error_fix(b->im->error, "bake it into an imagemap");
         b->list->failed = true;
         return;
     }
@@ -314,8 +315,10 @@ bool import_texture(PbrtImport *im, const char *name, SourcePlace name_place, co
     Builder builder = {.im = im, .list = &list, .spectrum = strcmp(type, "spectrum") == 0};
     if (!builder.spectrum && strcmp(type, "float") != 0)
         return import_unknown(im, im->place, "type of texture", type, TYPES, 2);
-    if (name_table_find(builder.spectrum ? &im->spectrum_textures : &im->float_textures, name) != NONE)
-        return error_at(im->error, name_place, "the %s texture \"%s\" is defined twice", type, name);
+    if (name_table_find(builder.spectrum ? &im->spectrum_textures : &im->float_textures, name) != NONE) {
+        error_at(im->error, name_place, "the %s texture \"%s\" is defined twice", type, name);
+        return error_fix(im->error, "rename one of the two");
+    }
     import_list(im, &list, kind, ATTRIBUTE_TEXTURE);
     bool good = texture_read(&builder, name, kind);
     param_list_destroy(&list);

@@ -36,7 +36,8 @@ bool ply_error(const PlySource *source, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    return error_at(source->error, source->place, "%s: %s", source->path, text);
+    error_at(source->error, source->place, "%s: %s", source->path, text);
+    return error_fix(source->error, "export the mesh again, as binary or ASCII PLY of triangles");
 }
 
 static bool word_is(const Line *line, int i, const char *word)

@@ -100,8 +100,10 @@ bool png_write(const char *path, const float *rgb, int width, int height, float 
         return false;
     PngWriter writer = {.descriptor = file.descriptor};
     bool good = png_encode(&writer, rgb, width, height, exp2((double)exposure_stops));
-    if (!good)
+    if (!good) {
         error_set(error, "cannot write %s: %s", path, writer.message);
+        error_fix(error, "check the space on the disk, or write elsewhere");
+    }
     good = good && output_file_commit(&file, error);
     output_file_cancel(&file);
     return good;

@@ -38,7 +38,8 @@ static void primitives_copy(Scene *scene, const uint *ends, uint *cursors, Primi
     for (size_t s = 0; s < scene->shapes.count; ++s) {
         Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
         uint to = cursors[shape_objects[s]], count = ends[s] - shape->first_primitive;
-        memcpy(sorted + to, old + shape->first_primitive, count * sizeof *sorted);
+        if (count > 0)
+            memcpy(sorted + to, old + shape->first_primitive, count * sizeof *sorted);
         for (uint i = 0; shape->first_light != NONE && i < count; ++i)
             ARRAY_AT(&scene->lights, Light, shape->first_light + i).primitive = to + i;
         shape->first_primitive = to;
@@ -163,7 +164,7 @@ static bool scene_bounds(Scene *scene, Error *error)
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
     scene->largest_coordinate = largest;
-    if (largest > 1e18f) {
+    if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
     }

@@ -47,7 +47,6 @@ static void stats_rays(JsonWriter *json, const RenderResult *result)
     json_unsigned(json, "closest", result->backend.closest_rays);
     json_unsigned(json, "shadow", result->backend.shadow_rays);
     json_number(json, "seconds_all_threads", result->backend.ray_seconds);
-    json_number(json, "seconds_all_threads", result->backend.ray_seconds);
     json_number(json, "per_second", result->seconds > 0.0 ? (double)all / result->seconds : 0.0);
     json_object_end(json);
 }

@@ -147,8 +147,10 @@ bool texture_image_add(Scene *scene, const Image *image, const TextureImageOptio
                             .filter = options->filter,
                             .lut = NONE};
     size_t needed = words_needed(image, channels);
-    if (needed > UINT32_MAX - scene->texels.count)
-        return error_set(error, "the images of the scene have more than %u words of texels", UINT32_MAX);
+    if (needed > UINT32_MAX - scene->texels.count) {
+        error_set(error, "the images of the scene have more than %u words of texels", UINT32_MAX);
+        return error_fix(error, "scale the images down");
+    }
     if (!image->is_float && !lut_find(scene, options, &texture.lut, error))
         return false;
     uint *words = array_grow(&scene->texels, needed, error);

@@ -7,13 +7,14 @@
 
 /* X(name, number of arguments, the BufferId of each in order) */
 #define KERNEL_LIST(X)                                                                                                 \
-    X(pt_start_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
-      BUFFER_SHADOWS)                                                                                                  \
+    X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
     X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
       BUFFER_HITS)                                                                                                     \
     X(pt_sample_lights, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS)  \
     X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
-    X(pt_extend_paths, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS)      \
+    X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_DIAGNOSTICS)                                                                                              \
     X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
     X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
     X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \

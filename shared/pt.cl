@@ -19,11 +19,17 @@
 /* The first vertices always survive. */
 #define ROULETTE_FIRST_DEPTH 2u
 
+SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+{
+    state_store(paths, stride, PATH_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
 /* From: nothing. To: the path's first ray, throughput 1. */
 __kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                              __global const uint *restrict tables, __global const uint *restrict texels,
                              __global uint *restrict paths, __global uint *restrict rays,
-                             __global uint *restrict shadows)
+                             __global uint *restrict shadows, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -51,12 +57,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
     state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
-}
-
-SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
-{
-    state_store(paths, stride, PATH_DEPTH, t, 0u);
-    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        path_end(paths, rays, stride, t);
+    }
 }
 
 SHARED_FUNCTION void path_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
@@ -181,8 +185,11 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     float weight = sample.delta != 0u ? 1.0f : mis_power(pdf, value.pdf_w);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
     Vec3 light_term = vec3_scale(vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance), weight / pdf);
+    Ray shadow = light_shadow_ray(p, ng, &sample);
+    if (!ray_traceable(shadow.o, shadow.d))
+        return;
     state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
-    ray_store(shadows, stride, t, light_shadow_ray(p, ng, &sample));
+    ray_store(shadows, stride, t, shadow);
 }
 
 /* From: traced shadow rays. To: visible light samples gathered. */
@@ -197,7 +204,8 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
 /* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
 __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                               __global const uint *restrict tables, __global const uint *restrict texels,
-                              __global uint *restrict paths, __global uint *restrict rays)
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
@@ -225,7 +233,13 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     Frame shading = path_load_frame(paths, stride, t);
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
     Vec3 wi = vec3_normalize(frame_to_world(shading, sample.wi));
-    ray_store(rays, stride, t, ray_spawn(p, ng, wi));
+    Ray ray = ray_spawn(p, ng, wi);
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    ray_store(rays, stride, t, ray);
     state_store_vec3(paths, stride, PATH_BETA, t, beta);
     state_store_float(paths, stride, PATH_PDF_W, t, sample.pdf_w);
     state_store_float(paths, stride, PATH_ETA_SCALE, t, eta_scale);

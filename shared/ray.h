@@ -70,6 +70,19 @@ SHARED_FUNCTION Ray ray_spawn(Vec3 p, Vec3 ng, Vec3 wi)
     return ray;
 }
 
+/* Origins and directions of rays stay within this. Larger ones overflow the tests of primitives, and Embree may end the
+ * program over them. */
+#define RAY_COMPONENT_MAX 1e18f
+
+/* Whether a ray can be traced: every component of origin and direction is finite and in range. One that is not hits
+ * nothing and is not occluded; kernels end its path. */
+SHARED_FUNCTION bool ray_traceable(Vec3 o, Vec3 d)
+{
+    return float_abs(o.x) <= RAY_COMPONENT_MAX && float_abs(o.y) <= RAY_COMPONENT_MAX &&
+           float_abs(o.z) <= RAY_COMPONENT_MAX && float_abs(d.x) <= RAY_COMPONENT_MAX &&
+           float_abs(d.y) <= RAY_COMPONENT_MAX && float_abs(d.z) <= RAY_COMPONENT_MAX;
+}
+
 /* True when a comes before b, x first. */
 SHARED_FUNCTION bool vec3_before(Vec3 a, Vec3 b)
 {

@@ -146,7 +146,7 @@ result 'the image depends on the number of threads' $?
 render --seed=7 -o seed.exr "$scene"
 ! cmp -s one.exr seed.exr
 result '--seed changes nothing' $?
-[ -z "$(find . -name '*.tmp*' -o -name '.*.exr*')" ]
+[ -z "$(find . -name '*~')" ] # see output_file.c
 result 'a temporary file is left' $?
 
 render --crop=4,2,12,10 -o crop.exr "$scene"
@@ -168,15 +168,20 @@ render --seed=18446744073709551615 --stats=stats.json -o stats.exr "$scene"
 result '--stats: exit status' $?
 for key in format version scene file width height crop max_depth primitives instances materials lights bytes \
     integrator backend device seed threads samples_per_pixel samples samples_per_second stopped seconds load build \
-    render write total rays closest shadow seconds_all_threads per_second peak_memory_bytes backend_bytes diagnostics film_saturated \
-    film_not_finite degenerate_triangles zero_area_lights substitutions warnings kernels image png; do
+    render write total rays closest shadow seconds_all_threads per_second peak_memory_bytes backend_bytes diagnostics \
+    film_saturated film_not_finite degenerate_triangles zero_area_lights substitutions warnings kernels image png; do
     grep -q "\"$key\": " stats.json
     result "stats.json has no key $key" $?
 done
 if command -v python3 >/dev/null 2>&1; then
     python3 - <<'PYTHON'
 import json, sys
-stats = json.load(open("stats.json"))
+
+def unique(pairs):
+    assert len(dict(pairs)) == len(pairs), "a key twice: %s" % [key for key, value in pairs]
+    return dict(pairs)
+
+stats = json.load(open("stats.json"), object_pairs_hook=unique)
 seconds = stats["seconds"]
 assert stats["seed"] == 2**64 - 1, stats["seed"]
 assert stats["threads"] == 2 and stats["samples"] == 192 and stats["samples_per_pixel"] == 1

@@ -355,6 +355,33 @@ START_TEST(test_nothing_to_hit)
 }
 END_TEST
 
+/* A ray that is not a ray hits nothing and does no harm. */
+START_TEST(test_untraceable_rays)
+{
+    static const float BAD[] = {NAN, INFINITY, -INFINITY, 3e38f, 2e18f};
+    TestScene test;
+    TestMesh mesh = mesh_star(5, 6, 0.2f, 3);
+    test_scene_init(&test);
+    test_scene_mesh(&test, &mesh, 0);
+    test_scene_finish(&test);
+    RaysEmbree *rays = rays_open(&test);
+    for (uint i = 0; i < 5; ++i)
+        for (uint k = 0; k < 6; ++k) {
+            float v[6] = {0.1f, 0.2f, 0.1f, 0.0f, 0.6f, 0.8f};
+            v[k] = BAD[i];
+            Ray ray = {vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]), FLOAT_MAX};
+            ck_assert(!ray_traceable(ray.o, ray.d));
+            ck_assert(rays_embree_closest(rays, &ray).primitive == NONE);
+            ck_assert(!rays_embree_occluded(rays, &ray));
+        }
+    Ray good = {vec3(0.1f, 0.2f, 0.1f), vec3(0.0f, 0.6f, 0.8f), FLOAT_MAX};
+    ck_assert(ray_traceable(good.o, good.d) && rays_embree_closest(rays, &good).primitive != NONE);
+    rays_embree_destroy(rays);
+    test_scene_destroy(&test);
+    mesh_destroy(&mesh);
+}
+END_TEST
+
 TCase *geometry_rays_tcase(void)
 {
     TCase *tcase = tcase_create("ray queries");
@@ -370,5 +397,6 @@ TCase *geometry_rays_tcase(void)
     tcase_add_test(tcase, test_instance_equals_baked);
     tcase_add_test(tcase, test_instance_self_intersection);
     tcase_add_test(tcase, test_nothing_to_hit);
+    tcase_add_test(tcase, test_untraceable_rays);
     return tcase;
 }

@@ -49,6 +49,7 @@ START_TEST(bad_file)
     ck_assert_msg(!good, "%s was accepted", path);
     directory_strip(error.message, directory);
     ck_assert_str_eq(error.message, wanted);
+    ck_assert_msg(error.fix[0] != '\0', "%s: the error does not say what to do", path);
 }
 END_TEST
 

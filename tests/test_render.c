@@ -214,6 +214,33 @@ START_TEST(test_same_bits_in_two_parts)
 }
 END_TEST
 
+/* Pixels of a crop have the bits that they have in the whole picture, although most of its light is elsewhere. */
+START_TEST(test_crop_has_the_bits_of_the_whole)
+{
+    static const int CROP[4] = {1, 2, 6, 9};
+    char text[512];
+    RenderedImage images[2];
+    for (int i = 0; i < 2; ++i) {
+        snprintf(text, sizeof text,
+                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12 %s\n"
+                 "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1e-3\n"
+                 "Translate 3 0 3\nAreaLightSource \"diffuse\" \"float scale\" 1e4\n"
+                 "Shape \"sphere\" \"float radius\" 1\n",
+                 i ? "\"integer pixelbounds\" [ 1 6 2 9 ]" : "");
+        RenderSetup setup = {.text = text, .samples = 8};
+        fixture_render(&setup, &images[i]);
+    }
+    const Film *whole = &images[0].film, *crop = &images[1].film;
+    ck_assert_mem_eq(crop->crop, CROP, sizeof CROP);
+    ck_assert_int_eq(whole->quantum_exponent, crop->quantum_exponent);
+    for (int y = 2; y < 9; ++y)
+        for (int k = 0; k < 15; ++k)
+            ck_assert(crop->sums[15 * (y - 2) + k] == whole->sums[3 * (16 * y + 1) + k]);
+    fixture_destroy(&images[0]);
+    fixture_destroy(&images[1]);
+}
+END_TEST
+
 START_TEST(test_seeds_differ)
 {
     static const char TEXT[] = CAMERA_INSIDE "Material \"diffuse\"\n"
@@ -248,6 +275,7 @@ int main(void)
     tcase_set_timeout(determinism, 120);
     tcase_add_loop_test(determinism, test_same_bits_for_any_threads, 0, PUBLIC_SCENE_COUNT);
     tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
+    tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
     tcase_add_test(determinism, test_seeds_differ);
     suite_add_tcase(suite, determinism);
     return test_run(suite);
