@@ -225,6 +225,21 @@ static void map_read(LightReader *r, const char *file, float illuminance, double
     image_destroy(&image);
 }
 
+/* Only directions matter, so the scale of the transform is free: sampling takes it for 1 (light_infinite.h). */
+static void infinite_transform_set(LightReader *r)
+{
+    double scale = cbrt(fabs(matrix_determinant(&r->ctm)));
+    if (!(scale > 0.0 && isfinite(scale)))
+        scale = 1.0;
+    Matrix to_world = r->ctm, to_light = r->inverse;
+    for (int i = 0; i < 12; ++i) {
+        to_world.m[i] /= scale;
+        to_light.m[i] *= scale;
+    }
+    r->light.world_from_light = matrix_affine(to_world.m);
+    r->light.light_from_world = matrix_affine(to_light.m);
+}
+
 static void infinite_read(LightReader *r)
 {
     float radiance[3] = {1.0f, 1.0f, 1.0f};
@@ -238,8 +253,7 @@ static void infinite_read(LightReader *r)
                                               "the light comes from everywhere", NULL);
     if (has_radiance && *file)
         param_error(r->list, "filename", "an infinite light takes either L or filename");
-    r->light.world_from_light = matrix_affine(r->ctm.m);
-    r->light.light_from_world = matrix_affine(r->inverse.m);
+    infinite_transform_set(r);
     if (*file) {
         map_read(r, file, illuminance, scale);
         return;

@@ -197,9 +197,11 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
                  IMPORT_LIGHTS_MAX);
         return error_fix(im->error, "take the light source out of the object");
     }
-    if (matrix_swaps_handedness(ctm))
-        flags.flags ^= SHAPE_FLIP_NORMAL;
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
+    /* An instance is its object's image (surface.h). A mesh's normal is a cross product in world space, which a mirror
+     * turns; a quadric's is transformed. */
+    if (!quadric && matrix_swaps_handedness(ctm))
+        flags.flags ^= SHAPE_FLIP_NORMAL;
     if (quadric)
         context.ctm = matrix_multiply(ctm, &shape->matrix);
     if (!import_inverse(im, im->place, &context.ctm, &context.inverse))

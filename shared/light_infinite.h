@@ -23,17 +23,23 @@ SHARED_FUNCTION Vec3 environment_image(const SceneView *scene, uint light, Vec2 
 }
 
 /* The point of the image's parametrisation that the world direction d (unit) looks at; *pdf_uniform: density per solid
- * angle of the direction of a uniform point. */
+ * angle of the direction of a uniform point. Where the transform M from world to light stretches, d -> M d / |M d|
+ * scales solid angles by |det M| / |M d|^3: a cone of height 1 has the volume of a third of its solid angle, M scales
+ * that by |det M|, and the cone ends at |M d| instead of 1. */
 SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, float *pdf_uniform)
 {
     __global const Light *source = scene->lights + light;
     Affine light_from_world = source->light_from_world;
-    Vec3 w = vec3_normalize(affine_vector(light_from_world, d));
+    Vec3 w = affine_vector(light_from_world, d);
+    float length = vec3_length(w);
+    w = vec3_scale(w, 1.0f / length);
+    /* |det M| = 1 (scene_types.h). */
+    float stretch = 1.0f / (length * length * length);
     if ((source->flags & LIGHT_EQUIRECTANGULAR) != 0u) {
-        *pdf_uniform = equirectangular_pdf(w);
+        *pdf_uniform = stretch * equirectangular_pdf(w);
         return sphere_to_equirectangular(w);
     }
-    *pdf_uniform = INV_4PI;
+    *pdf_uniform = stretch * INV_4PI;
     return sphere_to_octahedral(w);
 }
 
@@ -88,8 +94,11 @@ SHARED_FUNCTION bool infinite_light_sample(const SceneView *scene, uint light, V
     bool equirectangular = (source->flags & LIGHT_EQUIRECTANGULAR) != 0u;
     Vec3 w = equirectangular ? equirectangular_to_sphere(uv) : octahedral_to_sphere(uv);
     Affine world_from_light = source->world_from_light;
-    sample->wi = vec3_normalize(affine_vector(world_from_light, w));
-    sample->pdf_w = pdf * (equirectangular ? equirectangular_pdf(w) : INV_4PI);
+    Vec3 d = affine_vector(world_from_light, w);
+    float length = vec3_length(d);
+    sample->wi = vec3_scale(d, 1.0f / length);
+    /* |M wi| of environment_uv is 1 / length. */
+    sample->pdf_w = pdf * (equirectangular ? equirectangular_pdf(w) : INV_4PI) * (length * length * length);
     sample->radiance = environment_image(scene, light, uv);
     return sample->pdf_w > 0.0f && float_finite(sample->pdf_w) && !vec3_is_zero(sample->radiance);
 }

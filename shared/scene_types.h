@@ -230,7 +230,7 @@ typedef struct Light {
     float cos_total; /* spot: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle */
     uint distribution; /* infinite image: index into `distributions2d` */
-    Affine world_from_light; /* infinite: rotation */
+    Affine world_from_light; /* infinite: of directions, scaled to a determinant of 1 or -1 */
     Affine light_from_world;
 } Light;
 
