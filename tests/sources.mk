@@ -109,6 +109,7 @@ tests_test_platform_bits_SOURCES += tests/opencl_probe.c
 else
 tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
 endif
+tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
 tests_test_platform_bits_CFLAGS = $(TEST_CFLAGS)
 tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 
