@@ -179,12 +179,16 @@ bool matrix_equal(const Matrix *a, const Matrix *b)
     return true;
 }
 
-bool matrix_swaps_handedness(const Matrix *matrix)
+double matrix_determinant(const Matrix *matrix)
 {
     const double *m = matrix->m;
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-               m[2] * (m[4] * m[9] - m[5] * m[8]) <
-           0.0;
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+bool matrix_swaps_handedness(const Matrix *matrix)
+{
+    return matrix_determinant(matrix) < 0.0;
 }
 
 void matrix_vector(const Matrix *matrix, const double in[3], double out[3])

@@ -35,7 +35,10 @@ bool matrix_fits_float(const Matrix *matrix);
 
 bool matrix_equal(const Matrix *a, const Matrix *b);
 
-/* Determinant of the upper left 3x3 part is negative: left- and right-handed change places. */
+/* Of the upper left 3x3 part. */
+double matrix_determinant(const Matrix *matrix);
+
+/* matrix_determinant is negative: left- and right-handed change places. */
 bool matrix_swaps_handedness(const Matrix *matrix);
 
 /* a x b; out must be neither. */

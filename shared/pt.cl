@@ -172,7 +172,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
                                  state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_LIGHT));
     uint light = light_select(&scene, random.x[0], random.x[1]);
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
-    LightSample sample;
+    LightSample sample = {0};
     if (!light_sample(&scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return;
     Bsdf bsdf = path_load_bsdf(&scene, paths, stride, t);
