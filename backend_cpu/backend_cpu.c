@@ -36,6 +36,9 @@ typedef struct Worker {
     size_t buffer_words[BUFFER_COUNT];
     uint64_t diagnostics[DIAGNOSTIC_COUNT];
     uint64_t closest_rays, shadow_rays, ray_nanoseconds;
+    uint all[CHUNK_ITEMS]; /* 0, 1, 2 ... */
+    uint live[CHUNK_ITEMS]; /* items with a ray in the latest closest-hit step */
+    uint live_count;
     char padding[64]; /* no two workers' counters on a cache line */
 } Worker;
 
@@ -113,30 +116,54 @@ static void worker_sum_diagnostics(Worker *worker)
     }
 }
 
-/* Traces and times; returns how many rays were alive. */
-static uint worker_trace(Worker *worker, StepKind kind, uint count)
+static void worker_trace(Worker *worker, StepKind kind, uint count)
 {
     const RaysEmbree *rays = worker->backend->rays;
     uint64_t begin = nanoseconds_now();
-    uint traced;
-    if (kind == STEP_TRACE_CLOSEST) {
-        traced = rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], count,
-                                           CHUNK_STRIDE);
-        worker->closest_rays += traced;
-    } else {
-        traced = rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
-        worker->shadow_rays += traced;
-    }
+    if (kind == STEP_TRACE_CLOSEST)
+        worker->closest_rays += rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS],
+                                                          worker->buffers[BUFFER_HITS], count, CHUNK_STRIDE);
+    else
+        worker->shadow_rays += rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
     worker->ray_nanoseconds += nanoseconds_now() - begin;
-    return traced;
 }
 
-static bool chunk_is_idle(const Worker *worker, uint count)
+/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares the kernels the
+ * others. */
+static void worker_find_live(Worker *worker, uint count)
 {
-    for (uint t = 0; t < count; ++t)
-        if (state_load_float(worker->buffers[BUFFER_RAYS], CHUNK_STRIDE, RAY_T_MAX, t) > 0.0f)
-            return false;
-    return true;
+    const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;
+    uint live = 0;
+    for (uint t = 0; t < count; ++t) {
+        worker->live[live] = t;
+        live += bits_float(t_max[t]) > 0.0f;
+    }
+    worker->live_count = live;
+}
+
+/* Step i of the list; returns the next. */
+static size_t worker_run_step(Worker *worker, const StepList *list, size_t i, void *const *arguments, uint count)
+{
+    const Step *step = &list->steps[i];
+    switch (step->kind) {
+    case STEP_KERNEL:
+        kernel_run(step->kernel, arguments, step->live_only ? worker->live : worker->all,
+                   step->live_only ? worker->live_count : count);
+        break;
+    case STEP_TRACE_CLOSEST:
+        worker_find_live(worker, count);
+        worker_trace(worker, step->kind, count);
+        break;
+    case STEP_TRACE_SHADOW:
+        worker_trace(worker, step->kind, count);
+        break;
+    case STEP_SKIP_IF_IDLE:
+        worker_find_live(worker, count);
+        if (worker->live_count == 0)
+            return step->target;
+        break;
+    }
+    return i + 1;
 }
 
 static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
@@ -149,15 +176,8 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     worker->frame.item_count = count;
     worker->frame.stride = CHUNK_STRIDE;
     worker_arguments(worker, arguments);
-    for (size_t i = 0; i < job->list->count; ++i) {
-        const Step *step = &job->list->steps[i];
-        if (step->kind == STEP_KERNEL)
-            kernel_run(step->kernel, arguments, count);
-        else if (step->kind != STEP_SKIP_IF_IDLE)
-            worker_trace(worker, step->kind, count);
-        else if (chunk_is_idle(worker, count))
-            i = step->target - 1;
-    }
+    for (size_t i = 0; i < job->list->count;)
+        i = worker_run_step(worker, job->list, i, arguments, count);
     if (job->list->words_per_item[BUFFER_SPLATS] > 0)
         job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
     worker_sum_diagnostics(worker);
@@ -269,6 +289,8 @@ static bool workers_start(Backend *backend, uint count, Error *error)
         return error_memory(error, count * sizeof *backend->workers, "threads");
     for (uint i = 0; i < count; ++i) {
         backend->workers[i].backend = backend;
+        for (uint t = 0; t < CHUNK_ITEMS; ++t)
+            backend->workers[i].all[t] = t;
         if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
             error_set(error, "thread %u of %u cannot be started", i + 1, count);
             return error_fix(error, "ask for fewer with --threads");

@@ -22,20 +22,22 @@
 
 /* One loop a kernel, with the kernel and all it calls inlined into it, so that the scene's pointers are made once. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
-    static void run_##name(void *const *buffers, uint count)                                                           \
+    static void run_##name(void *const *buffers, const uint *items, uint count)                                        \
     {                                                                                                                  \
-        for (platform_item = 0; platform_item < count; ++platform_item)                                                \
+        for (uint i = 0; i < count; ++i) {                                                                             \
+            platform_item = items[i];                                                                                  \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \
+        }                                                                                                              \
     }
 KERNEL_LIST(KERNEL_LOOP)
 
-typedef void (*KernelLoop)(void *const *buffers, uint count);
+typedef void (*KernelLoop)(void *const *buffers, const uint *items, uint count);
 
 #define KERNEL_ENTRY(name, n, ...) run_##name,
 static const KernelLoop KERNEL_LOOPS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ENTRY)};
 
-void kernel_run(unsigned kernel, void *const *buffers, uint count)
+void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count)
 {
     assert(kernel < KERNEL_COUNT);
-    KERNEL_LOOPS[kernel](buffers, count);
+    KERNEL_LOOPS[kernel](buffers, items, count);
 }

@@ -4,7 +4,7 @@
 
 #include "platform.h"
 
-/* Runs kernel `kernel` (KERNEL_* of kernel_list.h) for items 0 ... count - 1. `buffers`: by BufferId. */
-void kernel_run(unsigned kernel, void *const *buffers, uint count);
+/* Runs kernel `kernel` (KERNEL_* of kernel_list.h) for items[0] ... items[count - 1]. `buffers`: by BufferId. */
+void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count);
 
 #endif

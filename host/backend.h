@@ -40,6 +40,9 @@ typedef enum StepKind {
 typedef struct Step {
     StepKind kind;
     unsigned kernel; /* index into the kernel list (shared/kernel_list.h) */
+    /* The kernel does nothing to items without a live ray in the latest STEP_TRACE_CLOSEST, so a backend may leave them
+     * out. */
+    bool live_only;
     unsigned target;
 } Step;
 

@@ -34,13 +34,13 @@ static size_t steps_record(Step *steps, uint max_depth)
     steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_start_paths};
     for (uint depth = 1;; ++depth) {
         steps[n++] = (Step){.kind = STEP_TRACE_CLOSEST};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_shade_hits};
+        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_shade_hits, .live_only = true};
         if (depth == max_depth)
             break;
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_sample_lights};
+        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_sample_lights, .live_only = true};
         steps[n++] = (Step){.kind = STEP_TRACE_SHADOW};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_add_lights};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_extend_paths};
+        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_add_lights, .live_only = true};
+        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_extend_paths, .live_only = true};
         steps[n++] = (Step){.kind = STEP_SKIP_IF_IDLE, .target = (unsigned)last};
     }
     assert(n == last);

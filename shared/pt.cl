@@ -164,7 +164,6 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     if (depth == 0u || (state_load(paths, stride, PATH_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -192,12 +191,15 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     ray_store(shadows, stride, t, shadow);
 }
 
-/* From: traced shadow rays. To: visible light samples gathered. */
+/* From: traced shadow rays. To: visible light samples gathered, no shadow ray left. */
 __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                            __global const uint *restrict shadows)
+                            __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f && state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
+    if (!(state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f))
+        return;
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    if (state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
         path_add_radiance(paths, stride, t, state_load_vec3(paths, stride, PATH_LIGHT, t));
 }
 
