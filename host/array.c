@@ -44,6 +44,7 @@ void *array_grow(Array *array, size_t count, Error *error)
         if (!array_reserve(array, needed > larger ? needed : larger, error))
             return NULL;
     }
+    assert(array->data);
     char *first = (char *)array->data + array->count * array->element_size;
     if (count > 0)
         memset(first, 0, count * array->element_size);

@@ -37,7 +37,7 @@ bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error)
     char kind = 0, after = 0;
     long long width = 0, height = 0;
     double scale = 0.0;
-    /* At most 9 digits a side, so that neither the numbers nor their product overflow. */
+    /* At most 9 digits a side, so that neither the numbers nor their product overflow. NOLINTNEXTLINE(cert-err34-c) */
     if (fscanf(file, "P%c%9lld%9lld%31lf%c", &kind, &width, &height, &scale, &after) != 5 || !isfinite(scale) ||
         scale == 0.0)
         return image_error(error, path, "its PFM header is damaged");

@@ -100,7 +100,7 @@ static bool blocks_compare(const float *image, const float *reference, int width
                            Error *error)
 {
     size_t count = (size_t)metrics->blocks * (size_t)metrics->blocks;
-    double *means = malloc(2 * count * sizeof *means), floor_value = 0.0;
+    double *means = calloc(2 * count, sizeof *means), floor_value = 0.0;
     if (!means)
         return error_memory(error, 2 * count * sizeof *means, "block means");
     blocks_fill(image, reference, width, height, metrics->blocks, means);

@@ -51,7 +51,7 @@ static uint *indices_make(ParamList *list, MeshParams *mesh, size_t corners)
         if (mesh->indices[i] < 0 || (size_t)mesh->indices[i] >= mesh->vertex_count)
             param_error(list, "indices", "vertex index %d is out of range: there are %zu vertices", mesh->indices[i],
                         mesh->vertex_count);
-    uint *indices = list->failed ? NULL : malloc(mesh->index_count * sizeof *indices);
+    uint *indices = list->failed ? NULL : calloc(mesh->index_count + 1, sizeof *indices);
     if (!indices && !list->failed)
         list->failed = !error_memory(list->error, mesh->index_count * sizeof *indices, "a mesh");
     for (size_t i = 0; indices && i < mesh->index_count; ++i)

@@ -138,7 +138,7 @@ static bool face_next(Cursor *c, PlyType type, uint64_t count)
     }
     uint *out = array_grow(count == 3 ? &c->triangles : &c->quads, (size_t)count, c->source->error);
     for (uint64_t i = 0; out && i < count; ++i) {
-        uint64_t index;
+        uint64_t index = 0;
         if (!integer_next(c, type, &index))
             return false;
         out[i] = index < NONE ? (uint)index : NONE;

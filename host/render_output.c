@@ -24,8 +24,7 @@ static bool path_with_ending(char target[PATH_MAX], const char *path, const char
         error_set(error, "the file name is too long: %.200s...", path);
         return error_fix(error, "give a shorter one with --output");
     }
-    memcpy(target, path, stem);
-    strcpy(target + stem, ends ? "" : ending);
+    snprintf(target, PATH_MAX, "%.*s%s", (int)stem, path, ends ? "" : ending);
     return true;
 }
 

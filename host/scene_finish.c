@@ -141,7 +141,7 @@ static void world_sphere_set(FrameParams *frame, const Box *world)
 
 static bool scene_bounds(Scene *scene, Error *error)
 {
-    Box world;
+    Box world = box_empty();
     float largest = 0.0f;
     if (!world_box(scene, &world, &largest, error))
         return false;

@@ -64,6 +64,7 @@ static bool lut_find(Scene *scene, const TextureImageOptions *options, uint *lut
         table[i] = encoding_decode(options, i / 255.0);
     for (size_t i = 0; i < scene->images.count; ++i) {
         const TextureImage *image = &ARRAY_AT(&scene->images, TextureImage, i);
+        /* The same bits are wanted. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
         if (image->lut != NONE && memcmp(&ARRAY_AT(&scene->lookup, float, image->lut), table, sizeof table) == 0) {
             *lut = image->lut;
             return true;
