@@ -13,12 +13,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Buffers that kernels name. The first four hold the scene; the others hold 32-bit words per item (StepList). */
+/* Buffers that kernels name. Those before BUFFER_PATHS hold the scene; the others hold 32-bit words per item
+ * (StepList). */
 typedef enum BufferId {
     BUFFER_FRAME,
     BUFFER_GEOMETRY,
     BUFFER_TABLES,
     BUFFER_TEXELS,
+    BUFFER_BVH, /* bvh.h; NULL where the backend has rays of its own */
     BUFFER_PATHS, /* path_state.h */
     BUFFER_RAYS, /* state.h: closest-hit rays */
     BUFFER_HITS,

@@ -3,6 +3,7 @@ libtwinlight_host_la_SOURCES = \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/bvh.c host/bvh.h \
 	host/camera_setup.c host/camera_setup.h \
 	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_info.c \
@@ -69,7 +70,7 @@ libtwinlight_host_la_SOURCES = \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h
-libtwinlight_host_la_LIBADD = $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
+libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight
 twinlight_SOURCES = host/main.c

@@ -7,6 +7,9 @@
 
 /* X(name, number of arguments, the BufferId of each in order) */
 #define KERNEL_LIST(X)                                                                                                 \
+    X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
+      BUFFER_HITS)                                                                                                     \
+    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
     X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
       BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
     X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \

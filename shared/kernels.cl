@@ -3,6 +3,7 @@
 #define TWINLIGHT_KERNELS_CL
 
 #include "pt.cl"
+#include "trace.cl"
 #include "walk.cl"
 
 #endif

@@ -9,6 +9,7 @@ SHARED_FILES = \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
 	shared/bsdf_thin_dielectric.h \
+	shared/bvh_traverse.h \
 	shared/camera.h \
 	shared/coat.h \
 	shared/diagnostics.h \
@@ -40,6 +41,7 @@ SHARED_FILES = \
 	shared/state.h \
 	shared/surface.h \
 	shared/texture.h \
+	shared/trace.cl \
 	shared/triangle.h \
 	shared/vec.h \
 	shared/walk.cl \
