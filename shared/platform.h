@@ -18,6 +18,7 @@
 #define float_floor(x) floor(x)
 /* Items run at once and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
+#define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
 
 #else
 
@@ -64,6 +65,7 @@ SHARED_FUNCTION float bits_float(uint bits)
 #define float_floor(x) floorf(x)
 /* Every thread has its own counters. */
 #define counter_increment(counter) (++*(counter))
+#define counter_add(counter, n) (*(counter) += (n))
 
 #endif
 

@@ -12,6 +12,7 @@ SHARED_FILES = \
 	shared/bvh_traverse.h \
 	shared/camera.h \
 	shared/coat.h \
+	shared/count.cl \
 	shared/diagnostics.h \
 	shared/disk.h \
 	shared/distribution.h \

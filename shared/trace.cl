@@ -12,6 +12,8 @@ __kernel void trace_closest(__global const FrameParams *restrict frame, __global
                             __global uint *restrict hits)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     Ray ray = ray_load(rays, stride, t);
     if (!(ray.t_max > 0.0f))
         return;
@@ -24,6 +26,8 @@ __kernel void trace_shadow(__global const FrameParams *restrict frame, __global 
                            __global const uint *restrict bvh, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     Ray ray = ray_load(shadows, stride, t);
     if (!(ray.t_max > 0.0f))
         return;
