@@ -51,6 +51,15 @@ static const char *log_first_error(const char *log, int *length)
     return line;
 }
 
+/* Line by line: a message is one line. */
+static void log_show(const OclProgram *program, char *log)
+{
+    char *rest = NULL;
+    log_message(LOG_WARNING, "the compiler of %s says:", program->device->info.name);
+    for (char *line = strtok_r(log, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+        log_message(LOG_WARNING, "%s", line);
+}
+
 static bool build_fail(const OclProgram *program, const char *folder, cl_int status, Error *error)
 {
     char *log = build_log(program->program, program->device->id);
@@ -58,11 +67,11 @@ static bool build_fail(const OclProgram *program, const char *folder, cl_int sta
         free(log);
         return ocl_fail(error, program->device->info.name, "building the kernels", status);
     }
-    log_message(LOG_WARNING, "the compiler of %s says:\n%s", program->device->info.name, log);
     int length;
     const char *line = log_first_error(log, &length);
     error_set(error, "%s does not build the kernels of %s: %.*s", program->device->info.name, folder,
               length > 400 ? 400 : length, line);
+    log_show(program, log);
     free(log);
     return error_fix(error, "the sources must be those of this version of Twinlight (TWINLIGHT_KERNELS names another "
                             "folder); otherwise choose another device, or --backend=cpu");

@@ -244,16 +244,17 @@ static bool film_write(RenderJob *job, Error *error)
 /* A rendering that failed on its way has an image all the same, of the samples that were finished. */
 static void film_rescue(RenderJob *job, Error *error)
 {
-    Error failed = {0};
-    char what[sizeof error->message];
+    Error failed = {0}, first = *error;
+    const char *what = error_text(&first);
     if (job->result.samples == 0)
         return;
-    snprintf(what, sizeof what, "%s", error_text(error));
     if (stage_run(film_write, job, &job->write, &failed))
         error_set(error, "%s; what was finished, %.6g samples per pixel, is in %s", what, job->result.samples_per_pixel,
                   job->output.exr);
     else
         error_set(error, "%s; nor could what was finished be written: %s", what, error_text(&failed));
+    if (first.fix[0])
+        error_fix(error, "%s", first.fix);
 }
 
 static int job_run(RenderJob *job, Error *error)
