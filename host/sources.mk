@@ -4,6 +4,7 @@ libtwinlight_host_la_SOURCES = \
 	host/array.c host/array.h \
 	host/backend.h \
 	host/bvh.c host/bvh.h \
+	host/bvh_tree.c host/bvh_tree.h \
 	host/camera_setup.c host/camera_setup.h \
 	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_devices.c \
