@@ -5,6 +5,8 @@
 #include "rays_embree.h"
 #include "state.h"
 
+#include <embree3/rtcore.h>
+
 #include <assert.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -366,9 +368,27 @@ static void backend_cpu_statistics(Backend *backend, BackendStatistics *statisti
     cpu_name(statistics->device, sizeof statistics->device);
 }
 
+static size_t backend_cpu_devices(BackendDevice *devices, size_t capacity)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE), units = sysconf(_SC_NPROCESSORS_ONLN);
+    if (capacity < 1)
+        return 1;
+    memset(devices, 0, sizeof *devices);
+    cpu_name(devices->name, sizeof devices->name);
+    snprintf(devices->platform, sizeof devices->platform, "threads and Embree");
+    snprintf(devices->version, sizeof devices->version, "Embree %s", RTC_VERSION_STRING);
+    snprintf(devices->kind, sizeof devices->kind, "CPU");
+    devices->memory = pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page : 0;
+    devices->allocation_limit = devices->memory;
+    devices->units = units > 0 ? (unsigned)units : 1u;
+    devices->rounds_division = devices->keeps_denormals = devices->atomics64 = devices->same_bits = true;
+    return 1;
+}
+
 const BackendInterface *backend_cpu(void)
 {
     static const BackendInterface interface = {.name = "cpu",
+                                               .devices = backend_cpu_devices,
                                                .open = backend_cpu_open,
                                                .close = backend_cpu_close,
                                                .run = backend_cpu_run,

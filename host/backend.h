@@ -13,18 +13,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Buffers that kernels name. The first four hold the scene; the others hold 32-bit words per item (StepList). */
+/* Buffers that kernels name. Those before BUFFER_PATHS hold the scene; the others hold 32-bit words per item
+ * (StepList). */
 typedef enum BufferId {
     BUFFER_FRAME,
     BUFFER_GEOMETRY,
     BUFFER_TABLES,
     BUFFER_TEXELS,
+    BUFFER_BVH, /* bvh.h; NULL where the backend has rays of its own */
     BUFFER_PATHS, /* path_state.h */
     BUFFER_RAYS, /* state.h: closest-hit rays */
     BUFFER_HITS,
     BUFFER_SHADOWS, /* shadow rays and their visibility */
     BUFFER_SPLATS, /* what goes to the film */
     BUFFER_DIAGNOSTICS, /* counters, per thread or device; summed by the host */
+    BUFFER_COUNTS, /* live rays, for backends that count with a kernel (count.cl) */
     BUFFER_COUNT
 } BufferId;
 
@@ -68,7 +71,36 @@ typedef struct BackendScene {
 
 typedef struct BackendOptions {
     int threads; /* 0: one per processor */
+    const char *device; /* a number or a part of a name, for backends with a choice of devices; NULL: the first */
+    uint batch; /* items a device takes through the list at a time; 0: the backend chooses */
+    bool record_spans; /* keep what ran when, for `spans` */
 } BackendOptions;
+
+/* A device that a backend can compute on, in words. */
+typedef struct BackendDevice {
+    char platform[128];
+    char name[256];
+    char version[256]; /* of platform and driver */
+    char kind[32];
+    uint64_t memory; /* bytes */
+    uint64_t allocation_limit; /* bytes of the largest single buffer */
+    unsigned units;
+    bool rounds_division; /* division and square root are correctly rounded */
+    bool keeps_denormals;
+    bool atomics64;
+    bool same_bits; /* the image of the CPU backend, bit for bit, is promised */
+} BackendDevice;
+
+/* Something that took time while rendering. */
+typedef enum SpanTrack { SPAN_COMPUTE, SPAN_COPY, SPAN_FILM } SpanTrack;
+
+typedef struct BackendSpan {
+    const char *name; /* of a kernel or stage; outlives the backend */
+    SpanTrack track;
+    uint lane; /* which host thread, for SPAN_FILM */
+    uint64_t batch; /* counted since the backend was opened */
+    uint64_t begin, end; /* nanoseconds since some moment in the past, one clock for all tracks */
+} BackendSpan;
 
 /* Rays and time since the backend was opened. */
 typedef struct BackendStatistics {
@@ -87,19 +119,25 @@ typedef void (*SplatSink)(void *context, const uint *splats, uint count, uint st
 
 typedef struct Backend Backend;
 
+/* Functions named "may be NULL" are of backends that have such a thing. */
 typedef struct BackendInterface {
     const char *name;
+    /* Fills up to `capacity` devices and returns how many there are; --device counts them in this order. */
+    size_t (*devices)(BackendDevice *devices, size_t capacity);
     /* Builds the acceleration structure and worker threads or queues. NULL on failure. */
     Backend *(*open)(const BackendScene *scene, const BackendOptions *options, Error *error);
     void (*close)(Backend *backend);
     /* Runs the list over the pass that `frame` describes and returns when every splat has reached the sink. When
      * *stop becomes non-zero no new chunk is begun; the items done are still delivered. `items_done` (may be NULL)
-     * gets how many items were delivered. */
+     * gets how many items were delivered, also when the run fails. */
     bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
                 const atomic_int *stop, uint64_t *items_done, Error *error);
     /* Sums the diagnostics counters (diagnostics.h) into counters[DIAGNOSTIC_COUNT]. */
     void (*diagnostics)(Backend *backend, uint64_t *counters);
     void (*statistics)(Backend *backend, BackendStatistics *statistics);
+    /* What ran when, if BackendOptions.record_spans was set. Returns the count and sets *dropped to how many did not fit.
+     * Borrowed until the next call of any function. May be NULL. */
+    size_t (*spans)(Backend *backend, const BackendSpan **spans, uint64_t *dropped);
 } BackendInterface;
 
 #endif

@@ -10,6 +10,7 @@
 #include "render_output.h"
 #include "stats.h"
 #include "timing.h"
+#include "trace_output.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,9 +98,10 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->integrator = command->integrator;
     output->seed = command->seed;
     output->max_depth = job->scene.settings.max_depth;
-    return render_output_distinct(output, command->stats, error) && render_output_check(output->exr, error) &&
-           (!output->png[0] || render_output_check(output->png, error)) &&
-           (!command->stats || render_output_check(command->stats, error));
+    return render_output_distinct(output, command->stats, command->trace, error) &&
+           render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
+           (!command->stats || render_output_check(command->stats, error)) &&
+           (!command->trace || render_output_check(command->trace, error));
 }
 
 static bool scene_load(RenderJob *job, Error *error)
@@ -112,7 +114,10 @@ static bool scene_load(RenderJob *job, Error *error)
 static bool backend_build(RenderJob *job, Error *error)
 {
     const BackendScene view = scene_backend_view(&job->scene);
-    const BackendOptions options = {.threads = job->command->threads};
+    const BackendOptions options = {.threads = job->command->threads,
+                                    .device = job->command->device,
+                                    .batch = job->command->batch,
+                                    .record_spans = job->command->trace != NULL};
     job->backend = job->command->backend->open(&view, &options, error);
     return job->backend != NULL;
 }
@@ -209,6 +214,17 @@ static bool stats_output(const RenderJob *job, Error *error)
     return stats_write(command->stats, &stats, error);
 }
 
+static bool trace_output(const RenderJob *job, Error *error)
+{
+    const BackendSpan *spans = NULL;
+    uint64_t dropped = 0;
+    size_t count = job->command->backend->spans(job->backend, &spans, &dropped);
+    if (dropped > 0)
+        log_message(LOG_WARNING, "the trace holds the first %zu spans only; %llu more were not recorded", count,
+                    (unsigned long long)dropped);
+    return trace_write(job->command->trace, job->result.backend.device, spans, count, dropped, error);
+}
+
 /* ---- the whole job ---------------------------------------------------------------------------------------------- */
 
 /* Runs one stage and adds its wall-clock time to *seconds. */
@@ -225,6 +241,22 @@ static bool film_write(RenderJob *job, Error *error)
     return render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
 }
 
+/* A rendering that failed on its way has an image all the same, of the samples that were finished. */
+static void film_rescue(RenderJob *job, Error *error)
+{
+    Error failed = {0}, first = *error;
+    const char *what = error_text(&first);
+    if (job->result.samples == 0)
+        return;
+    if (stage_run(film_write, job, &job->write, &failed))
+        error_set(error, "%s; what was finished, %.6g samples per pixel, is in %s", what, job->result.samples_per_pixel,
+                  job->output.exr);
+    else
+        error_set(error, "%s; nor could what was finished be written: %s", what, error_text(&failed));
+    if (first.fix[0])
+        error_fix(error, "%s", first.fix);
+}
+
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -236,12 +268,17 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     if (!settings_override(job, error))
         return EXIT_USAGE;
-    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error) ||
-        !stage_run(film_render, job, &job->rendering, error) || !stage_run(film_write, job, &job->write, error))
+    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error))
+        return EXIT_FAILED;
+    if (!stage_run(film_render, job, &job->rendering, error)) {
+        film_rescue(job, error);
+        return EXIT_FAILED;
+    }
+    if (!stage_run(film_write, job, &job->write, error))
         return EXIT_FAILED;
     diagnostics_report(job);
     summary_report(job);
-    if (command->stats && !stats_output(job, error))
+    if ((command->stats && !stats_output(job, error)) || (command->trace && !trace_output(job, error)))
         return EXIT_FAILED;
     return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
 }

@@ -10,15 +10,24 @@
 #define EXIT_USAGE 2 /* the command line was not understood */
 #define EXIT_STOPPED 130 /* ended early by SIGINT or SIGTERM, output written */
 
+/* A backend that this build lacks; an array of them ends with name NULL. */
+typedef struct BackendLeftOut {
+    const char *name;
+    const char *why;
+    const char *fix;
+} BackendLeftOut;
+
 /* The backends of this build, the default one first. Only main.c fills it. */
 typedef struct BackendTable {
     const BackendInterface *const *backends;
     int count;
+    const BackendLeftOut *left_out; /* NULL: none */
 } BackendTable;
 
 /* A command gets argv[0] = its own name. It returns an exit status; when that is EXIT_FAILED or EXIT_USAGE, `error`
  * says why, or is empty when the command's own output has. */
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error);
 
 #endif

@@ -18,7 +18,7 @@
 /* A pass is sized to take about this long, so that saving, stopping and progress are prompt. */
 #define PASS_SECONDS 0.25
 #define PASS_ITEMS_MIN 16384u
-#define PASS_ITEMS_MAX (1u << 22)
+#define PASS_ITEMS_MAX (1u << 28)
 
 /* Names of the kernels' counters in reports. */
 #define DIAGNOSTIC_NAME(constant, name) name,
@@ -198,8 +198,10 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
     loop->frame.item_count = items;
     if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
-                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error))
+                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error)) {
+        loop->done += delivered; /* they are in the film */
         return false;
+    }
     loop->next += items;
     loop->done += delivered;
     return true;
@@ -270,6 +272,7 @@ bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *b
     memset(result, 0, sizeof *result);
     if (!step_list_make(&loop.list, loop.frame.max_depth, error))
         return false;
+    loop.start = timing_now();
     bool done = true;
     if (!keep_quantum) {
         double mean = 0.0;
@@ -277,8 +280,7 @@ bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *b
         film_quantum_set(film, mean);
     }
     done = done && passes_run(&loop, &result->stopped, error);
-    if (done)
-        result_fill(&loop, result);
+    result_fill(&loop, result);
     free((void *)(uintptr_t)loop.list.steps);
     return done;
 }

@@ -8,6 +8,9 @@
 #ifdef HAVE_EMBREE
 #include "backend_cpu.h"
 #endif
+#ifdef HAVE_OPENCL
+#include "backend_ocl.h"
+#endif
 
 #include <stdio.h>
 #include <string.h>
@@ -30,15 +33,27 @@ static const Command COMMANDS[] = {
     {"render", "render a scene to OpenEXR and PNG", cmd_render},
     {"compare", "measure how far an image is from a reference", compare_run},
     {"info", "say what a scene holds", cmd_info},
+    {"devices", "list what can be rendered on", cmd_devices},
 };
 
 #define COMMAND_COUNT (int)(sizeof COMMANDS / sizeof COMMANDS[0])
+
+/* Backends that a build may lack, and why this one does. */
+static const BackendLeftOut LEFT_OUT[] = {
+#ifndef HAVE_OPENCL
+    {"opencl", "it was configured without OpenCL",
+     "apt-get install ocl-icd-opencl-dev pocl-opencl-icd, then configure without --without-opencl and make again"},
+#endif
+    {NULL, NULL, NULL}};
 
 static int backends_fill(const BackendInterface **backends)
 {
     int count = 0;
 #ifdef HAVE_EMBREE
     backends[count++] = backend_cpu();
+#endif
+#ifdef HAVE_OPENCL
+    backends[count++] = backend_ocl();
 #endif
     return count;
 }
@@ -71,7 +86,7 @@ static int usage_fail(Error *error, const char *word)
         error_set(error, "unknown %s %s", word[0] == '-' ? "option" : "command", word);
     else
         error_set(error, "no command is given");
-    error_fix(error, "use render, compare or info; see twinlight --help");
+    error_fix(error, "use render, compare, info or devices; see twinlight --help");
     return EXIT_USAGE;
 }
 
@@ -110,7 +125,7 @@ static int output_close(int status, Error *error)
 int main(int argc, char **argv)
 {
     const BackendInterface *backends[BACKENDS_MAX];
-    BackendTable table = {backends, backends_fill(backends)};
+    BackendTable table = {backends, backends_fill(backends), LEFT_OUT};
     Error error = {0};
     int status = output_close(command_run(&table, argc, argv, &error), &error);
     if (error.message[0])

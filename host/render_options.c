@@ -12,6 +12,8 @@ enum {
     OPTION_SAMPLES,
     OPTION_TIME,
     OPTION_BACKEND,
+    OPTION_DEVICE,
+    OPTION_BATCH,
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_MAX_DEPTH,
@@ -22,6 +24,7 @@ enum {
     OPTION_NO_PNG,
     OPTION_EXPOSURE,
     OPTION_STATS,
+    OPTION_TRACE,
     OPTION_LENIENT,
     OPTION_QUIET,
     OPTION_HELP
@@ -32,7 +35,9 @@ static const OptionSpec SPECS[] = {
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME", "algorithm: pt, path tracing (default)"},
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
-    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default)"},
+    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default) or opencl"},
+    [OPTION_DEVICE] = {"device", 0, "INDEX|NAME", "OpenCL device, as twinlight devices counts them (default: 0)"},
+    [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
@@ -43,6 +48,7 @@ static const OptionSpec SPECS[] = {
     [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
     [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
     [OPTION_STATS] = {"stats", 0, "FILE.json", "write what was rendered, how fast, and what was noticed"},
+    [OPTION_TRACE] = {"trace", 0, "FILE.json", "write when a device did what, for chrome://tracing"},
     [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
     [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
     [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
@@ -75,7 +81,12 @@ static bool backend_choose(const BackendTable *backends, const char *name, const
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", backends->backends[i]->name);
     }
-    error_set(error, "--backend=%s: this build has no such backend", name);
+    for (const BackendLeftOut *lack = backends->left_out; lack && lack->name; ++lack)
+        if (strcmp(lack->name, name) == 0) {
+            error_set(error, "--backend=%s: this build has no such backend: %s", name, lack->why);
+            return error_fix(error, "%s", lack->fix);
+        }
+    error_set(error, "--backend=%s: there is no such backend", name);
     return error_fix(error, "use one of: %s", names);
 }
 
@@ -99,6 +110,11 @@ static bool number_set(RenderCommand *command, int index, const char *value, Err
         if (!option_whole(name, value, 1, 1024, &whole, error))
             return false;
         command->threads = (int)whole;
+        return true;
+    case OPTION_BATCH:
+        if (!option_whole(name, value, 1, 1u << 26, &whole, error))
+            return false;
+        command->batch = (unsigned)whole;
         return true;
     case OPTION_MAX_DEPTH:
         if (!option_whole(name, value, 1, 65535, &whole, error))
@@ -128,6 +144,11 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return path_set(&command->output, index, value, ".exr", error);
     case OPTION_STATS:
         return path_set(&command->stats, index, value, NULL, error);
+    case OPTION_TRACE:
+        return path_set(&command->trace, index, value, NULL, error);
+    case OPTION_DEVICE:
+        command->device = value;
+        return true;
     case OPTION_PNG:
         command->png = true;
         return !value || path_set(&command->png_path, index, value, ".png", error);
@@ -162,6 +183,16 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
+/* Options of devices, where the backend has none. */
+static bool device_options_check(const RenderCommand *command, Error *error)
+{
+    const char *option = command->device ? "device" : command->batch > 0 ? "batch" : command->trace ? "trace" : NULL;
+    if (!option || !command->backend || command->backend->spans)
+        return true;
+    error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backend->name);
+    return error_fix(error, "add --backend=opencl, or leave --%s out", option);
+}
+
 bool render_options_parse(RenderCommand *command, const BackendTable *backends, int argc, char **argv, Error *error)
 {
     Parse parse = {command, backends};
@@ -183,5 +214,5 @@ bool render_options_parse(RenderCommand *command, const BackendTable *backends, 
         return error_fix(error, "render one scene at a time; options come as --name=value");
     }
     command->scene = argv[first];
-    return true;
+    return device_options_check(command, error);
 }

@@ -15,6 +15,8 @@ typedef struct RenderCommand {
     double exposure; /* stops */
     const char *integrator;
     const BackendInterface *backend;
+    const char *device;
+    unsigned batch;
     uint64_t samples;
     double seconds;
     int threads;
@@ -25,6 +27,7 @@ typedef struct RenderCommand {
     int crop[4];
     double save_every;
     const char *stats;
+    const char *trace;
     bool lenient;
     bool quiet;
     bool help; /* nothing else is valid */

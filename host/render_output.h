@@ -26,7 +26,7 @@ bool render_output_name(RenderOutput *output, const Scene *scene, const char *sc
                         bool want_png, const char *png, double exposure, Error *error);
 
 /* Fails when scene, image, PNG and statistics (NULL: none) are not all different files. */
-bool render_output_distinct(const RenderOutput *output, const char *stats, Error *error);
+bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, Error *error);
 
 /* Fails when a file of this name could not be created: its folder is missing or not writable, or it is a folder. */
 bool render_output_check(const char *path, Error *error);

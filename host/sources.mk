@@ -3,8 +3,11 @@ libtwinlight_host_la_SOURCES = \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/bvh.c host/bvh.h \
+	host/bvh_tree.c host/bvh_tree.h \
 	host/camera_setup.c host/camera_setup.h \
 	host/cmd_compare.c host/cmd_compare.h \
+	host/cmd_devices.c \
 	host/cmd_info.c \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
@@ -68,9 +71,10 @@ libtwinlight_host_la_SOURCES = \
 	host/stats.c host/stats.h \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
-	host/timing.c host/timing.h
-libtwinlight_host_la_LIBADD = $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
+	host/timing.c host/timing.h \
+	host/trace_output.c host/trace_output.h
+libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight
 twinlight_SOURCES = host/main.c
-twinlight_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS)
+twinlight_LDADD = libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS)

@@ -1,5 +1,6 @@
 /* Every kernel with its arguments, for the backends: the CPU makes a loop for each, a device looks them up by name.
- * Kernels themselves never include this file. */
+ * Kernels themselves never include this file. A launch may have more items than the pass: a kernel returns at once
+ * when its item is not below item_count. */
 #ifndef TWINLIGHT_KERNEL_LIST_H
 #define TWINLIGHT_KERNEL_LIST_H
 
@@ -7,6 +8,11 @@
 
 /* X(name, number of arguments, the BufferId of each in order) */
 #define KERNEL_LIST(X)                                                                                                 \
+    X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
+    X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
+    X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
+      BUFFER_HITS)                                                                                                     \
+    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
     X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
       BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
     X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \

@@ -2,7 +2,9 @@
 #ifndef TWINLIGHT_KERNELS_CL
 #define TWINLIGHT_KERNELS_CL
 
+#include "count.cl"
 #include "pt.cl"
+#include "trace.cl"
 #include "walk.cl"
 
 #endif

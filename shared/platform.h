@@ -18,6 +18,17 @@
 #define float_floor(x) floor(x)
 /* Items run at once and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
+#define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
+
+typedef float4 Float4;
+typedef uint4 Uint4;
+#define lane_of(v, i) ((v).s##i)
+#define uint4_make(a, b, c, d) ((uint4)((a), (b), (c), (d)))
+#define float4_splat(x) ((float4)(x))
+#define float4_bits(a) as_uint4(a)
+#define float4_at_most(a, b) as_uint4((a) <= (b))
+#define float4_min(a, b) fmin(a, b)
+#define float4_max(a, b) fmax(a, b)
 
 #else
 
@@ -59,11 +70,35 @@ SHARED_FUNCTION float bits_float(uint bits)
     return x;
 }
 
+/* Four lanes at once, for boxes: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and
+ * the operators of integers work lane by lane, a scalar beside them counts for every lane. The bits may differ between
+ * languages where float4_min and float4_max get a NaN or zeros of both signs. */
+typedef float Float4 __attribute__((vector_size(16), may_alias));
+typedef uint Uint4 __attribute__((vector_size(16), may_alias));
+#define lane_of(v, i) ((v)[i])
+#define uint4_make(a, b, c, d) ((Uint4){(a), (b), (c), (d)})
+#define float4_splat(x) ((Float4){(x), (x), (x), (x)})
+#define float4_bits(a) ((Uint4)(a))
+#define float4_at_most(a, b) ((Uint4)((a) <= (b)))
+
+SHARED_FUNCTION Float4 float4_min(Float4 a, Float4 b)
+{
+    Uint4 less = (Uint4)(a < b);
+    return (Float4)(((Uint4)a & less) | ((Uint4)b & ~less));
+}
+
+SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
+{
+    Uint4 less = (Uint4)(a < b);
+    return (Float4)(((Uint4)b & less) | ((Uint4)a & ~less));
+}
+
 #define float_sqrt(x) sqrtf(x)
 #define float_abs(x) fabsf(x)
 #define float_floor(x) floorf(x)
 /* Every thread has its own counters. */
 #define counter_increment(counter) (++*(counter))
+#define counter_add(counter, n) (*(counter) += (n))
 
 #endif
 

@@ -90,37 +90,51 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     return alpha > 0.0f && ray_hash(query, id) <= alpha;
 }
 
+/* Whether a hit of the primitive counts: always, but for an alpha texture. */
+SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *query, uint id, const Hit *hit)
+{
+    if (!SCENE_HAS(scene, FEATURE_ALPHA))
+        return true;
+    Primitive primitive = scene->primitives[id];
+    return !(primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
+           primitive_alpha_keeps(scene, query, id, &primitive, hit);
+}
+
+/* primitive_query without the alpha texture, for what is no triangle. */
+SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, const Primitive *primitive, const RayQuery *query,
+                                            Hit *hit)
+{
+    uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
+    Vec3 p;
+    if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
+        PatchCorners corners = patch_corners(scene, primitive->a);
+        return patch_query(&corners, query, &hit->t, &hit->u, &hit->v);
+    }
+    if (!SCENE_HAS(scene, FEATURE_SPHERE | FEATURE_DISK))
+        return false;
+    __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    bool sphere = kind == PRIMITIVE_SPHERE;
+    bool found = sphere ? sphere_query(quadric, query, &hit->t, &p) : disk_query(quadric, query, &hit->t, &p);
+    if (!found)
+        return false;
+    Vec2 uv = sphere ? sphere_parameters(quadric, p) : disk_parameters(quadric, p);
+    hit->u = uv.x;
+    hit->v = uv.y;
+    return true;
+}
+
 /* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, u, v. Depends on nothing
  * but ray and primitive. */
 SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];
-    uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    Vec3 p;
     bool found;
-    if (kind == PRIMITIVE_TRIANGLE)
+    if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE)
         found = triangle_query(scene->positions[primitive.a], scene->positions[primitive.b],
                                scene->positions[primitive.c], query, &hit->t, &hit->u, &hit->v);
-    else if (kind == PRIMITIVE_BILINEAR) {
-        PatchCorners corners = patch_corners(scene, primitive.a);
-        found = patch_query(&corners, query, &hit->t, &hit->u, &hit->v);
-    } else {
-        __global const Quadric *quadric = &scene->quadrics[primitive.a];
-        Vec2 uv;
-        if (kind == PRIMITIVE_SPHERE)
-            found = sphere_query(quadric, query, &hit->t, &p);
-        else
-            found = disk_query(quadric, query, &hit->t, &p);
-        if (!found)
-            return false;
-        uv = kind == PRIMITIVE_SPHERE ? sphere_parameters(quadric, p) : disk_parameters(quadric, p);
-        hit->u = uv.x;
-        hit->v = uv.y;
-    }
-    if (!found)
-        return false;
-    return !(primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
-           primitive_alpha_keeps(scene, query, id, &primitive, hit);
+    else
+        found = primitive_query_curved(scene, &primitive, query, hit);
+    return found && primitive_keeps(scene, query, id, hit);
 }
 
 /* Whether a comes before b in the order that makes the closest hit unique: t, instance, primitive. */

@@ -32,6 +32,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict shadows, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
     uint crop_pixels = crop_width * crop_height, item = frame->first_item + t;
@@ -102,6 +104,8 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
                             __global const uint *restrict hits)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u)
         return;
@@ -163,6 +167,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
                                __global uint *restrict paths, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u || (state_load(paths, stride, PATH_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
         return;
@@ -196,6 +202,8 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
                             __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     if (!(state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f))
         return;
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
@@ -210,6 +218,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u)
         return;
@@ -254,6 +264,8 @@ __kernel void pt_splat(__global const FrameParams *restrict frame, __global cons
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, t), state_load_float(paths, stride, PATH_WEIGHT, t));
     if (!vec3_finite(radiance)) {

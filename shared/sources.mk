@@ -9,8 +9,10 @@ SHARED_FILES = \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
 	shared/bsdf_thin_dielectric.h \
+	shared/bvh_traverse.h \
 	shared/camera.h \
 	shared/coat.h \
+	shared/count.cl \
 	shared/diagnostics.h \
 	shared/disk.h \
 	shared/distribution.h \
@@ -40,6 +42,7 @@ SHARED_FILES = \
 	shared/state.h \
 	shared/surface.h \
 	shared/texture.h \
+	shared/trace.cl \
 	shared/triangle.h \
 	shared/vec.h \
 	shared/walk.cl \

@@ -62,6 +62,15 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define SPLAT_COLOR 1u
 #define SPLAT_WORDS 4u
 
+/* BUFFER_COUNTS: live rays counted by count.cl. */
+#define COUNT_CLOSEST 0u
+#define COUNT_SHADOW 1u
+#define COUNT_WORDS 2u
+
+/* Rays that one item of a counting launch looks at: few enough for the device to be busy, many enough for the sums to
+ * meet seldom. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
+#define COUNT_RAYS 64u
+
 SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint t, Ray ray)
 {
     state_store_vec3(rays, stride, RAY_ORIGIN, t, ray.o);

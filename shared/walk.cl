@@ -33,6 +33,8 @@ SHARED_FUNCTION Random4 walk_random(__global const FrameParams *frame, uint t, u
 __kernel void walk_start(__global const FrameParams *frame, __global uint *paths, __global uint *rays)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     Random4 random = walk_random(frame, t, 0u);
     Vec3 d = warp_sphere(vec2(random_float(random.x[0]), random_float(random.x[1])));
     state_store(paths, stride, WALK_STEP, t, 1u);
@@ -48,6 +50,8 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
                           __global const uint *hits, __global uint *shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     uint step = state_load(paths, stride, WALK_STEP, t), h = state_load(paths, stride, WALK_HASH, t);
     for (uint field = 0; field < HIT_WORDS; ++field)
@@ -77,6 +81,8 @@ __kernel void walk_splat(__global const FrameParams *frame, __global const uint 
                          __global uint *splats, __global uint *diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
     uint h = state_load(paths, stride, WALK_HASH, t);
     bool traced = state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f;
     if (!traced)

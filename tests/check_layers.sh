@@ -1,7 +1,7 @@
 #!/bin/sh
 # Who may include whom:
 #   shared/      shared; system headers in platform.h alone (it knows the language)
-#   backend_*/   itself, shared, host/{backend,error,log}.h
+#   backend_*/   itself, shared, host/{backend,bvh,error,log}.h
 #   host/        host, shared; main.c alone may name a backend's header
 # An include that this tree does not resolve is a fault too. config.h and <system headers> are free outside shared/.
 srcdir=${srcdir:-$(dirname "$0")/..}
@@ -25,7 +25,8 @@ allowed() {
     host/main.c:backend_*/*.h) return 0 ;;
     host/*:host/* | host/*:shared/*) return 0 ;;
     backend_*/*:shared/*) return 0 ;;
-    backend_*/*:host/backend.h | backend_*/*:host/error.h | backend_*/*:host/log.h) return 0 ;;
+    backend_*/*:host/backend.h | backend_*/*:host/bvh.h) return 0 ;;
+    backend_*/*:host/error.h | backend_*/*:host/log.h) return 0 ;;
     backend_*/*:backend_*/*) [ "${1%%/*}" = "${2%%/*}" ] ;;
     *) return 1 ;;
     esac

@@ -14,7 +14,7 @@ static void require(bool done, const Error *error)
         ck_abort_msg("%s (%s)", error->message, error->fix);
 }
 
-static void scene_load(const RenderSetup *setup, Scene *scene)
+void fixture_scene(const RenderSetup *setup, Scene *scene)
 {
     Error error = {0};
     ImportOptions options = {0};
@@ -30,14 +30,18 @@ static void scene_load(const RenderSetup *setup, Scene *scene)
     }
 }
 
-static Backend *backend_open(const Scene *scene, int threads)
+static const BackendInterface *setup_interface(const RenderSetup *setup)
 {
-    Error error = {0};
+    return setup->backend ? setup->backend : backend_cpu();
+}
+
+Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error)
+{
     BackendScene view = scene_backend_view(scene);
-    BackendOptions options = {.threads = threads};
-    Backend *backend = backend_cpu()->open(&view, &options, &error);
-    require(backend != NULL, &error);
-    return backend;
+    BackendOptions options = {.threads = setup->threads > 0 ? setup->threads : 2,
+                              .batch = setup->batch,
+                              .record_spans = setup->record_spans};
+    return setup_interface(setup)->open(&view, &options, error);
 }
 
 void fixture_render(const RenderSetup *setup, RenderedImage *image)
@@ -45,10 +49,12 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
     Error error = {0};
     Scene scene;
     memset(image, 0, sizeof *image);
-    scene_load(setup, &scene);
+    const BackendInterface *interface = setup_interface(setup);
+    fixture_scene(setup, &scene);
     image->width = scene.settings.width;
     image->height = scene.settings.height;
-    Backend *backend = backend_open(&scene, setup->threads > 0 ? setup->threads : 2);
+    Backend *backend = fixture_open(setup, &scene, &error);
+    require(backend != NULL, &error);
     require(film_init(&image->film, image->width, image->height, scene.settings.crop, &error), &error);
     if (setup->quantum_of)
         image->film.quantum_exponent = setup->quantum_of->quantum_exponent;
@@ -56,10 +62,10 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .samples = setup->samples,
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed};
-    require(render_pt(&scene, backend_cpu(), backend, &options, setup->quantum_of != NULL, NULL, &image->film,
+    require(render_pt(&scene, interface, backend, &options, setup->quantum_of != NULL, NULL, &image->film,
                       &image->result, &error),
             &error);
-    backend_cpu()->close(backend);
+    interface->close(backend);
     image->rgb = malloc((size_t)image->width * (size_t)image->height * 3 * sizeof *image->rgb);
     ck_assert_ptr_nonnull(image->rgb);
     film_resolve(&image->film, scene.settings.film_scale, image->rgb);

@@ -1,4 +1,4 @@
-/* Renders scenes given as text or file on the CPU backend, for tests of whole pictures. */
+/* Renders scenes given as text or file, for tests of whole pictures. */
 #ifndef TWINLIGHT_RENDER_FIXTURE_H
 #define TWINLIGHT_RENDER_FIXTURE_H
 
@@ -13,6 +13,9 @@ typedef struct RenderSetup {
     unsigned first_sample, samples;
     int max_depth; /* 0: the scene's */
     int threads;
+    const BackendInterface *backend; /* NULL: the CPU's */
+    uint batch; /* of a device; 0: it chooses */
+    bool record_spans;
     uint64_t seed;
     const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */
 } RenderSetup;
@@ -23,6 +26,12 @@ typedef struct RenderedImage {
     int width, height;
     float *rgb; /* 3 a pixel */
 } RenderedImage;
+
+/* Opens the backend on a finished scene; NULL with its error. */
+Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error);
+
+/* Reads and finishes the scene. */
+void fixture_scene(const RenderSetup *setup, Scene *scene);
 
 /* Fails the Check test, with the error's text, when anything goes wrong. */
 void fixture_render(const RenderSetup *setup, RenderedImage *image);

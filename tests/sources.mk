@@ -6,6 +6,7 @@ TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_bsdf \
+	tests/test_bvh \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_import \
@@ -22,12 +23,14 @@ endif
 
 EXTRA_DIST += \
 	tests/bsdf_cases.h \
+	tests/bvh_scenes.h \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
 	tests/light_fixture.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
+	tests/test_bvh.h \
 	tests/test_files.h \
 	tests/test_import.h \
 	tests/test_light.h \
@@ -44,6 +47,19 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_sampling.c
 tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
+
+tests_test_bvh_SOURCES = tests/test_bvh.c \
+	tests/test_bvh_build.c \
+	tests/test_bvh_opencl.c \
+	tests/bvh_scenes.c \
+	tests/geometry_fixture.c
+if HAVE_OPENCL
+tests_test_bvh_SOURCES += tests/opencl_probe.c
+else
+tests_test_bvh_SOURCES += tests/opencl_probe_absent.c
+endif
+tests_test_bvh_CFLAGS = $(TEST_CFLAGS)
+tests_test_bvh_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 
 tests_test_film_SOURCES = tests/test_film.c \
 	tests/test_film_output.c

@@ -1,0 +1,266 @@
+#include "backend_ocl.h"
+
+#include "bvh.h"
+#include "film_adders.h"
+#include "log.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Threads that add splats to the film, when --threads says nothing: more than a device can keep busy are of no use. */
+#define ADDERS_DEFAULT 8
+
+/* Work-items of a work-group. Kernels use no local memory and meet at no barrier, so this only has to be a multiple of
+ * what devices run in step. */
+#define GROUP_ITEMS 64u
+
+struct Backend {
+    OclDevice device;
+    cl_context context;
+    cl_command_queue compute, copy;
+    Timeline timeline;
+    Launcher launcher;
+    DeviceMemory memory;
+    FilmAdders *adders;
+    int adder_count;
+    Batch batches[BATCH_SLOTS];
+    int slots; /* batches under way at a time: BATCH_SLOTS, or 1 without overlap */
+    uint64_t next_batch;
+    double build_seconds;
+    bool failed; /* a batch failed: the device's state is not to be trusted */
+};
+
+/* ---- open and close ---------------------------------------------------------------------------------------------- */
+
+static bool queues_make(Backend *backend, Error *error)
+{
+    cl_int status;
+    const char *name = backend->device.info.name;
+    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)backend->device.platform,
+                                                0};
+    backend->context = clCreateContext(properties, 1, &backend->device.id, NULL, NULL, &status);
+    if (status != CL_SUCCESS)
+        return ocl_fail(error, name, "opening the device", status);
+    backend->compute = clCreateCommandQueue(backend->context, backend->device.id, CL_QUEUE_PROFILING_ENABLE, &status);
+    if (status == CL_SUCCESS)
+        backend->copy = clCreateCommandQueue(backend->context, backend->device.id, CL_QUEUE_PROFILING_ENABLE, &status);
+    return status == CL_SUCCESS || ocl_fail(error, name, "making a queue", status);
+}
+
+static void promise_warn(const OclDevice *device)
+{
+    const BackendDevice *info = &device->info;
+    if (!info->same_bits)
+        log_message(LOG_WARNING, "%s does not promise %s%s%s: the image may differ from the CPU's in the last bits",
+                    info->name, info->rounds_division ? "" : "correctly rounded division and square roots",
+                    !info->rounds_division && !info->keeps_denormals ? ", nor " : "",
+                    info->keeps_denormals ? "" : "denormal numbers");
+}
+
+static int adder_count(const BackendOptions *options)
+{
+    long count = options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : options->threads > 0 || count < ADDERS_DEFAULT ? (int)count : ADDERS_DEFAULT;
+}
+
+static bool environment_is(const char *name, const char *value)
+{
+    const char *text = getenv(name);
+    return text && strcmp(text, value) == 0;
+}
+
+static void launcher_init(Backend *backend, const BackendOptions *options)
+{
+    Launcher *launcher = &backend->launcher;
+    const char *fail = getenv("TWINLIGHT_TEST_FAIL_BATCH");
+    launcher->device = &backend->device;
+    launcher->compute = backend->compute;
+    launcher->copy = backend->copy;
+    launcher->memory = &backend->memory;
+    launcher->records = options->record_spans;
+    launcher->group = backend->device.group_limit < GROUP_ITEMS ? 1 : GROUP_ITEMS;
+    launcher->first_check = 2;
+    launcher->fail_at = fail ? strtoull(fail, NULL, 10) : UINT64_MAX;
+}
+
+static bool scene_build(Backend *backend, const BackendScene *scene, const BackendOptions *options, Error *error)
+{
+    Bvh bvh = {0};
+    if (!bvh_build(scene, &bvh, error))
+        return false;
+    backend->build_seconds = bvh.build_seconds;
+    bool done = device_memory_init(&backend->memory, backend->context, backend->compute, &backend->device, scene, &bvh,
+                                   options->batch, error);
+    bvh_destroy(&bvh);
+    return done;
+}
+
+static bool backend_build(Backend *backend, const BackendScene *scene, const BackendOptions *options, Error *error)
+{
+    if (!ocl_device_choose(options->device, &backend->device, error))
+        return false;
+    promise_warn(&backend->device);
+    backend->adder_count = adder_count(options);
+    backend->slots = environment_is("TWINLIGHT_OVERLAP", "0") ? 1 : BATCH_SLOTS;
+    if (!timeline_init(&backend->timeline, options->record_spans, error) || !queues_make(backend, error))
+        return false;
+    launcher_init(backend, options);
+    if (!ocl_program_init(&backend->launcher.program, backend->context, &backend->device, scene->frame->features,
+                          error) ||
+        !scene_build(backend, scene, options, error))
+        return false;
+    timeline_synchronize(&backend->timeline, backend->compute, backend->memory.scene[BUFFER_GEOMETRY]);
+    backend->adders = adders_create(backend->adder_count, &backend->timeline, error);
+    return backend->adders != NULL;
+}
+
+static void backend_ocl_close(Backend *backend)
+{
+    if (!backend)
+        return;
+    adders_destroy(backend->adders);
+    for (int i = 0; i < BATCH_SLOTS; ++i)
+        batch_drop(&backend->batches[i]);
+    device_memory_destroy(&backend->memory);
+    ocl_program_destroy(&backend->launcher.program);
+    if (backend->copy)
+        clReleaseCommandQueue(backend->copy);
+    if (backend->compute)
+        clReleaseCommandQueue(backend->compute);
+    if (backend->context)
+        clReleaseContext(backend->context);
+    timeline_destroy(&backend->timeline);
+    free(backend);
+}
+
+static Backend *backend_ocl_open(const BackendScene *scene, const BackendOptions *options, Error *error)
+{
+    static const BackendOptions DEFAULTS;
+    Backend *backend = calloc(1, sizeof *backend);
+    if (!backend) {
+        error_memory(error, sizeof *backend, "the OpenCL backend");
+        return NULL;
+    }
+    if (!backend_build(backend, scene, options ? options : &DEFAULTS, error)) {
+        backend_ocl_close(backend);
+        return NULL;
+    }
+    return backend;
+}
+
+/* ---- a pass ------------------------------------------------------------------------------------------------------ */
+
+static bool batch_start(Backend *backend, int slot, const FrameParams *frame, const StepList *list, uint first,
+                        uint count, Error *error)
+{
+    Batch *batch = &backend->batches[slot];
+    batch->memory = &backend->memory.batches[slot];
+    batch->number = backend->next_batch++;
+    batch->frame = *frame;
+    batch->frame.first_item = frame->first_item + first;
+    batch->frame.item_count = count;
+    batch->frame.stride = device_memory_stride(count);
+    if (!batch_launch(&backend->launcher, batch, list, error))
+        return false;
+    adders_push(backend->adders, slot, batch);
+    return true;
+}
+
+static bool device_failed(Backend *backend, Error *error)
+{
+    AddersTotal total;
+    adders_total(backend->adders, &total);
+    if (total.status == CL_SUCCESS)
+        return false;
+    ocl_fail(error, backend->device.info.name, "computing", total.status);
+    return true;
+}
+
+static bool batches_run(Backend *backend, const FrameParams *frame, const StepList *list, const atomic_int *stop,
+                        Error *error)
+{
+    uint batch = backend->memory.batch;
+    for (uint first = 0; first < frame->item_count && !*stop;) {
+        uint left = frame->item_count - first, count = left < batch ? left : batch;
+        int slot = (int)(backend->next_batch % (uint64_t)backend->slots);
+        adders_wait(backend->adders, slot);
+        if (device_failed(backend, error) || !batch_start(backend, slot, frame, list, first, count, error))
+            return false;
+        if (backend->slots == 1)
+            adders_wait(backend->adders, slot);
+        first += count;
+    }
+    return true;
+}
+
+static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
+                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
+{
+    AddersTotal total;
+    if (items_done)
+        *items_done = 0;
+    if (backend->failed)
+        return error_set(error, "%s has failed before", backend->device.info.name);
+    if (!device_memory_reserve(&backend->memory, list, error))
+        return false;
+    adders_begin(backend->adders, list->words_per_item[BUFFER_SPLATS] > 0 ? sink : NULL, context);
+    bool done = batches_run(backend, frame, list, stop, error);
+    if (!done) { /* a batch that was launched in part writes to the host until the queues are empty */
+        clFinish(backend->compute);
+        clFinish(backend->copy);
+    }
+    for (int slot = 0; slot < BATCH_SLOTS; ++slot)
+        adders_wait(backend->adders, slot);
+    done = done && !device_failed(backend, error);
+    backend->failed = !done;
+    adders_total(backend->adders, &total);
+    if (items_done)
+        *items_done = total.items;
+    return done;
+}
+
+/* ---- what happened ----------------------------------------------------------------------------------------------- */
+
+static void backend_ocl_diagnostics(Backend *backend, uint64_t *counters)
+{
+    AddersTotal total;
+    adders_total(backend->adders, &total);
+    memcpy(counters, total.diagnostics, sizeof total.diagnostics);
+}
+
+static void backend_ocl_statistics(Backend *backend, BackendStatistics *statistics)
+{
+    AddersTotal total;
+    const BackendDevice *info = &backend->device.info;
+    adders_total(backend->adders, &total);
+    memset(statistics, 0, sizeof *statistics);
+    statistics->closest_rays = total.closest_rays;
+    statistics->shadow_rays = total.shadow_rays;
+    statistics->ray_seconds = 1e-9 * (double)total.ray_nanoseconds;
+    statistics->build_seconds = backend->build_seconds;
+    statistics->bytes = backend->memory.bytes;
+    statistics->threads = backend->adder_count;
+    snprintf(statistics->device, sizeof statistics->device, "%s", info->name);
+}
+
+static size_t backend_ocl_spans(Backend *backend, const BackendSpan **spans, uint64_t *dropped)
+{
+    *spans = backend->timeline.spans;
+    *dropped = backend->timeline.dropped;
+    return backend->timeline.count;
+}
+
+const BackendInterface *backend_ocl(void)
+{
+    static const BackendInterface interface = {.name = "opencl",
+                                               .devices = ocl_devices_list,
+                                               .open = backend_ocl_open,
+                                               .close = backend_ocl_close,
+                                               .run = backend_ocl_run,
+                                               .diagnostics = backend_ocl_diagnostics,
+                                               .statistics = backend_ocl_statistics,
+                                               .spans = backend_ocl_spans};
+    return &interface;
+}

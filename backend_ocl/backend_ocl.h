@@ -1,0 +1,9 @@
+/* The OpenCL backend: the kernels and the rays on one device, step by step over batches of items. */
+#ifndef TWINLIGHT_BACKEND_OCL_H
+#define TWINLIGHT_BACKEND_OCL_H
+
+#include "backend.h"
+
+const BackendInterface *backend_ocl(void);
+
+#endif

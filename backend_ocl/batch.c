@@ -1,0 +1,267 @@
+#include "batch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A launch in progress. */
+typedef struct Launch {
+    Launcher *launcher;
+    Batch *batch;
+    const StepList *list;
+    Error *error;
+    uint turn; /* closest-hit queries so far */
+    cl_event counted; /* the latest number of live rays is being read */
+    uint idle_turn; /* the turn that found no live ray; 0: none did */
+} Launch;
+
+static bool check(Launch *launch, cl_int status, const char *what)
+{
+    return status == CL_SUCCESS || ocl_fail(launch->error, launch->launcher->device->info.name, what, status);
+}
+
+/* ---- events ------------------------------------------------------------------------------------------------------ */
+
+/* Where to put the event of a command called `name`, or NULL when nobody will ask. */
+static bool event_slot(Launch *launch, const char *name, bool traces, cl_event **slot)
+{
+    Batch *batch = launch->batch;
+    *slot = NULL;
+    if (!traces && !launch->launcher->records)
+        return true;
+    if (batch->event_count == batch->event_capacity) {
+        size_t capacity = 2 * batch->event_capacity + 64;
+        BatchEvent *events = realloc(batch->events, capacity * sizeof *events);
+        if (!events)
+            return error_memory(launch->error, capacity * sizeof *events, "events");
+        batch->events = events;
+        batch->event_capacity = capacity;
+    }
+    BatchEvent *event = &batch->events[batch->event_count++];
+    *event = (BatchEvent){NULL, name, traces};
+    *slot = &event->event;
+    return true;
+}
+
+static void events_release(Batch *batch)
+{
+    for (size_t i = 0; i < batch->event_count; ++i)
+        if (batch->events[i].event)
+            clReleaseEvent(batch->events[i].event);
+    batch->event_count = 0;
+    if (batch->copied)
+        clReleaseEvent(batch->copied);
+    batch->copied = NULL;
+}
+
+/* ---- kernels ----------------------------------------------------------------------------------------------------- */
+
+#define KERNEL_ARGUMENTS(name, count, ...) {count, {__VA_ARGS__}},
+static const struct KernelArguments {
+    uint count;
+    BufferId buffers[10];
+} ARGUMENTS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ARGUMENTS)};
+#undef KERNEL_ARGUMENTS
+
+static cl_mem argument(const Launch *launch, BufferId id)
+{
+    const DeviceMemory *memory = launch->launcher->memory;
+    if (id == BUFFER_FRAME)
+        return launch->batch->memory->frame;
+    if (id == BUFFER_SPLATS)
+        return launch->batch->memory->splats;
+    return id <= BUFFER_BVH ? memory->scene[id] : memory->state[id];
+}
+
+/* Enqueues `kernel` for `items` items, rounded up to whole work-groups; kernels look after the rest themselves. */
+static bool kernel_enqueue(Launch *launch, unsigned number, uint items, bool traces)
+{
+    Launcher *launcher = launch->launcher;
+    const char *name = ocl_kernel_name(number);
+    cl_kernel kernel = ocl_program_kernel(&launcher->program, number, launch->error);
+    cl_event *event;
+    if (!kernel || !event_slot(launch, name, traces, &event))
+        return false;
+    for (uint i = 0; i < ARGUMENTS[number].count; ++i) {
+        cl_mem buffer = argument(launch, ARGUMENTS[number].buffers[i]);
+        if (!check(launch, clSetKernelArg(kernel, i, sizeof buffer, &buffer), name))
+            return false;
+    }
+    size_t local = launcher->group, global = (items + local - 1) / local * local;
+    return check(launch, clEnqueueNDRangeKernel(launcher->compute, kernel, 1, NULL, &global, &local, 0, NULL, event),
+                 name);
+}
+
+/* ---- steps ------------------------------------------------------------------------------------------------------- */
+
+static bool buffer_write(Launch *launch, cl_mem buffer, const void *from, size_t bytes)
+{
+    return check(launch,
+                 clEnqueueWriteBuffer(launch->launcher->compute, buffer, CL_FALSE, 0, bytes, from, 0, NULL, NULL),
+                 "writing parameters");
+}
+
+static bool batch_begin(Launch *launch)
+{
+    static const uint ZEROS[COUNT_WORDS + DIAGNOSTIC_COUNT];
+    const DeviceMemory *memory = launch->launcher->memory;
+    Batch *batch = launch->batch;
+    if (batch->number == launch->launcher->fail_at)
+        return check(launch, CL_OUT_OF_RESOURCES, "computing (TWINLIGHT_TEST_FAIL_BATCH orders it)");
+    return buffer_write(launch, batch->memory->frame, &batch->frame, sizeof batch->frame) &&
+           buffer_write(launch, memory->state[BUFFER_COUNTS], ZEROS, COUNT_WORDS * sizeof(uint)) &&
+           buffer_write(launch, memory->state[BUFFER_DIAGNOSTICS], ZEROS, DIAGNOSTIC_COUNT * sizeof(uint));
+}
+
+static void counted_release(Launch *launch)
+{
+    if (launch->counted)
+        clReleaseEvent(launch->counted);
+    launch->counted = NULL;
+}
+
+/* Counts and traces. From the turn on at which a batch may have ended, the count is read back while the rays are
+ * traced, so that the device has work while the host waits for it. */
+static bool trace_closest(Launch *launch)
+{
+    Launcher *launcher = launch->launcher;
+    uint items = launch->batch->frame.item_count;
+    ++launch->turn;
+    counted_release(launch);
+    if (!kernel_enqueue(launch, KERNEL_count_closest, (items + COUNT_RAYS - 1) / COUNT_RAYS, false))
+        return false;
+    if (launch->turn + 1 >= launcher->first_check &&
+        !check(launch,
+               clEnqueueReadBuffer(launcher->compute, launcher->memory->state[BUFFER_COUNTS], CL_FALSE,
+                                   COUNT_CLOSEST * sizeof(uint), sizeof(uint), &launch->batch->live[launch->turn % 2],
+                                   0, NULL, &launch->counted),
+               "reading the number of rays"))
+        return false;
+    return kernel_enqueue(launch, KERNEL_trace_closest, items, true);
+}
+
+static bool trace_shadow(Launch *launch)
+{
+    uint items = launch->batch->frame.item_count;
+    return kernel_enqueue(launch, KERNEL_count_shadow, (items + COUNT_RAYS - 1) / COUNT_RAYS, false) &&
+           kernel_enqueue(launch, KERNEL_trace_shadow, items, true);
+}
+
+/* Whether the turn just enqueued had no live ray, as far as that is known by now. */
+static bool turn_was_idle(Launch *launch, bool *idle)
+{
+    *idle = false;
+    if (launch->turn < launch->launcher->first_check)
+        return true;
+    if (!check(launch, clFlush(launch->launcher->compute), "starting commands") ||
+        !check(launch, clWaitForEvents(1, &launch->counted), "tracing rays"))
+        return false;
+    /* The queue is in order: the number of the turn before has been read as well. */
+    *idle = launch->batch->live[0] == launch->batch->live[1];
+    if (*idle)
+        launch->idle_turn = launch->turn;
+    return true;
+}
+
+static bool steps_enqueue(Launch *launch)
+{
+    const StepList *list = launch->list;
+    bool idle, done = true;
+    for (size_t i = 0; i < list->count && done; ++i) {
+        const Step *step = &list->steps[i];
+        switch (step->kind) {
+        case STEP_KERNEL:
+            done = kernel_enqueue(launch, step->kernel, launch->batch->frame.item_count, false);
+            break;
+        case STEP_TRACE_CLOSEST:
+            done = trace_closest(launch);
+            break;
+        case STEP_TRACE_SHADOW:
+            done = trace_shadow(launch);
+            break;
+        case STEP_SKIP_IF_IDLE:
+            done = turn_was_idle(launch, &idle);
+            if (done && idle)
+                i = step->target - 1;
+            break;
+        }
+    }
+    return done;
+}
+
+/* The next batch asks a turn before this one ended: the turns differ by one or two. */
+static void first_check_adapt(Launch *launch)
+{
+    Launcher *launcher = launch->launcher;
+    uint turns = launch->idle_turn > 0 ? launch->idle_turn : launch->turn;
+    launcher->first_check = turns > 2 ? turns - 1 : 2;
+}
+
+/* ---- the end ----------------------------------------------------------------------------------------------------- */
+
+static bool results_read(Launch *launch)
+{
+    Launcher *launcher = launch->launcher;
+    const DeviceMemory *memory = launcher->memory;
+    Batch *batch = launch->batch;
+    cl_event computed = NULL;
+    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    bool done = check(launch,
+                      clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_DIAGNOSTICS], CL_FALSE, 0,
+                                          sizeof batch->diagnostics, batch->diagnostics, 0, NULL, NULL),
+                      "reading counters") &&
+                check(launch,
+                      clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_COUNTS], CL_FALSE, 0,
+                                          sizeof batch->counts, batch->counts, 0, NULL, &computed),
+                      "reading counters") &&
+                check(launch, clFlush(launcher->compute), "starting commands");
+    if (done && bytes > 0)
+        done = check(launch,
+                     clEnqueueReadBuffer(launcher->copy, batch->memory->splats, CL_FALSE, 0, bytes, batch->memory->host,
+                                         1, &computed, &batch->copied),
+                     "copying splats") &&
+               check(launch, clFlush(launcher->copy), "starting copies");
+    else if (done)
+        done = check(launch, clRetainEvent(computed), "waiting"), batch->copied = computed;
+    if (computed)
+        clReleaseEvent(computed);
+    return done;
+}
+
+bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, Error *error)
+{
+    Launch launch = {.launcher = launcher, .batch = batch, .list = list, .error = error};
+    bool done = batch_begin(&launch) && steps_enqueue(&launch) && results_read(&launch);
+    counted_release(&launch);
+    if (done)
+        first_check_adapt(&launch);
+    return done;
+}
+
+cl_int batch_wait(const Batch *batch)
+{
+    return clWaitForEvents(1, &batch->copied);
+}
+
+uint64_t batch_finish(Batch *batch, Timeline *timeline)
+{
+    uint64_t nanoseconds = 0;
+    for (size_t i = 0; i < batch->event_count; ++i) {
+        const BatchEvent *event = &batch->events[i];
+        if (!timeline->records && !event->traces)
+            continue;
+        uint64_t taken = timeline_add_event(timeline, event->event, event->name, SPAN_COMPUTE, batch->number);
+        nanoseconds += event->traces ? taken : 0;
+    }
+    if (timeline->records)
+        timeline_add_event(timeline, batch->copied, "copy splats", SPAN_COPY, batch->number);
+    events_release(batch);
+    return nanoseconds;
+}
+
+void batch_drop(Batch *batch)
+{
+    events_release(batch);
+    free(batch->events);
+    batch->events = NULL;
+    batch->event_capacity = 0;
+}

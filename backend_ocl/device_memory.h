@@ -1,0 +1,45 @@
+/* What a device holds: the scene, the state of a batch of items, and for each batch under way its parameters and its
+ * splats. Everything is sized and compared with the device's limits before any of it is allocated. */
+#ifndef TWINLIGHT_DEVICE_MEMORY_H
+#define TWINLIGHT_DEVICE_MEMORY_H
+
+#include "devices.h"
+
+#include "bvh.h"
+
+/* Batches under way: one computed, one copied, one added to the film. */
+#define BATCH_SLOTS 3
+
+typedef struct BatchMemory {
+    cl_mem frame, splats;
+    cl_mem staging; /* host memory that the device reaches directly, mapped as long as it lives */
+    uint *host;
+} BatchMemory;
+
+typedef struct DeviceMemory {
+    cl_context context;
+    cl_command_queue queue;
+    const OclDevice *device;
+    cl_mem scene[BUFFER_BVH + 1]; /* geometry, tables, texels, bvh */
+    cl_mem state[BUFFER_COUNT]; /* per-item buffers but splats; diagnostics; counts */
+    BatchMemory batches[BATCH_SLOTS];
+    uint words_per_item[BUFFER_COUNT]; /* that the state was made for */
+    uint batch; /* items of a batch; 0 until state is made */
+    uint batch_wanted; /* --batch, 0: chosen here */
+    size_t scene_bytes, bytes;
+} DeviceMemory;
+
+/* Words between two fields of a batch of `count` items: whole groups, and an offset that keeps the fields of an item off
+ * one another's cache sets when `count` is a power of two. */
+uint device_memory_stride(uint count);
+
+/* Copies the scene to the device. `batch`: items of a batch, 0 to choose. */
+bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_queue queue, const OclDevice *device,
+                        const BackendScene *scene, const Bvh *bvh, uint batch, Error *error);
+
+/* Makes state for this list, unless what is there is enough. No command may be under way. */
+bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
+
+void device_memory_destroy(DeviceMemory *memory);
+
+#endif

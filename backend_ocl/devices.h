@@ -1,0 +1,30 @@
+/* OpenCL devices of this machine: which there are, what they promise, which one is meant. */
+#ifndef TWINLIGHT_DEVICES_H
+#define TWINLIGHT_DEVICES_H
+
+#include "ocl_status.h"
+
+#include "backend.h"
+
+#define OCL_DEVICES_MAX 64
+
+typedef struct OclDevice {
+    cl_platform_id platform;
+    cl_device_id id;
+    BackendDevice info;
+    size_t group_limit; /* work-items of the largest work-group */
+    size_t index; /* what --device counts */
+} OclDevice;
+
+/* Fills up to `capacity` devices in the order of platforms and of each platform's devices; returns how many were
+ * filled. */
+size_t ocl_devices_find(OclDevice *devices, size_t capacity);
+
+/* The interface's list (backend.h). */
+size_t ocl_devices_list(BackendDevice *devices, size_t capacity);
+
+/* The device that --device=`choice` means: a number, or a part of the name in any case that fits one device; NULL: the
+ * first. Otherwise an error that lists the devices. */
+bool ocl_device_choose(const char *choice, OclDevice *device, Error *error);
+
+#endif

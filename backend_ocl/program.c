@@ -1,0 +1,183 @@
+#include "program.h"
+
+#include "log.h"
+#include "program_cache.h"
+#include "program_source.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define KERNEL_NAME(name, count, ...) #name,
+static const char *const KERNEL_NAMES[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_NAME)};
+#undef KERNEL_NAME
+
+const char *ocl_kernel_name(unsigned kernel)
+{
+    return KERNEL_NAMES[kernel];
+}
+
+/* No option here lets a device compute other bits: what OpenCL calls fast is all off by default, and fused products are
+ * switched off in platform.h. */
+static void options_make(const OclDevice *device, uint features, char *options, size_t size)
+{
+    snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,
+             device->info.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+}
+
+/* ---- building ---------------------------------------------------------------------------------------------------- */
+
+static char *build_log(cl_program program, cl_device_id device)
+{
+    size_t size = 0;
+    if (clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size) != CL_SUCCESS)
+        return NULL;
+    char *log = calloc(size + 1, 1);
+    if (log)
+        clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+    return log;
+}
+
+/* The first line of the compiler's log that is an error, or its first line. */
+static const char *log_first_error(const char *log, int *length)
+{
+    const char *line = strstr(log, "error:");
+    if (!line)
+        line = log + strspn(log, " \n");
+    while (line > log && line[-1] != '\n')
+        --line;
+    *length = (int)strcspn(line, "\n");
+    return line;
+}
+
+/* Line by line: a message is one line. */
+static void log_show(const OclProgram *program, char *log)
+{
+    char *rest = NULL;
+    log_message(LOG_WARNING, "the compiler of %s says:", program->device->info.name);
+    for (char *line = strtok_r(log, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+        log_message(LOG_WARNING, "%s", line);
+}
+
+static bool build_fail(const OclProgram *program, const char *folder, cl_int status, Error *error)
+{
+    char *log = build_log(program->program, program->device->id);
+    if (!log || log[strspn(log, " \n")] == '\0') {
+        free(log);
+        return ocl_fail(error, program->device->info.name, "building the kernels", status);
+    }
+    int length;
+    const char *line = log_first_error(log, &length);
+    error_set(error, "%s does not build the kernels of %s: %.*s", program->device->info.name, folder,
+              length > 400 ? 400 : length, line);
+    log_show(program, log);
+    free(log);
+    return error_fix(error, "the sources must be those of this version of Twinlight (TWINLIGHT_KERNELS names another "
+                            "folder); otherwise choose another device, or --backend=cpu");
+}
+
+static bool build_from_source(OclProgram *program, const char *source, const char *folder, const char *options,
+                              Error *error)
+{
+    cl_int status;
+    program->program = clCreateProgramWithSource(program->context, 1, &source, NULL, &status);
+    if (status != CL_SUCCESS)
+        return ocl_fail(error, program->device->info.name, "making a program", status);
+    status = clBuildProgram(program->program, 1, &program->device->id, options, NULL, NULL);
+    return status == CL_SUCCESS || build_fail(program, folder, status, error);
+}
+
+/* ---- the cache --------------------------------------------------------------------------------------------------- */
+
+/* False when there is no entry or the device does not take it: the program is then built anew. */
+static bool build_from_cache(OclProgram *program, CacheKey key, const char *options)
+{
+    size_t size = 0;
+    unsigned char *binary = cache_read(key, &size);
+    if (!binary)
+        return false;
+    const unsigned char *binaries[1] = {binary};
+    cl_int status, loaded = CL_INVALID_BINARY;
+    program->program =
+        clCreateProgramWithBinary(program->context, 1, &program->device->id, &size, binaries, &loaded, &status);
+    free(binary);
+    if (status == CL_SUCCESS && loaded == CL_SUCCESS &&
+        clBuildProgram(program->program, 1, &program->device->id, options, NULL, NULL) == CL_SUCCESS)
+        return true;
+    if (program->program)
+        clReleaseProgram(program->program);
+    program->program = NULL;
+    return false;
+}
+
+static unsigned char *program_binary(cl_program program, size_t *size)
+{
+    *size = 0;
+    if (clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof *size, size, NULL) != CL_SUCCESS || *size == 0)
+        return NULL;
+    unsigned char *binary = malloc(*size);
+    if (binary && clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) != CL_SUCCESS) {
+        free(binary);
+        binary = NULL;
+    }
+    return binary;
+}
+
+static void save_to_cache(const OclProgram *program, CacheKey key)
+{
+    char path[PATH_MAX];
+    size_t size;
+    unsigned char *binary = program_binary(program->program, &size);
+    if (binary && !cache_write(key, binary, size, path))
+        log_message(LOG_INFO, "the built kernels cannot be kept in %s; they will be built again next time",
+                    path[0] ? path : "a cache (neither XDG_CACHE_HOME nor HOME is set)");
+    free(binary);
+}
+
+/* ---- the interface ----------------------------------------------------------------------------------------------- */
+
+bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error)
+{
+    char options[160];
+    const char *folder = program_source_folder();
+    memset(program, 0, sizeof *program);
+    program->context = context;
+    program->device = device;
+    options_make(device, features, options, sizeof options);
+    char *source = program_source_read(folder, "kernels.cl", error);
+    if (!source)
+        return false;
+    const char *parts[] = {source, options, device->info.platform, device->info.name, device->info.version};
+    CacheKey key = cache_key(parts, (int)(sizeof parts / sizeof parts[0]));
+    program->cached = build_from_cache(program, key, options);
+    bool built = program->cached || build_from_source(program, source, folder, options, error);
+    if (built && !program->cached)
+        save_to_cache(program, key);
+    free(source);
+    return built;
+}
+
+void ocl_program_destroy(OclProgram *program)
+{
+    for (int i = 0; i < KERNEL_COUNT; ++i)
+        if (program->kernels[i])
+            clReleaseKernel(program->kernels[i]);
+    if (program->program)
+        clReleaseProgram(program->program);
+    memset(program, 0, sizeof *program);
+}
+
+cl_kernel ocl_program_kernel(OclProgram *program, unsigned kernel, Error *error)
+{
+    cl_int status = CL_SUCCESS;
+    if (!program->kernels[kernel])
+        program->kernels[kernel] = clCreateKernel(program->program, KERNEL_NAMES[kernel], &status);
+    if (status != CL_SUCCESS) {
+        char what[128];
+        snprintf(what, sizeof what, "making kernel %s", KERNEL_NAMES[kernel]);
+        ocl_fail(error, program->device->info.name, what, status);
+        return NULL;
+    }
+    return program->kernels[kernel];
+}

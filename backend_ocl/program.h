@@ -1,0 +1,30 @@
+/* The kernels as a program of one device: built from source, or taken from the cache. */
+#ifndef TWINLIGHT_PROGRAM_H
+#define TWINLIGHT_PROGRAM_H
+
+#include "devices.h"
+
+#include "kernel_list.h"
+#include "scene_types.h"
+
+#include <stdbool.h>
+
+typedef struct OclProgram {
+    cl_context context;
+    const OclDevice *device;
+    cl_program program;
+    cl_kernel kernels[KERNEL_COUNT]; /* made when first asked for */
+    bool cached; /* it came from the cache */
+} OclProgram;
+
+/* Builds the kernels for scenes with these features (FEATURE_*). `context` and `device` are borrowed. On failure the
+ * error holds the compiler's first message and the log has all of them. */
+bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error);
+void ocl_program_destroy(OclProgram *program);
+
+/* The kernel of this number (kernel_list.h); NULL on failure. */
+cl_kernel ocl_program_kernel(OclProgram *program, unsigned kernel, Error *error);
+
+const char *ocl_kernel_name(unsigned kernel);
+
+#endif

@@ -1,0 +1,10 @@
+/* The parts of the test of hierarchies. */
+#ifndef TWINLIGHT_TEST_BVH_H
+#define TWINLIGHT_TEST_BVH_H
+
+#include <check.h>
+
+TCase *bvh_build_tcase(void);
+TCase *bvh_opencl_tcase(void);
+
+#endif
