@@ -3,6 +3,7 @@ libtwinlight_host_la_SOURCES = \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/backend_group.c host/backend_group.h \
 	host/bvh.c host/bvh.h \
 	host/bvh_tree.c host/bvh_tree.h \
 	host/camera_setup.c host/camera_setup.h \

@@ -1,5 +1,6 @@
 /* The thread pool: the same items, the same bits, whatever the number of threads; counters; stopping; denormals. */
 #include "backend_cpu.h"
+#include "backend_group.h"
 #include "geometry_fixture.h"
 #include "geometry_suites.h"
 #include "kernel_list.h"
@@ -249,6 +250,97 @@ START_TEST(test_denormal_rays)
 }
 END_TEST
 
+/* A CPU backend as a group of several, one of which may fail in every pass. */
+static Backend *group_open(const TestScene *test, const BackendInterface *last, size_t count)
+{
+    Error error = {0};
+    BackendMember members[3];
+    for (size_t i = 0; i < count; ++i) {
+        BackendOptions options = {.threads = 1 + (int)i};
+        members[i].interface = i + 1 == count ? last : backend_cpu();
+        members[i].backend = backend_cpu()->open(&test->backend, &options, &error);
+        ck_assert_msg(members[i].backend != NULL, "%s", error.message);
+    }
+    Backend *group = backend_group_create(members, count, &error);
+    ck_assert(group != NULL);
+    return group;
+}
+
+/* Three members, twelve passes of all sizes: every item once, and the bits of one backend. */
+START_TEST(test_group_same_bits)
+{
+    static Collector alone, together;
+    static const atomic_int never = 0;
+    TestScene test;
+    Error error = {0};
+    const BackendInterface *interface = backend_group_interface();
+    walk_scene(&test, 1.0f);
+    pthread_mutex_init(&alone.mutex, NULL);
+    pthread_mutex_init(&together.mutex, NULL);
+    walk_run(&test, 2, 0, ITEMS, &alone);
+    Backend *group = group_open(&test, backend_cpu(), 3);
+    StepList list = walk_list();
+    FrameParams frame = *test.backend.frame;
+    uint first = 0;
+    for (uint pass = 1; first < ITEMS; ++pass) {
+        uint count = pass * 113u < ITEMS - first ? pass * 113u : ITEMS - first;
+        uint64_t done = 0;
+        frame.first_item = first;
+        frame.item_count = count;
+        ck_assert(interface->run(group, &frame, &list, collect, &together, &never, &done, &error));
+        ck_assert_uint_eq(done, count);
+        first += count;
+    }
+    for (uint item = 0; item < ITEMS; ++item)
+        ck_assert_uint_eq(together.seen[item], 1);
+    ck_assert(memcmp(alone.splats, together.splats, sizeof alone.splats) == 0);
+    BackendStatistics statistics;
+    interface->statistics(group, &statistics);
+    ck_assert_int_eq(statistics.threads, 1 + 2 + 3);
+    ck_assert_uint_eq(statistics.closest_rays, 3 * (uint64_t)ITEMS);
+    ck_assert(strstr(statistics.device, " + ") != NULL);
+    interface->close(group);
+    test_scene_destroy(&test);
+}
+END_TEST
+
+static bool failing_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+                        const atomic_int *stop, uint64_t *items_done, Error *error)
+{
+    (void)backend, (void)frame, (void)list, (void)sink, (void)context, (void)stop;
+    *items_done = 0;
+    return error_set(error, "the device is lost");
+}
+
+/* One member fails: the error is its own, and what the others did is delivered and counted. */
+START_TEST(test_group_member_fails)
+{
+    static Collector collector;
+    static const atomic_int never = 0;
+    TestScene test;
+    Error error = {0};
+    BackendInterface failing = *backend_cpu();
+    failing.run = failing_run;
+    walk_scene(&test, 1.0f);
+    pthread_mutex_init(&collector.mutex, NULL);
+    Backend *group = group_open(&test, &failing, 3);
+    StepList list = walk_list();
+    FrameParams frame = *test.backend.frame;
+    uint64_t done = 0, seen = 0;
+    frame.first_item = 0;
+    frame.item_count = ITEMS;
+    ck_assert(!backend_group_interface()->run(group, &frame, &list, collect, &collector, &never, &done, &error));
+    ck_assert_str_eq(error.message, "error: the device is lost");
+    for (uint item = 0; item < ITEMS; ++item)
+        seen += collector.seen[item];
+    ck_assert_uint_eq(seen, done);
+    ck_assert_uint_gt(done, ITEMS / 2);
+    ck_assert_uint_lt(done, ITEMS);
+    backend_group_interface()->close(group);
+    test_scene_destroy(&test);
+}
+END_TEST
+
 TCase *geometry_backend_tcase(void)
 {
     TCase *tcase = tcase_create("CPU backend");
@@ -256,6 +348,8 @@ TCase *geometry_backend_tcase(void)
     tcase_add_test(tcase, test_same_bits_for_any_threads);
     tcase_add_test(tcase, test_stop);
     tcase_add_test(tcase, test_diagnostics);
+    tcase_add_test(tcase, test_group_same_bits);
+    tcase_add_test(tcase, test_group_member_fails);
     tcase_add_test(tcase, test_denormals_kept);
     tcase_add_test(tcase, test_denormal_rays);
     return tcase;
