@@ -48,7 +48,8 @@ typedef struct Worker {
 typedef struct Job {
     const FrameParams *frame;
     const StepList *list;
-    SplatSink sink;
+    SplatSink sink; /* NULL: `inspect` is called */
+    StateSink inspect;
     void *context;
     const atomic_int *stop;
 } Job;
@@ -168,6 +169,20 @@ static size_t worker_run_step(Worker *worker, const StepList *list, size_t i, vo
     return i + 1;
 }
 
+static void worker_clear_state(Worker *worker, const StepList *list)
+{
+    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
+        if (id != BUFFER_DIAGNOSTICS)
+            memset(worker->buffers[id], 0, (size_t)list->words_per_item[id] * CHUNK_STRIDE * sizeof(uint));
+}
+
+static void worker_show_state(Worker *worker, const Job *job, uint first, uint count)
+{
+    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
+        if (id != BUFFER_DIAGNOSTICS && job->list->words_per_item[id] > 0)
+            job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
+}
+
 static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
 {
     uint first = chunk * CHUNK_ITEMS, left = job->frame->item_count - first;
@@ -178,9 +193,13 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     worker->frame.item_count = count;
     worker->frame.stride = CHUNK_STRIDE;
     worker_arguments(worker, arguments);
+    if (job->inspect)
+        worker_clear_state(worker, job->list);
     for (size_t i = 0; i < job->list->count;)
         i = worker_run_step(worker, job->list, i, arguments, count);
-    if (job->list->words_per_item[BUFFER_SPLATS] > 0)
+    if (job->inspect)
+        worker_show_state(worker, job, first, count);
+    else if (job->list->words_per_item[BUFFER_SPLATS] > 0)
         job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
     worker_sum_diagnostics(worker);
     atomic_fetch_add_explicit(&worker->backend->items_done, count, memory_order_relaxed);
@@ -228,11 +247,11 @@ static void *worker_main(void *argument)
     return NULL;
 }
 
-static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
-                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
+/* Hands the job to the workers and returns when none is busy. */
+static bool job_run(Backend *backend, const Job *job, Error *error)
 {
     pthread_mutex_lock(&backend->mutex);
-    backend->job = (Job){frame, list, sink, context, stop};
+    backend->job = *job;
     atomic_store(&backend->next_chunk, 0);
     atomic_store(&backend->items_done, 0);
     atomic_store(&backend->out_of_memory, false);
@@ -242,11 +261,27 @@ static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const St
     while (backend->busy > 0)
         pthread_cond_wait(&backend->end, &backend->mutex);
     pthread_mutex_unlock(&backend->mutex);
-    if (items_done)
-        *items_done = atomic_load(&backend->items_done);
     if (atomic_load(&backend->out_of_memory))
         return error_set(error, "out of memory for the state of %u threads", backend->worker_count);
     return true;
+}
+
+static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
+                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
+{
+    const Job job = {.frame = frame, .list = list, .sink = sink, .context = context, .stop = stop};
+    bool done = job_run(backend, &job, error);
+    if (items_done)
+        *items_done = atomic_load(&backend->items_done);
+    return done;
+}
+
+static bool backend_cpu_inspect(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink,
+                                void *context, Error *error)
+{
+    static const atomic_int never = 0;
+    const Job job = {.frame = frame, .list = list, .inspect = sink, .context = context, .stop = &never};
+    return job_run(backend, &job, error);
 }
 
 /* ---- open and close ---------------------------------------------------------------------------------------------- */
@@ -392,6 +427,7 @@ const BackendInterface *backend_cpu(void)
                                                .open = backend_cpu_open,
                                                .close = backend_cpu_close,
                                                .run = backend_cpu_run,
+                                               .inspect = backend_cpu_inspect,
                                                .diagnostics = backend_cpu_diagnostics,
                                                .statistics = backend_cpu_statistics};
     return &interface;

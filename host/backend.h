@@ -49,10 +49,21 @@ typedef struct Step {
     unsigned target;
 } Step;
 
+/* What words of a per-item buffer are called, for people. */
+typedef struct StateField {
+    BufferId buffer;
+    uint first; /* word */
+    uint words; /* 3: x, y, z */
+    bool is_float;
+    const char *name;
+} StateField;
+
 typedef struct StepList {
     const Step *steps;
     size_t count;
     uint words_per_item[BUFFER_COUNT]; /* of the per-item buffers used; 0 otherwise */
+    const StateField *fields; /* of BUFFER_PATHS, which integrators lay out as they like; may be NULL */
+    size_t field_count;
 } StepList;
 
 /* Borrowed views of the packed scene. */
@@ -117,6 +128,10 @@ typedef struct BackendStatistics {
  * threads at once. */
 typedef void (*SplatSink)(void *context, const uint *splats, uint count, uint stride);
 
+/* Receives the words of one per-item buffer: `count` items at `stride`, the first of them item `first` of the pass.
+ * Called from many threads at once. */
+typedef void (*StateSink)(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride);
+
 typedef struct Backend Backend;
 
 /* Functions named "may be NULL" are of backends that have such a thing. */
@@ -132,6 +147,10 @@ typedef struct BackendInterface {
      * gets how many items were delivered, also when the run fails. */
     bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
                 const atomic_int *stop, uint64_t *items_done, Error *error);
+    /* Runs the list, or its beginning, like `run`, on buffers that are zero before, and hands every per-item buffer of
+     * the list to the sink instead of the splats alone: for finding where two backends part (verify.h). */
+    bool (*inspect)(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink, void *context,
+                    Error *error);
     /* Sums the diagnostics counters (diagnostics.h) into counters[DIAGNOSTIC_COUNT]. */
     void (*diagnostics)(Backend *backend, uint64_t *counters);
     void (*statistics)(Backend *backend, BackendStatistics *statistics);

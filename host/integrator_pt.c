@@ -48,6 +48,37 @@ static size_t steps_record(Step *steps, uint max_depth)
     return n;
 }
 
+#define PATH_FIELD(field, words, is_float, name)                                                                       \
+    {                                                                                                                  \
+        BUFFER_PATHS, field, words, is_float, name                                                                     \
+    }
+static const StateField PATH_FIELDS[] = {
+    PATH_FIELD(PATH_PIXEL, 1, false, "pixel"),
+    PATH_FIELD(PATH_SAMPLE, 1, false, "sample"),
+    PATH_FIELD(PATH_DEPTH, 1, false, "depth"),
+    PATH_FIELD(PATH_FLAGS, 1, false, "flags"),
+    PATH_FIELD(PATH_WEIGHT, 1, true, "filter weight"),
+    PATH_FIELD(PATH_BETA, 3, true, "throughput"),
+    PATH_FIELD(PATH_RADIANCE, 3, true, "radiance"),
+    PATH_FIELD(PATH_PDF_W, 1, true, "density of the last direction"),
+    PATH_FIELD(PATH_ETA_SCALE, 1, true, "eta^2"),
+    PATH_FIELD(PATH_POINT, 3, true, "vertex"),
+    PATH_FIELD(PATH_NG, 3, true, "geometric normal"),
+    PATH_FIELD(PATH_FRAME_N, 3, true, "shading normal"),
+    PATH_FIELD(PATH_FRAME_T, 3, true, "shading tangent"),
+    PATH_FIELD(PATH_WO, 3, true, "outgoing direction"),
+    PATH_FIELD(PATH_LIGHT, 3, true, "light sample"),
+    PATH_FIELD(PATH_BSDF_KIND, 1, false, "BSDF kind"),
+    PATH_FIELD(PATH_BSDF_FLAGS, 1, false, "BSDF flags"),
+    PATH_FIELD(PATH_BSDF_COLOR0, 3, true, "BSDF first colour"),
+    PATH_FIELD(PATH_BSDF_COLOR1, 3, true, "BSDF second colour"),
+    PATH_FIELD(PATH_BSDF_ALPHA_X, 1, true, "BSDF alpha x"),
+    PATH_FIELD(PATH_BSDF_ALPHA_Y, 1, true, "BSDF alpha y"),
+    PATH_FIELD(PATH_BSDF_ETA, 1, true, "BSDF eta"),
+    PATH_FIELD(PATH_BSDF_COAT, 1, false, "BSDF coat table"),
+};
+#undef PATH_FIELD
+
 static bool step_list_make(StepList *list, uint max_depth, Error *error)
 {
     size_t capacity = 4 + (size_t)max_depth * 7;
@@ -60,7 +91,27 @@ static bool step_list_make(StepList *list, uint max_depth, Error *error)
     list->words_per_item[BUFFER_HITS] = HIT_WORDS;
     list->words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;
     list->words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
+    list->fields = PATH_FIELDS;
+    list->field_count = sizeof PATH_FIELDS / sizeof PATH_FIELDS[0];
     return true;
+}
+
+void step_list_destroy(StepList *list)
+{
+    free((void *)(uintptr_t)list->steps);
+    *list = (StepList){0};
+}
+
+bool render_pt_list(const Scene *scene, const RenderOptions *options, StepList *list, FrameParams *frame, Error *error)
+{
+    *frame = scene->frame;
+    frame->max_depth = (uint)options->max_depth;
+    frame->seed_low = (uint)options->seed;
+    frame->seed_high = (uint)(options->seed >> 32);
+    frame->sample_index = options->first_sample;
+    frame->first_item = 0;
+    frame->pixel_stride = 1;
+    return step_list_make(list, frame->max_depth, error);
 }
 
 /* ---- the pilot -------------------------------------------------------------------------------------------------- */
@@ -257,20 +308,12 @@ static void result_fill(const PassLoop *loop, RenderResult *result)
 bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *backend, const RenderOptions *options,
                bool keep_quantum, const RenderCallbacks *callbacks, Film *film, RenderResult *result, Error *error)
 {
-    PassLoop loop = {.interface = interface,
-                     .backend = backend,
-                     .options = options,
-                     .callbacks = callbacks,
-                     .frame = scene->frame,
-                     .film = film};
-    loop.frame.max_depth = (uint)options->max_depth;
-    loop.frame.seed_low = (uint)options->seed;
-    loop.frame.seed_high = (uint)(options->seed >> 32);
-    loop.frame.pixel_stride = 1;
+    PassLoop loop = {
+        .interface = interface, .backend = backend, .options = options, .callbacks = callbacks, .film = film};
     loop.crop_pixels = film_pixels(film);
     loop.total = loop.crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
     memset(result, 0, sizeof *result);
-    if (!step_list_make(&loop.list, loop.frame.max_depth, error))
+    if (!render_pt_list(scene, options, &loop.list, &loop.frame, error))
         return false;
     loop.start = timing_now();
     bool done = true;
@@ -281,6 +324,6 @@ bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *b
     }
     done = done && passes_run(&loop, &result->stopped, error);
     result_fill(&loop, result);
-    free((void *)(uintptr_t)loop.list.steps);
+    step_list_destroy(&loop.list);
     return done;
 }

@@ -43,6 +43,10 @@ typedef struct RenderResult {
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];
 } RenderResult;
 
+/* Path tracing's list of steps, to be freed by step_list_destroy, and its frame for all items from the first on. */
+bool render_pt_list(const Scene *scene, const RenderOptions *options, StepList *list, FrameParams *frame, Error *error);
+void step_list_destroy(StepList *list);
+
 /* Path tracing (integrator_pt.c). `film` must be initialised with the scene's size and crop; its quantum is set from
  * a pilot of the scene unless `keep_quantum`. */
 bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *backend, const RenderOptions *options,

@@ -74,6 +74,7 @@ libtwinlight_host_la_SOURCES = \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h
+	host/verify.c host/verify.h
 libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight

@@ -17,7 +17,8 @@ check_PROGRAMS += \
 	tests/test_platform_bits \
 	tests/test_reference \
 	tests/test_render \
-	tests/test_texture
+	tests/test_texture \
+	tests/test_verify
 TESTS += $(check_PROGRAMS)
 endif
 
@@ -145,6 +146,11 @@ tests_test_texture_SOURCES = tests/test_texture.c \
 	tests/test_texture_image.c
 tests_test_texture_CFLAGS = $(TEST_CFLAGS)
 tests_test_texture_LDADD = $(TEST_LIBS)
+
+tests_test_verify_SOURCES = tests/test_verify.c \
+	tests/render_fixture.c
+tests_test_verify_CFLAGS = $(TEST_CFLAGS)
+tests_test_verify_LDADD = $(TEST_LIBS)
 
 # Rules of the tree itself, and the whole program from outside.
 script_tests = \

@@ -1,0 +1,20 @@
+/* Two backends side by side: the same items through the same steps, every word of their state compared. */
+#ifndef TWINLIGHT_VERIFY_H
+#define TWINLIGHT_VERIFY_H
+
+#include "backend_group.h"
+
+/* What was compared when nothing differed. */
+typedef struct VerifyReport {
+    uint64_t items;
+    uint64_t prefixes; /* how many beginnings of the list, on the first items */
+    uint words; /* of an item */
+} VerifyReport;
+
+/* Runs `items` items from frame->first_item on through both sides, in blocks. On the first block the state is compared
+ * after every step, on the others after the last; where it differs, after every step too, to find the first. False
+ * with an error that names the step, item and field that differ first, with the values of both sides. */
+bool verify_run(const BackendMember sides[2], const FrameParams *frame, const StepList *list, uint64_t items,
+                const atomic_int *stop, VerifyReport *report, Error *error);
+
+#endif
