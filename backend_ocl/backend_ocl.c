@@ -2,6 +2,7 @@
 
 #include "bvh.h"
 #include "film_adders.h"
+#include "inspect.h"
 #include "log.h"
 
 #include <stdio.h>
@@ -152,8 +153,7 @@ static Backend *backend_ocl_open(const BackendScene *scene, const BackendOptions
 
 /* ---- a pass ------------------------------------------------------------------------------------------------------ */
 
-static bool batch_start(Backend *backend, int slot, const FrameParams *frame, const StepList *list, uint first,
-                        uint count, Error *error)
+static Batch *batch_prepare(Backend *backend, int slot, const FrameParams *frame, uint first, uint count)
 {
     Batch *batch = &backend->batches[slot];
     batch->memory = &backend->memory.batches[slot];
@@ -162,6 +162,13 @@ static bool batch_start(Backend *backend, int slot, const FrameParams *frame, co
     batch->frame.first_item = frame->first_item + first;
     batch->frame.item_count = count;
     batch->frame.stride = device_memory_stride(count);
+    return batch;
+}
+
+static bool batch_start(Backend *backend, int slot, const FrameParams *frame, const StepList *list, uint first,
+                        uint count, Error *error)
+{
+    Batch *batch = batch_prepare(backend, slot, frame, first, count);
     if (!batch_launch(&backend->launcher, batch, list, error))
         return false;
     adders_push(backend->adders, slot, batch);
@@ -221,6 +228,21 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
     return done;
 }
 
+/* One batch at a time, none of it in the statistics. */
+static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink,
+                                void *context, Error *error)
+{
+    bool done = device_memory_reserve(&backend->memory, list, error);
+    uint size = backend->memory.batch;
+    for (uint first = 0; done && first < frame->item_count; first += size) {
+        uint left = frame->item_count - first;
+        Batch *batch = batch_prepare(backend, 0, frame, first, left < size ? left : size);
+        done = inspect_batch(&backend->launcher, batch, list, first, sink, context, error);
+        batch_drop(batch);
+    }
+    return done;
+}
+
 /* ---- what happened ----------------------------------------------------------------------------------------------- */
 
 static void backend_ocl_diagnostics(Backend *backend, uint64_t *counters)
@@ -259,6 +281,7 @@ const BackendInterface *backend_ocl(void)
                                                .open = backend_ocl_open,
                                                .close = backend_ocl_close,
                                                .run = backend_ocl_run,
+                                               .inspect = backend_ocl_inspect,
                                                .diagnostics = backend_ocl_diagnostics,
                                                .statistics = backend_ocl_statistics,
                                                .spans = backend_ocl_spans};

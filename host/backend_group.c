@@ -220,3 +220,15 @@ Backend *backend_group_create(const BackendMember *members, size_t count, Error 
         group->members[i].member = members[i];
     return (Backend *)(void *)group;
 }
+
+size_t backend_group_members(BackendMember of, BackendMember *out)
+{
+    if (of.interface != backend_group_interface()) {
+        out[0] = of;
+        return 1;
+    }
+    const Group *group = group_of(of.backend);
+    for (size_t i = 0; i < group->count; ++i)
+        out[i] = group->members[i].member;
+    return group->count;
+}

@@ -19,4 +19,7 @@ Backend *backend_group_create(const BackendMember *members, size_t count, Error 
 /* Its `open` is NULL: a group is made of opened backends. */
 const BackendInterface *backend_group_interface(void);
 
+/* The members when `of` is a group, else `of` itself. Returns how many; out has BACKEND_GROUP_MAX places. */
+size_t backend_group_members(BackendMember of, BackendMember *out);
+
 #endif

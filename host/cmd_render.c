@@ -8,6 +8,7 @@
 #include "render.h"
 #include "render_options.h"
 #include "render_output.h"
+#include "render_verify.h"
 #include "stats.h"
 #include "timing.h"
 #include "trace_output.h"
@@ -32,7 +33,7 @@ typedef struct RenderJob {
     RenderFunction render;
     Scene scene;
     Film film;
-    Backend *backend;
+    BackendMember backend;
     RenderOutput output;
     Progress progress;
     uint64_t samples_done; /* paths, at the latest progress */
@@ -114,12 +115,9 @@ static bool scene_load(RenderJob *job, Error *error)
 static bool backend_build(RenderJob *job, Error *error)
 {
     const BackendScene view = scene_backend_view(&job->scene);
-    const BackendOptions options = {.threads = job->command->threads,
-                                    .device = job->command->device,
-                                    .batch = job->command->batch,
-                                    .record_spans = job->command->trace != NULL};
-    job->backend = job->command->backend->open(&view, &options, error);
-    return job->backend != NULL;
+    const BackendOptions options = {
+        .threads = job->command->threads, .batch = job->command->batch, .record_spans = job->command->trace != NULL};
+    return backend_choices_open(&job->command->backends, &view, &options, &job->backend, error);
 }
 
 /* ---- rendering -------------------------------------------------------------------------------------------------- */
@@ -137,7 +135,7 @@ static bool job_save(void *context, const Film *film, Error *error)
     return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
 }
 
-static bool film_render(RenderJob *job, Error *error)
+static RenderOptions render_settings(const RenderJob *job)
 {
     const RenderCommand *command = job->command;
     const SceneSettings *settings = &job->scene.settings;
@@ -151,12 +149,20 @@ static bool film_render(RenderJob *job, Error *error)
     };
     if (options.samples == 0 && options.seconds == 0.0)
         options.samples = (unsigned)settings->samples;
+    return options;
+}
+
+static bool film_render(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const SceneSettings *settings = &job->scene.settings;
+    RenderOptions options = render_settings(job);
     RenderCallbacks callbacks = {job_progress, job_save, job};
     progress_init(&job->progress, stderr, command->quiet);
     bool rendered = interrupt_install(error) &&
                     film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
-                    job->render(&job->scene, command->backend, job->backend, &options, false, &callbacks, &job->film,
-                                &job->result, error);
+                    job->render(&job->scene, job->backend.interface, job->backend.backend, &options, false, &callbacks,
+                                &job->film, &job->result, error);
     progress_end(&job->progress);
     return rendered;
 }
@@ -200,7 +206,7 @@ static bool stats_output(const RenderJob *job, Error *error)
         .scene = &job->scene,
         .film = &job->film,
         .integrator = command->integrator,
-        .backend = command->backend->name,
+        .backend = command->backends.name,
         .seed = command->seed,
         .exr = job->output.exr,
         .png = job->output.png,
@@ -216,13 +222,20 @@ static bool stats_output(const RenderJob *job, Error *error)
 
 static bool trace_output(const RenderJob *job, Error *error)
 {
-    const BackendSpan *spans = NULL;
-    uint64_t dropped = 0;
-    size_t count = job->command->backend->spans(job->backend, &spans, &dropped);
-    if (dropped > 0)
-        log_message(LOG_WARNING, "the trace holds the first %zu spans only; %llu more were not recorded", count,
-                    (unsigned long long)dropped);
-    return trace_write(job->command->trace, job->result.backend.device, spans, count, dropped, error);
+    BackendMember members[BACKEND_GROUP_MAX];
+    TraceSource sources[BACKEND_GROUP_MAX];
+    size_t count = 0, found = backend_group_members(job->backend, members);
+    for (size_t i = 0; i < found; ++i) {
+        if (!members[i].interface->spans)
+            continue;
+        TraceSource *source = &sources[count++];
+        source->count = members[i].interface->spans(members[i].backend, &source->spans, &source->dropped);
+        members[i].interface->statistics(members[i].backend, &source->statistics);
+        if (source->dropped > 0)
+            log_message(LOG_WARNING, "the trace holds the first %zu spans only; %llu more were not recorded",
+                        source->count, (unsigned long long)source->dropped);
+    }
+    return trace_write(job->command->trace, sources, count, error);
 }
 
 /* ---- the whole job ---------------------------------------------------------------------------------------------- */
@@ -257,6 +270,14 @@ static void film_rescue(RenderJob *job, Error *error)
         error_fix(error, "%s", first.fix);
 }
 
+static int job_verify(RenderJob *job, Error *error)
+{
+    const RenderOptions options = render_settings(job);
+    if (!interrupt_install(error) || !render_verify(job->command, &job->scene, &options, error))
+        return EXIT_FAILED;
+    return *options.stop ? EXIT_STOPPED : EXIT_OK;
+}
+
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -268,6 +289,8 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     if (!settings_override(job, error))
         return EXIT_USAGE;
+    if (command->verify)
+        return job_verify(job, error);
     if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
@@ -299,8 +322,8 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     job.start = timing_now();
     scene_init(&job.scene);
     int status = job_run(&job, error);
-    if (job.backend)
-        command.backend->close(job.backend);
+    if (job.backend.backend)
+        job.backend.interface->close(job.backend.backend);
     film_destroy(&job.film);
     scene_destroy(&job.scene);
     return status;

@@ -25,6 +25,7 @@ enum {
     OPTION_EXPOSURE,
     OPTION_STATS,
     OPTION_TRACE,
+    OPTION_VERIFY,
     OPTION_LENIENT,
     OPTION_QUIET,
     OPTION_HELP
@@ -35,8 +36,9 @@ static const OptionSpec SPECS[] = {
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME", "algorithm: pt, path tracing (default)"},
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
-    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default) or opencl"},
-    [OPTION_DEVICE] = {"device", 0, "INDEX|NAME", "OpenCL device, as twinlight devices counts them (default: 0)"},
+    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
+    [OPTION_DEVICE] = {"device", 0, "INDEX|NAME",
+                       "OpenCL devices, commas between, as twinlight devices counts them (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
@@ -49,6 +51,8 @@ static const OptionSpec SPECS[] = {
     [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
     [OPTION_STATS] = {"stats", 0, "FILE.json", "write what was rendered, how fast, and what was noticed"},
     [OPTION_TRACE] = {"trace", 0, "FILE.json", "write when a device did what, for chrome://tracing"},
+    [OPTION_VERIFY] = {"verify", 0, NULL,
+                       "compare the backend's state with the CPU's bit for bit, instead of rendering"},
     [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
     [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
     [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
@@ -69,31 +73,10 @@ void render_options_help(FILE *stream)
     options_help(&TABLE, stream);
 }
 
-static bool backend_choose(const BackendTable *backends, const char *name, const BackendInterface **chosen,
-                           Error *error)
-{
-    char names[256] = "";
-    for (int i = 0; i < backends->count; ++i) {
-        if (strcmp(backends->backends[i]->name, name) == 0) {
-            *chosen = backends->backends[i];
-            return true;
-        }
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? ", " : "", backends->backends[i]->name);
-    }
-    for (const BackendLeftOut *lack = backends->left_out; lack && lack->name; ++lack)
-        if (strcmp(lack->name, name) == 0) {
-            error_set(error, "--backend=%s: this build has no such backend: %s", name, lack->why);
-            return error_fix(error, "%s", lack->fix);
-        }
-    error_set(error, "--backend=%s: there is no such backend", name);
-    return error_fix(error, "use one of: %s", names);
-}
-
 /* Parsing in progress. */
 typedef struct Parse {
     RenderCommand *command;
-    const BackendTable *backends;
+    const char *backend; /* --backend; NULL: not given */
 } Parse;
 
 /* The options whose value is a number. */
@@ -159,7 +142,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         command->integrator = value;
         return true;
     case OPTION_BACKEND:
-        return backend_choose(parse->backends, value, &command->backend, error);
+        parse->backend = value;
+        return true;
     case OPTION_TIME:
         return option_seconds("time", value, &command->seconds, error);
     case OPTION_SAVE_EVERY:
@@ -169,6 +153,9 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_CROP:
         command->has_crop = true;
         return option_crop("crop", value, command->crop, error);
+    case OPTION_VERIFY:
+        command->verify = true;
+        return true;
     case OPTION_LENIENT:
         command->lenient = true;
         return true;
@@ -183,24 +170,32 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
-/* Options of devices, where the backend has none. */
-static bool device_options_check(const RenderCommand *command, Error *error)
+/* Which backends, once all options are known. */
+static bool backends_set(RenderCommand *command, const BackendTable *table, const char *backend, Error *error)
 {
+    command->reference = table->backends[0];
+    if (command->verify && !backend && table->count > 1)
+        backend = table->backends[1]->name;
+    if (!backend_choices_make(&command->backends, table, backend, command->device, error))
+        return false;
+    if (command->verify && !backend_choices_have_devices(&command->backends)) {
+        error_set(error, "--verify compares devices with the CPU, and --backend=%s has none", command->backends.name);
+        return error_fix(error, "use --backend=opencl, in a build that has it");
+    }
     const char *option = command->device ? "device" : command->batch > 0 ? "batch" : command->trace ? "trace" : NULL;
-    if (!option || !command->backend || command->backend->spans)
+    if (!option || backend_choices_have_devices(&command->backends))
         return true;
-    error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backend->name);
+    error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backends.name);
     return error_fix(error, "add --backend=opencl, or leave --%s out", option);
 }
 
 bool render_options_parse(RenderCommand *command, const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    Parse parse = {command, backends};
+    Parse parse = {command, NULL};
     int first = 0;
     memset(command, 0, sizeof *command);
     command->png = true;
     command->integrator = "pt";
-    command->backend = backends->count > 0 ? backends->backends[0] : NULL;
     if (!options_parse(&TABLE, argc, argv, option_set, &parse, &first, error))
         return false;
     if (command->help)
@@ -214,5 +209,5 @@ bool render_options_parse(RenderCommand *command, const BackendTable *backends, 
         return error_fix(error, "render one scene at a time; options come as --name=value");
     }
     command->scene = argv[first];
-    return device_options_check(command, error);
+    return backends_set(command, backends, parse.backend, error);
 }

@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_RENDER_OPTIONS_H
 #define TWINLIGHT_RENDER_OPTIONS_H
 
-#include "command.h"
+#include "backend_choice.h"
 
 #include <stdio.h>
 
@@ -14,8 +14,10 @@ typedef struct RenderCommand {
     const char *png_path;
     double exposure; /* stops */
     const char *integrator;
-    const BackendInterface *backend;
-    const char *device;
+    BackendChoices backends; /* at least one */
+    bool verify; /* compare them with `reference` instead of rendering */
+    const BackendInterface *reference;
+    const char *device; /* as given: items of `backends` have their own */
     unsigned batch;
     uint64_t samples;
     double seconds;

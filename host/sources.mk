@@ -3,6 +3,7 @@ libtwinlight_host_la_SOURCES = \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/backend_choice.c host/backend_choice.h \
 	host/backend_group.c host/backend_group.h \
 	host/bvh.c host/bvh.h \
 	host/bvh_tree.c host/bvh_tree.h \
@@ -66,6 +67,7 @@ libtwinlight_host_la_SOURCES = \
 	host/render.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
+	host/render_verify.c host/render_verify.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
 	host/scene_summary.c host/scene_summary.h \
@@ -73,7 +75,7 @@ libtwinlight_host_la_SOURCES = \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
-	host/trace_output.c host/trace_output.h
+	host/trace_output.c host/trace_output.h \
 	host/verify.c host/verify.h
 libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 

@@ -4,10 +4,17 @@
 
 #include "backend.h"
 
-/* Writes the spans as Chrome's JSON object format ("Trace Event Format": complete events, microseconds): one row for
- * the device's kernels, one for copies, one for each host thread that added to the film. `dropped` spans are named in
- * the file. */
-bool trace_write(const char *path, const char *device, const BackendSpan *spans, size_t count, uint64_t dropped,
-                 Error *error);
+/* What one device did. */
+typedef struct TraceSource {
+    const BackendSpan *spans;
+    size_t count;
+    uint64_t dropped; /* not recorded */
+    BackendStatistics statistics;
+} TraceSource;
+
+/* Writes the spans as Chrome's JSON object format ("Trace Event Format": complete events, microseconds). Every source
+ * is a process with a row for the device's kernels, one for copies, and one for each host thread that added to the
+ * film. */
+bool trace_write(const char *path, const TraceSource *sources, size_t count, Error *error);
 
 #endif

@@ -1,0 +1,11 @@
+/* `twinlight render --verify`: no picture, but a proof that two backends compute the same. */
+#ifndef TWINLIGHT_RENDER_VERIFY_H
+#define TWINLIGHT_RENDER_VERIFY_H
+
+#include "render.h"
+#include "render_options.h"
+
+/* Compares every device of the command with the CPU backend on the scene's samples. Says what agreed. */
+bool render_verify(const RenderCommand *command, const Scene *scene, const RenderOptions *options, Error *error);
+
+#endif
