@@ -2,6 +2,8 @@
 #ifndef TWINLIGHT_KERNELS_CL
 #define TWINLIGHT_KERNELS_CL
 
+#include "bd_connect.cl"
+#include "bd_walk.cl"
 #include "count.cl"
 #include "pt.cl"
 #include "trace.cl"

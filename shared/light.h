@@ -6,6 +6,7 @@
 #include "light_area.h"
 #include "light_delta.h"
 #include "light_infinite.h"
+#include "ray.h"
 
 /* A light, with probability lights[i].select_pdf (proportional to power). The scene must have one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
@@ -25,6 +26,14 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
         return delta_light_sample(scene, light, ref, sample);
     return false;
+}
+
+/* The segment between the point p of a surface with geometric normal ng and its light sample. */
+SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
+{
+    if (sample->infinite != 0u)
+        return ray_spawn(p, ng, sample->wi);
+    return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
 }
 
 /* Solid-angle density at `ref` that light_sample, given the light, has for the direction `wi` (unit): to the point

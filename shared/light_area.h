@@ -284,6 +284,11 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
     sample->pdf_w = point.pdf;
     if (point.by_angle == 0u)
         sample->pdf_w = area_light_pdf_from_area(point.pdf, distance2, vec3_dot(point.ng, sample->wi));
+    sample->pdf_emit = point.pdf;
+    if (SCENE_HAS(scene, FEATURE_SPHERE) && point.by_angle != 0u) {
+        __global const Quadric *sphere = scene->quadrics + primitive.a;
+        sample->pdf_emit = quadric_light_pdf(sphere, sphere_object_area(sphere), point.ng);
+    }
     sample->delta = 0u;
     sample->infinite = 0u;
     if (!(sample->pdf_w > 0.0f && float_finite(sample->pdf_w)) || vec3_is_zero(sample->radiance))

@@ -83,6 +83,7 @@ typedef struct LightSample {
     Vec3 ng; /* its geometric normal (area lights) */
     Vec3 radiance; /* arriving; for delta lights already divided by the squared distance */
     float pdf_w; /* solid-angle density given the light; 1 for delta lights */
+    float pdf_emit; /* area lights: area density of emitting from p (light_emit.h) */
     uint delta; /* 1: point, spot, distant: cannot be hit by a sampled direction */
     uint infinite; /* 1: no end point; trace to infinity along wi */
 } LightSample;

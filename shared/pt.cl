@@ -7,6 +7,7 @@
 #include "bsdf.h"
 #include "camera.h"
 #include "diagnostics.h"
+#include "item.h"
 #include "light.h"
 #include "material.h"
 #include "mis.h"
@@ -35,15 +36,13 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     if (t >= frame->item_count)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
-    uint crop_pixels = crop_width * crop_height, item = frame->first_item + t;
-    uint place = (uint)((ulong)(item % crop_pixels) * frame->pixel_stride % crop_pixels);
-    uint x = frame->crop_x0 + place % crop_width, y = frame->crop_y0 + place / crop_width;
-    uint pixel = y * frame->width + x, sample = frame->sample_index + item / crop_pixels;
+    ItemPlace place = item_place(frame, t);
+    uint pixel = place.pixel, sample = place.sample;
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
     float weight;
     Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    Vec2 film = vec2((float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y);
+    Vec2 film =
+        vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
@@ -149,16 +148,8 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     state_store_vec3(paths, stride, PATH_POINT, t, surface.p);
     state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
     state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
-    path_store_frame(paths, stride, t, shading);
-    path_store_bsdf(&scene, paths, stride, t, &bsdf);
-}
-
-/* The segment between a vertex and its light sample. */
-SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
-{
-    if (sample->infinite != 0u)
-        return ray_spawn(p, ng, sample->wi);
-    return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
+    frame_store(paths, stride, PATH_FRAME, t, shading);
+    bsdf_store(&scene, paths, stride, PATH_BSDF, t, &bsdf);
 }
 
 /* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
@@ -170,7 +161,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     if (t >= frame->item_count)
         return;
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
-    if (depth == 0u || (state_load(paths, stride, PATH_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
+    if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
@@ -180,8 +171,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     LightSample sample = {0};
     if (!light_sample(&scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return;
-    Bsdf bsdf = path_load_bsdf(&scene, paths, stride, t);
-    Frame shading = path_load_frame(paths, stride, t);
+    Bsdf bsdf = bsdf_load(&scene, paths, stride, PATH_BSDF, t);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
     BsdfValue value = bsdf_eval(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
                                 frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
     if (vec3_is_zero(value.f_cos))
@@ -226,7 +217,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
                                  state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
-    Bsdf bsdf = path_load_bsdf(&scene, paths, stride, t);
+    Bsdf bsdf = bsdf_load(&scene, paths, stride, PATH_BSDF, t);
     BsdfSample sample;
     if (!bsdf_sample(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
                      vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
@@ -242,7 +233,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     }
     if (survival < 1.0f)
         beta = vec3_scale(beta, 1.0f / survival);
-    Frame shading = path_load_frame(paths, stride, t);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
     Vec3 wi = vec3_normalize(frame_to_world(shading, sample.wi));
     Ray ray = ray_spawn(p, ng, wi);

@@ -307,6 +307,10 @@ typedef struct FrameParams {
     uint width, height; /* of the whole film, pixels */
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
     uint max_depth; /* path segments, >= 1 */
+    uint strategies; /* STRATEGIES_* (mis.h) of bidirectional integrators */
+    uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
+    uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
+    uint unweighted; /* 1: weights are taken for 1 */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */

@@ -1,0 +1,314 @@
+/* Both walks of bidirectional path tracing (Veach 1997, chapter 10; Lafortune and Willems 1993), vertex by vertex. Per
+ * segment: (rays traced) bd_shade_hits, bd_extend_walks; before them bd_start_light, then bd_start_camera. */
+#ifndef TWINLIGHT_BD_WALK_CL
+#define TWINLIGHT_BD_WALK_CL
+
+#include "bd_random.h"
+#include "bd_walk.h"
+#include "bd_weight.h"
+#include "camera.h"
+#include "diagnostics.h"
+#include "item.h"
+#include "material.h"
+#include "pixel_filter.h"
+#include "surface.h"
+
+SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+{
+    state_store(paths, stride, BD_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+/* The first ray of a walk. */
+SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
+                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray,
+                                Vec3 beta, float pdf, uint flags)
+{
+    ray_store(rays, stride, t, ray);
+    state_store(paths, stride, BD_SIDE, t, side);
+    state_store(paths, stride, BD_DEPTH, t, 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, beta);
+    state_store_float(paths, stride, BD_PDF, t, pdf);
+    state_store(paths, stride, BD_WALK_FLAGS, t, flags);
+    state_store_float(paths, stride, BD_ETA_SCALE, t, 1.0f / vec3_max_component(beta));
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        walk_end(paths, rays, stride, t);
+    }
+}
+
+/* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
+__kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows, __global uint *restrict vertices,
+                             __global uint *restrict densities, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    ItemPlace place = item_place(frame, t);
+    state_store(paths, stride, BD_PIXEL, t, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
+    state_store(paths, stride, BD_LENGTHS, t, 0u);
+    state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
+    state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
+    state_store(paths, stride, BD_S, t, 2u);
+    state_store(paths, stride, BD_T, t, 1u);
+    state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
+    walk_end(paths, rays, stride, t);
+    if (frame->max_depth < 2u)
+        return;
+    Random4 choice = bd_random(frame, paths, t, BD_RANDOM_LIGHT), random = bd_random(frame, paths, t, BD_RANDOM_EMIT);
+    uint light = light_select(&scene, choice.x[0], choice.x[1]);
+    LightEmission emission;
+    if (!light_emit(&scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
+                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
+        return;
+    float select = scene.lights[light].select_pdf;
+    uint flags = (emission.infinite != 0u ? EMITTER_INFINITE : 0u) |
+                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
+    uint base = vertex_base(frame, SIDE_LIGHT, 0u);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, emission.infinite != 0u ? emission.w : emission.p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, t, emission.ng);
+    /* The density of y_0: of a point, or of a direction where the light is at infinity. */
+    float own = select * (emission.infinite != 0u ? emission.pdf_w : emission.pdf_p);
+    state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
+    state_store(paths, stride, BD_EMITTER, t, light);
+    state_store(paths, stride, BD_EMITTER_FLAGS, t, flags);
+    state_store(paths, stride, BD_LENGTHS, t, 1u);
+    Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
+    bool on_surface = emission.infinite == 0u && emission.delta_position == 0u;
+    Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta,
+               emission.infinite != 0u ? emission.pdf_p : emission.pdf_w,
+               emission.infinite != 0u ? WALK_PARALLEL : 0u);
+}
+
+/* From: nothing more than the pixel. To: the camera's first ray. */
+__kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
+    float weight;
+    Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
+    uint pixel = state_load(paths, stride, BD_PIXEL, t);
+    Vec2 film = vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    state_store_float(paths, stride, BD_WEIGHT, t, weight);
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+}
+
+/* What the vertex before knows of the way back to it: see BD_BACK. */
+SHARED_FUNCTION float walk_way_back(__global const FrameParams *frame, __global const uint *restrict paths,
+                                    __global const uint *restrict vertices, uint stride, uint t, uint side, uint depth,
+                                    Vec3 p)
+{
+    if (side == SIDE_CAMERA && depth == 1u)
+        return 1.0f; /* the lens: never asked for */
+    uint base = vertex_base(frame, side, depth - 1u);
+    uint flags = side == SIDE_LIGHT && depth == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
+    return walk_back(p, state_load_vec3(vertices, stride, base + VERTEX_POINT, t),
+                     state_load_vec3(vertices, stride, base + VERTEX_NG, t), flags);
+}
+
+/* Per area, the density with which the walk has made the point it has just met. */
+SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
+                                   float distance2, uint side, uint depth, uint flags, float pdf)
+{
+    if (side == SIDE_CAMERA && depth == 1u)
+        return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
+    if ((flags & WALK_PARALLEL) != 0u)
+        return pdf * float_abs(vec3_dot(ray->d, surface->ng));
+    return pdf * solid_angle_to_area(ray->d, surface->ng, distance2);
+}
+
+/* s = 0 at a light of the scene: the camera's vertex z_i has met it after `depth` = i segments. */
+SHARED_FUNCTION Vec3 walk_emission(const SceneView *scene, __global const uint *restrict paths, DensityView view,
+                                   uint light, const Surface *surface, const Ray *ray, Vec3 from, float distance2,
+                                   uint depth)
+{
+    Vec3 towards = vec3_negate(ray->d);
+    Vec3 radiance = light_emitted(scene, light, surface->ng, towards);
+    if (vec3_is_zero(radiance))
+        return radiance;
+    float select = scene->lights[light].select_pdf, emitted = select * light_emit_pdf_p(scene, light, surface);
+    StrategyEnds ends;
+    ends.light_z1 = emitted;
+    ends.light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) *
+                    state_load_float(paths, view.stride, BD_BACK, view.t);
+    ends.connect = light_connect_ratio(scene, light, from, ray->d, distance2, surface);
+    ends.hittable = true;
+    return vec3_scale(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends));
+}
+
+/* The same for what has met nothing, and every light at infinity. */
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, __global const uint *restrict paths, DensityView view,
+                                      Vec3 d, Vec3 ng, uint depth)
+{
+    Vec3 sum = vec3_splat(0.0f);
+    StrategyEnds ends;
+    ends.light_z2 = light_emit_pdf_disc(scene) * float_abs(vec3_dot(d, ng));
+    ends.connect = 1.0f;
+    ends.hittable = true;
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        uint light = scene->infinite_lights[i];
+        Vec3 radiance = environment_light_radiance(scene, light, d);
+        ends.light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+        if (!vec3_is_zero(radiance))
+            sum = vec3_mad(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), sum);
+    }
+    return sum;
+}
+
+SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
+{
+    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, t);
+    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_add(sum, radiance));
+}
+
+/* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
+ * or are full end. */
+__kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits, __global uint *restrict vertices,
+                            __global uint *restrict densities)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    uint side = state_load(paths, stride, BD_SIDE, t), flags = state_load(paths, stride, BD_WALK_FLAGS, t);
+    Ray ray = ray_load(rays, stride, t);
+    Hit hit = hit_load(hits, stride, t);
+    Vec3 beta = state_load_vec3(paths, stride, BD_BETA, t);
+    float pdf = state_load_float(paths, stride, BD_PDF, t);
+    DensityView view = bd_density_view(frame, paths, densities, t);
+    uint own = density_base(frame, side, depth) + DENSITY_OWN;
+    if (hit.primitive == NONE) {
+        if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT)) {
+            Vec3 ng = depth > 1u ? state_load_vec3(vertices, stride, vertex_base(frame, side, depth - 1u) + VERTEX_NG, t)
+                                 : ray.d;
+            state_store_float(densities, stride, own, t, pdf);
+            bd_add_radiance(paths, stride, t, vec3_mul(beta, walk_environment(&scene, paths, view, ray.d, ng, depth)));
+        }
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    Surface surface = surface_from_hit(&scene, &ray, hit);
+    uint before = vertex_base(frame, side, depth - 1u);
+    bool first = side == SIDE_CAMERA && depth == 1u;
+    bool bundle = (flags & WALK_PARALLEL) != 0u;
+    Vec3 from = first || bundle ? ray.o : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+    float distance2 = vec3_length_squared(vec3_sub(surface.p, from));
+    state_store_float(densities, stride, own, t,
+                      walk_density(frame, &ray, &surface, distance2, side, depth, flags, pdf));
+    state_store_float(paths, stride, BD_BACK, t,
+                      walk_way_back(frame, paths, vertices, stride, t, side, depth, surface.p));
+    uint first_light = scene.shapes[surface.shape].first_light;
+    if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
+        uint light = first_light + hit.primitive - scene.shapes[surface.shape].first_primitive;
+        bd_add_radiance(
+            paths, stride, t,
+            vec3_mul(beta, walk_emission(&scene, paths, view, light, &surface, &ray, from, distance2, depth)));
+    }
+    uint last = side == SIDE_CAMERA ? frame->max_depth : frame->max_depth - 1u;
+    if (side == SIDE_CAMERA && depth >= last) { /* a vertex that nothing can be connected to */
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
+    Vertex vertex;
+    material_resolve(&scene, random_float(random.x[0]), &surface, &vertex.bsdf, &vertex.frame);
+    if (vertex.bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(vertex.bsdf.color0)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    vertex.p = surface.p;
+    vertex.ng = surface.ng;
+    vertex.wo = frame_to_local(vertex.frame, vec3_negate(ray.d));
+    vertex.beta = beta;
+    vertex_store(&scene, vertices, stride, vertex_base(frame, side, depth), t, &vertex);
+    uint lengths = state_load(paths, stride, BD_LENGTHS, t);
+    lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
+    state_store(paths, stride, BD_LENGTHS, t, lengths);
+    if (side == SIDE_LIGHT && depth == 1u)
+        state_store_float(paths, stride, BD_CONNECT, t, bd_emitter_ratio(&scene, paths, vertices, stride, t, surface.p));
+}
+
+/* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
+ * absorption or Russian roulette. Roulette leaves the weights alone: they need not know of it to sum to one. */
+__kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global const uint *restrict vertices, __global uint *restrict densities,
+                              __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
+    Vertex vertex = vertex_load(&scene, vertices, stride, vertex_base(frame, side, depth), t);
+    uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
+    BsdfSample sample;
+    if (!bsdf_sample(&scene, &vertex.bsdf, vertex.wo, random_float(random.x[0]),
+                     vec2(random_float(random.x[1]), random_float(random.x[2])), transport, &sample)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    Vec3 wi = frame_to_world(vertex.frame, sample.wi), beta = vec3_mul(vertex.beta, sample.weight);
+    if (side == SIDE_LIGHT)
+        beta = vec3_scale(beta, adjoint_factor(vertex.ng, frame_to_world(vertex.frame, vertex.wo), wi, vertex.wo.z,
+                                               sample.wi.z));
+    float eta = side == SIDE_CAMERA ? sample.eta : 1.0f;
+    float eta_scale = state_load_float(paths, stride, BD_ETA_SCALE, t) * eta * eta;
+    float survival = depth >= BD_ROULETTE_FIRST_DEPTH ? vec3_max_component(beta) * eta_scale : 1.0f;
+    Ray ray = ray_spawn(vertex.p, vertex.ng, wi);
+    if (!(random_float(random.x[3]) < survival) || vec3_is_zero(beta)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    float forward = sample.pdf_w, reverse = sample.pdf_rev_w;
+    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    if (sample.delta != 0u) {
+        delta_densities(&sample, vertex.wo, &forward, &reverse);
+        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+    }
+    if (side == SIDE_LIGHT || depth > 1u)
+        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t,
+                          reverse * state_load_float(paths, stride, BD_BACK, t));
+    if (survival < 1.0f)
+        beta = vec3_scale(beta, 1.0f / survival);
+    state_store(paths, stride, BD_DEPTH, t, depth + 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, beta);
+    state_store_float(paths, stride, BD_PDF, t, forward);
+    state_store(paths, stride, BD_WALK_FLAGS, t, sample.delta != 0u ? WALK_DELTA : 0u);
+    state_store_float(paths, stride, BD_ETA_SCALE, t, eta_scale);
+    ray_store(rays, stride, t, ray);
+}
+
+#endif

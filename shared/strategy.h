@@ -1,0 +1,92 @@
+/* The weight of one bidirectional strategy among those of its set, from the densities of the path's vertices in both
+ * directions (Veach 1997, section 10.2; mis.h). */
+#ifndef TWINLIGHT_STRATEGY_H
+#define TWINLIGHT_STRATEGY_H
+
+#include "bd_state.h"
+#include "mis.h"
+
+/* What only the connection knows. y_{s-1} and z_{t-1} are its ends. Densities are per area; of a light at infinity,
+ * per solid angle. Unused ones (s or t too small) are not read. */
+typedef struct StrategyEnds {
+    float light_z1; /* of z_{t-1}, made from y_{s-1}; s = 0: of emitting there */
+    float light_z2; /* of z_{t-2}, made from z_{t-1} */
+    float camera_y1; /* of y_{s-1}, made from z_{t-1} */
+    float camera_y2; /* of y_{s-2}, made from y_{s-1} */
+    float own_y0; /* s = 1: of emitting from the point drawn */
+    float connect; /* density of drawing the path's point on the light for its neighbour, over that of emitting there */
+    bool hittable; /* paths can meet the light */
+} StrategyEnds;
+
+/* Where the densities of an item are. */
+typedef struct DensityView {
+    __global const uint *words;
+    uint stride, t;
+    uint camera_first; /* index of z_1; y_i is i */
+    uint light_delta, camera_delta; /* bit i: the vertex scattered by a delta lobe */
+} DensityView;
+
+SHARED_FUNCTION uint density_field(const DensityView *view, uint side, uint i)
+{
+    return (side == SIDE_LIGHT ? i : view->camera_first + i - 1u) * DENSITY_WORDS;
+}
+
+SHARED_FUNCTION float density_load(const DensityView *view, uint side, uint i, uint which)
+{
+    return state_load_float(view->words, view->stride, density_field(view, side, i) + which, view->t);
+}
+
+/* Whether an edge between vertex i and vertex i - 1 (0: the side's end, which is never a delta) can be a connection. */
+SHARED_FUNCTION bool edge_connectable(uint delta, uint i)
+{
+    uint ends = (1u << i) | (i > 1u ? 1u << (i - 1u) : 0u);
+    return (delta & ends) == 0u;
+}
+
+/* Adds the strategies with more vertices from the light than s: t' = t - 1 ... 1. */
+SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, uint set, uint s, uint t, const DensityView *view,
+                                         const StrategyEnds *ends)
+{
+    uint k = s + t - 1u;
+    Scaled one = scaled_from(1.0f), connect = scaled_from(ends->connect);
+    for (uint i = t - 1u; i >= 1u; --i) {
+        float light = i == t - 1u   ? ends->light_z1
+                      : i == t - 2u ? ends->light_z2
+                                    : density_load(view, SIDE_CAMERA, i, DENSITY_OTHER);
+        mis_sum_step(sum, light, density_load(view, SIDE_CAMERA, i, DENSITY_OWN));
+        uint other = k - i + 1u;
+        if (strategy_taken(set, other, k) && edge_connectable(view->camera_delta, i))
+            mis_sum_take(sum, other == 1u ? connect : one);
+    }
+}
+
+/* Adds those with fewer: s' = s - 1 ... 0. */
+SHARED_FUNCTION void strategy_sum_light(MisSum *sum, uint set, uint s, uint t, const DensityView *view,
+                                        const StrategyEnds *ends)
+{
+    uint k = s + t - 1u;
+    Scaled one = scaled_from(1.0f), connect = scaled_from(ends->connect);
+    for (uint i = s; i-- > 0u;) {
+        float camera = i == s - 1u ? ends->camera_y1
+                       : i + 2u == s ? ends->camera_y2
+                                     : density_load(view, SIDE_LIGHT, i, DENSITY_OTHER);
+        float light = s == 1u ? ends->own_y0 : density_load(view, SIDE_LIGHT, i, DENSITY_OWN);
+        mis_sum_step(sum, camera, light);
+        bool possible = i > 0u ? edge_connectable(view->light_delta, i) : ends->hittable;
+        if (strategy_taken(set, i, k) && possible)
+            mis_sum_take(sum, i == 1u ? connect : one);
+    }
+}
+
+/* Weight of the strategy (s, t), t >= 1. `exponent`: 1 for the balance heuristic, 2 for the power heuristic. */
+SHARED_FUNCTION float strategy_weight(uint set, uint exponent, uint s, uint t, const DensityView *view,
+                                      const StrategyEnds *ends)
+{
+    MisSum sum = mis_sum_begin(exponent);
+    strategy_sum_camera(&sum, set, s, t, view, ends);
+    mis_sum_turn(&sum);
+    strategy_sum_light(&sum, set, s, t, view, ends);
+    return mis_sum_weight(&sum, scaled_from(s == 1u ? ends->connect : 1.0f));
+}
+
+#endif
