@@ -65,24 +65,95 @@ SHARED_FUNCTION Ray camera_ray(const Camera *camera, Vec2 film, float width, flo
     return ray;
 }
 
-/* The film position that sees the world point `p` through the lens point of `u_lens`: the inverse of camera_ray.
- * False when p is not in front of the camera or not on the film. */
-SHARED_FUNCTION bool camera_project(const Camera *camera, Vec3 p, float width, float height, Vec2 u_lens, Vec2 *film)
+/* Density per unit area of the screen of a film position uniform over the pixels of the crop window. */
+SHARED_FUNCTION float camera_screen_pdf(__global const FrameParams *frame)
 {
-    Vec3 q = affine_point(camera->camera_from_world, p);
+    __global const Camera *camera = &frame->camera;
+    float x = (camera->screen[1] - camera->screen[0]) / (float)frame->width;
+    float y = (camera->screen[3] - camera->screen[2]) / (float)frame->height;
+    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
+    return 1.0f / float_abs(pixels * x * y);
+}
+
+/* By how much the camera's transform scales volumes. */
+SHARED_FUNCTION float camera_volume_scale(__global const Camera *camera)
+{
+    Affine m = camera->world_from_camera;
+    Vec3 x = vec3(m.m[0], m.m[4], m.m[8]), y = vec3(m.m[1], m.m[5], m.m[9]), z = vec3(m.m[2], m.m[6], m.m[10]);
+    return float_abs(vec3_dot(x, vec3_cross(y, z)));
+}
+
+/* Density with which camera_ray makes the point at `distance` (world units) along the unit direction d from its origin,
+ * per unit of area perpendicular to d there, when the film position is uniform over the crop window's pixels and the
+ * lens point is given. It holds outside the window too: the same formula continues there, where the pixel filter still
+ * looks. 0 for points behind the camera.
+ *
+ * Let z be the camera-space component of d along the axis. The lens point fixed, the screen's area element dS is z^2
+ * distance^2 dS across the plane through the point parallel to the screen (perspective), or dS (orthographic), in camera
+ * space. Times a step dz along the ray that is a volume, which the transform M scales by |det M|; in the world the same
+ * volume is the area sought times dz / z. For a transform that keeps lengths, z is the cosine at the lens and this is
+ * 1 / (A cos^3 distance^2), the importance of a pinhole (Veach 1997, section 8.2; Pharr, Jakob and Humphreys, section
+ * 16.1.1) and as well what a connection from a light path to the lens is multiplied by: divided by the samples per
+ * pixel, the sums of the filtered splats are pixel values. */
+SHARED_FUNCTION float camera_pdf(__global const FrameParams *frame, Vec3 lens, Vec3 d, float distance)
+{
+    (void)lens;
+    __global const Camera *camera = &frame->camera;
+    float z = camera->camera_from_world.m[8] * d.x + camera->camera_from_world.m[9] * d.y +
+              camera->camera_from_world.m[10] * d.z;
+    if (!(z > 0.0f))
+        return 0.0f;
+    float pdf = camera_screen_pdf(frame) / (camera_volume_scale(camera) * z);
+    if (camera->kind == CAMERA_PERSPECTIVE)
+        pdf /= (z * distance) * (z * distance);
+    return pdf;
+}
+
+/* A point joined to the lens. */
+typedef struct CameraConnection {
+    Vec2 film; /* where the film sees it: pixels of the whole film, continuous */
+    Vec3 p; /* on the lens */
+    Vec3 wi; /* unit, from the point to the lens */
+    float pdf; /* camera_pdf */
+} CameraConnection;
+
+/* Whether the filter of a pixel of the crop window reaches the film position. */
+SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2 film)
+{
+    float x = frame->filter.radius_x - 0.5f, y = frame->filter.radius_y - 0.5f;
+    return film.x >= (float)frame->crop_x0 - x && film.x < (float)frame->crop_x1 + x &&
+           film.y >= (float)frame->crop_y0 - y && film.y < (float)frame->crop_y1 + y;
+}
+
+/* Joins the world point p to the lens point of u_lens: the inverse of camera_ray. False when p is behind the camera or
+ * no pixel of the crop window, with its filter, sees it. Directions are taken relative to the lens point, so that a
+ * camera far from (0,0,0) loses no more than its own position's rounding. */
+SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, Vec2 u_lens,
+                                    CameraConnection *connection)
+{
+    Camera camera = frame->camera;
+    Vec2 lens = camera_lens(&camera, u_lens);
+    Vec3 center = vec3(camera.world_from_camera.m[3], camera.world_from_camera.m[7], camera.world_from_camera.m[11]);
+    Vec3 q = affine_vector(camera.camera_from_world, vec3_sub(p, center));
     if (!(q.z > 0.0f))
         return false;
-    if (camera->lens_radius > 0.0f) {
-        Vec2 lens = camera_lens(camera, u_lens);
-        float defocus = 1.0f - q.z / camera->focal_distance;
-        q.x -= lens.x * defocus;
-        q.y -= lens.y * defocus;
+    /* The point of the screen as camera_ray has it, through the point in focus. */
+    Vec2 slope = vec2(0.0f, 0.0f);
+    if (camera.lens_radius > 0.0f)
+        slope = vec2(lens.x / camera.focal_distance, lens.y / camera.focal_distance);
+    Vec2 screen = vec2((q.x - lens.x) + q.z * slope.x, (q.y - lens.y) + q.z * slope.y);
+    Vec2 o = vec2(screen.x + lens.x, screen.y + lens.y);
+    if (camera.kind == CAMERA_PERSPECTIVE) {
+        screen = vec2(screen.x / q.z, screen.y / q.z);
+        o = lens;
     }
-    Vec2 screen = vec2(q.x, q.y);
-    if (camera->kind == CAMERA_PERSPECTIVE)
-        screen = vec2(q.x / q.z, q.y / q.z);
-    *film = camera_film(camera, screen, width, height);
-    return film->x >= 0.0f && film->x < width && film->y >= 0.0f && film->y < height;
+    connection->film = camera_film(&camera, screen, (float)frame->width, (float)frame->height);
+    connection->p = affine_point(camera.world_from_camera, vec3(o.x, o.y, 0.0f));
+    Vec3 d = vec3_sub(connection->p, p);
+    float distance = vec3_length(d);
+    connection->wi = vec3_scale(d, 1.0f / distance);
+    connection->pdf = camera_pdf(frame, connection->p, vec3_negate(connection->wi), distance);
+    return camera_film_covered(frame, connection->film) && connection->pdf > 0.0f && float_finite(connection->pdf);
 }
 
 #endif

@@ -256,23 +256,49 @@ SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *
     return float_clamp(texture_eval_float(scene, alpha, &at), 0.0f, 1.0f);
 }
 
-SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, const Primitive *primitive, Vec3 ref,
-                                           Vec2 u)
+/* A point drawn by area, for whoever may look at it. */
+SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, const Primitive *primitive, Vec2 u)
 {
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR)
         return patch_light_sample(scene, primitive, u);
     if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE)
-        return sphere_light_sample(scene, primitive, ref, u);
+        return sphere_light_sample_area(scene, primitive, u);
     if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK)
         return disk_light_sample(scene, primitive, u);
     return triangle_light_sample(scene, primitive, scene->lights[light].area, u);
 }
 
+/* Density per area with which area_light_point draws `hit` (ng, u, v are read). */
+SHARED_FUNCTION float area_light_pdf_a(const SceneView *scene, uint light, const Primitive *primitive,
+                                       const Surface *hit)
+{
+    uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
+    if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
+        PatchCorners corners = patch_corners(scene, primitive->a);
+        return patch_light_pdf(&corners, hit->u, hit->v);
+    }
+    if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE)
+        return quadric_light_pdf(quadric, sphere_object_area(quadric), hit->ng);
+    if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK)
+        return quadric_light_pdf(quadric, disk_object_area(quadric), hit->ng);
+    return 1.0f / scene->lights[light].area;
+}
+
+/* A point for whoever stands at `ref`. */
+SHARED_FUNCTION AreaPoint area_light_point_from(const SceneView *scene, uint light, const Primitive *primitive,
+                                                Vec3 ref, Vec2 u)
+{
+    if (SCENE_HAS(scene, FEATURE_SPHERE) && primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE)
+        return sphere_light_sample(scene, primitive, ref, u);
+    return area_light_point(scene, light, primitive, u);
+}
+
 SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
 {
     Primitive primitive = scene->primitives[scene->lights[light].primitive];
-    AreaPoint point = area_light_point(scene, light, &primitive, ref, u);
+    AreaPoint point = area_light_point_from(scene, light, &primitive, ref, u);
     Vec3 d = vec3_sub(point.p, ref);
     float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))
@@ -300,24 +326,13 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
 SHARED_FUNCTION float area_light_pdf_w(const SceneView *scene, uint light, Vec3 ref, Vec3 wi, const Surface *hit)
 {
     Primitive primitive = scene->primitives[scene->lights[light].primitive];
-    uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    float pdf_a;
-    if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
-        PatchCorners corners = patch_corners(scene, primitive.a);
-        pdf_a = patch_light_pdf(&corners, hit->u, hit->v);
-    } else if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE) {
-        __global const Quadric *sphere = scene->quadrics + primitive.a;
-        float sin2 = sphere_light_sin2(sphere, ref);
+    if (SCENE_HAS(scene, FEATURE_SPHERE) && primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE) {
+        float sin2 = sphere_light_sin2(scene->quadrics + primitive.a, ref);
         if (sin2 > 0.0f)
             return sphere_light_hidden(scene, &primitive, hit->ng, wi) ? 0.0f
                                                                        : warp_cone_pdf(sphere_light_versine(sin2));
-        pdf_a = quadric_light_pdf(sphere, sphere_object_area(sphere), hit->ng);
-    } else if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK) {
-        __global const Quadric *disk = scene->quadrics + primitive.a;
-        pdf_a = quadric_light_pdf(disk, disk_object_area(disk), hit->ng);
-    } else {
-        pdf_a = 1.0f / scene->lights[light].area;
     }
+    float pdf_a = area_light_pdf_a(scene, light, &primitive, hit);
     return area_light_pdf_from_area(pdf_a, vec3_length_squared(vec3_sub(hit->p, ref)), vec3_dot(hit->ng, wi));
 }
 

@@ -17,12 +17,14 @@ SHARED_FILES = \
 	shared/disk.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/film_splat.h \
 	shared/fresnel.h \
 	shared/kernel_list.h \
 	shared/kernels.cl \
 	shared/light.h \
 	shared/light_area.h \
 	shared/light_delta.h \
+	shared/light_emit.h \
 	shared/light_infinite.h \
 	shared/material.h \
 	shared/microfacet.h \

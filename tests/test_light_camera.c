@@ -135,6 +135,16 @@ START_TEST(test_double_model)
 }
 END_TEST
 
+static FrameParams whole_film(const Camera *camera, uint width, uint height)
+{
+    return (FrameParams){.camera = *camera,
+                         .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
+                         .width = width,
+                         .height = height,
+                         .crop_x1 = width,
+                         .crop_y1 = height};
+}
+
 START_TEST(test_projection)
 {
     for (uint kind = CAMERA_PERSPECTIVE; kind <= CAMERA_ORTHOGRAPHIC; ++kind)
@@ -143,15 +153,17 @@ START_TEST(test_projection)
             settings.lens_radius = lens ? 0.3f : 0.0f;
             settings.focal_distance = 7.0f;
             Camera camera = make_camera(&settings, 160, 120);
+            FrameParams frame = whole_film(&camera, 160, 120);
             double worst = 0.0;
             for (uint i = 0; i < 4096; ++i) {
-                Vec2 r = fixture_random(1, i), u = fixture_random(2, i), found;
+                Vec2 r = fixture_random(1, i), u = fixture_random(2, i);
                 Vec2 film = vec2(0.1f + 159.8f * r.x, 0.1f + 119.8f * r.y);
                 Ray ray = camera_ray(&camera, film, 160, 120, u);
                 Vec3 p = vec3_mad(ray.o, 1.0f + 9.0f * fixture_random(3, i).x, ray.d);
-                ck_assert(camera_project(&camera, p, 160, 120, u, &found));
-                worst = fmax(worst, hypot((double)(found.x - film.x), (double)(found.y - film.y)));
-                ck_assert(!camera_project(&camera, vec3_mad(ray.o, -1.0f, ray.d), 160, 120, u, &found));
+                CameraConnection found;
+                TEST_TRUE(camera_connect(&frame, p, u, &found));
+                worst = fmax(worst, hypot((double)(found.film.x - film.x), (double)(found.film.y - film.y)));
+                TEST_TRUE(!camera_connect(&frame, vec3_mad(ray.o, -1.0f, ray.d), u, &found));
             }
             ck_assert_msg(worst < 1e-4, "kind %u lens %d: %g pixels off", kind, lens, worst);
         }
@@ -162,11 +174,12 @@ START_TEST(test_outside_film)
 {
     CameraSettings settings = settings_identity(CAMERA_PERSPECTIVE, 90.0f);
     Camera camera = make_camera(&settings, 100, 100);
-    Vec2 film;
-    ck_assert(camera_project(&camera, vec3(-0.99f, 0.99f, 1.0f), 100, 100, MIDDLE, &film));
-    ck_assert(!camera_project(&camera, vec3(-1.01f, 0.0f, 1.0f), 100, 100, MIDDLE, &film));
-    ck_assert(!camera_project(&camera, vec3(0.0f, 1.01f, 1.0f), 100, 100, MIDDLE, &film));
-    ck_assert(!camera_project(&camera, vec3(0.0f, 0.0f, 0.0f), 100, 100, MIDDLE, &film));
+    FrameParams frame = whole_film(&camera, 100, 100);
+    CameraConnection c;
+    ck_assert(camera_connect(&frame, vec3(-0.99f, 0.99f, 1.0f), MIDDLE, &c));
+    ck_assert(!camera_connect(&frame, vec3(-1.01f, 0.0f, 1.0f), MIDDLE, &c));
+    ck_assert(!camera_connect(&frame, vec3(0.0f, 1.01f, 1.0f), MIDDLE, &c));
+    ck_assert(!camera_connect(&frame, vec3(0.0f, 0.0f, 0.0f), MIDDLE, &c));
 }
 END_TEST
 
