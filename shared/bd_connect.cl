@@ -33,11 +33,11 @@ SHARED_FUNCTION float connect_back(__global const FrameParams *frame, __global c
 /* f(wo, wi) |cos wi| at a vertex of the light's side, with the factor of shading normals. */
 SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex *vertex, Vec3 wi)
 {
-    Vec3 local = frame_to_local(vertex->frame, wi);
-    BsdfValue value = bsdf_eval(scene, &vertex->bsdf, vertex->wo, local, TRANSPORT_IMPORTANCE);
+    Vec3 wi_frame = frame_to_local(vertex->frame, wi);
+    BsdfValue value = bsdf_eval(scene, &vertex->bsdf, vertex->wo, wi_frame, TRANSPORT_IMPORTANCE);
     if (!vec3_is_zero(value.f_cos))
         value.f_cos = vec3_scale(value.f_cos, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
-                                                             vertex->wo.z, local.z));
+                                                             vertex->wo.z, wi_frame.z));
     return value;
 }
 
@@ -62,8 +62,7 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, __global const uint 
     connection->contribution = vec3_scale(vec3_mul(y.beta, f.f_cos), weight * camera.pdf);
     connection->shadow = ray_between(y.p, y.ng, camera.p, vec3_splat(0.0f));
     connection->ends.camera_y1 = camera.pdf * float_abs(vec3_dot(camera.wi, y.ng));
-    connection->ends.camera_y2 =
-        connect_back(frame, paths, vertices, stride, t, SIDE_LIGHT, s - 1u, y.p, f.pdf_rev_w);
+    connection->ends.camera_y2 = connect_back(frame, paths, vertices, stride, t, SIDE_LIGHT, s - 1u, y.p, f.pdf_rev_w);
     return true;
 }
 
@@ -80,8 +79,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, __global const uint *
     LightSample sample;
     if (!light_sample(scene, light, z.p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return false;
-    BsdfValue f =
-        bsdf_eval(scene, &z.bsdf, z.wo, frame_to_local(z.frame, sample.wi), TRANSPORT_RADIANCE);
+    BsdfValue f = bsdf_eval(scene, &z.bsdf, z.wo, frame_to_local(z.frame, sample.wi), TRANSPORT_RADIANCE);
     float select = scene->lights[light].select_pdf;
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z.beta, f.f_cos), sample.radiance), 1.0f / (select * sample.pdf_w));
@@ -112,9 +110,8 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, __global const uint *
 }
 
 /* s >= 2, t >= 2: two surfaces. */
-SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, __global const uint *paths,
-                                      __global const uint *vertices, uint stride, uint item, uint s, uint t,
-                                      Connection *connection)
+SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, __global const uint *paths, __global const uint *vertices,
+                                      uint stride, uint item, uint s, uint t, Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
     Vertex y = vertex_load(scene, vertices, stride, vertex_base(frame, SIDE_LIGHT, s - 1u), item);
@@ -235,8 +232,8 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global cons
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
         return;
-    Vec3 radiance = vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item),
-                               state_load_float(paths, stride, BD_WEIGHT, item));
+    Vec3 radiance =
+        vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
     splat_store(splats, diagnostics, stride, item, state_load(paths, stride, BD_PIXEL, item), radiance);
 }
 

@@ -21,8 +21,8 @@ SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *rest
 
 /* The first ray of a walk. */
 SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
-                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray,
-                                Vec3 beta, float pdf, uint flags)
+                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray, Vec3 beta,
+                                float pdf, uint flags)
 {
     ray_store(rays, stride, t, ray);
     state_store(paths, stride, BD_SIDE, t, side);
@@ -84,8 +84,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     bool on_surface = emission.infinite == 0u && emission.delta_position == 0u;
     Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
     walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta,
-               emission.infinite != 0u ? emission.pdf_p : emission.pdf_w,
-               emission.infinite != 0u ? WALK_PARALLEL : 0u);
+               emission.infinite != 0u ? emission.pdf_p : emission.pdf_w, emission.infinite != 0u ? WALK_PARALLEL : 0u);
 }
 
 /* From: nothing more than the pixel. To: the camera's first ray. */
@@ -146,8 +145,8 @@ SHARED_FUNCTION Vec3 walk_emission(const SceneView *scene, __global const uint *
     float select = scene->lights[light].select_pdf, emitted = select * light_emit_pdf_p(scene, light, surface);
     StrategyEnds ends;
     ends.light_z1 = emitted;
-    ends.light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) *
-                    state_load_float(paths, view.stride, BD_BACK, view.t);
+    ends.light_z2 =
+        light_emit_pdf_w(scene, light, surface->ng, towards) * state_load_float(paths, view.stride, BD_BACK, view.t);
     ends.connect = light_connect_ratio(scene, light, from, ray->d, distance2, surface);
     ends.hittable = true;
     return vec3_scale(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends));
@@ -202,8 +201,9 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     uint own = density_base(frame, side, depth) + DENSITY_OWN;
     if (hit.primitive == NONE) {
         if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT)) {
-            Vec3 ng = depth > 1u ? state_load_vec3(vertices, stride, vertex_base(frame, side, depth - 1u) + VERTEX_NG, t)
-                                 : ray.d;
+            Vec3 ng = depth > 1u
+                          ? state_load_vec3(vertices, stride, vertex_base(frame, side, depth - 1u) + VERTEX_NG, t)
+                          : ray.d;
             state_store_float(densities, stride, own, t, pdf);
             bd_add_radiance(paths, stride, t, vec3_mul(beta, walk_environment(&scene, paths, view, ray.d, ng, depth)));
         }
@@ -248,7 +248,8 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
     state_store(paths, stride, BD_LENGTHS, t, lengths);
     if (side == SIDE_LIGHT && depth == 1u)
-        state_store_float(paths, stride, BD_CONNECT, t, bd_emitter_ratio(&scene, paths, vertices, stride, t, surface.p));
+        state_store_float(paths, stride, BD_CONNECT, t,
+                          bd_emitter_ratio(&scene, paths, vertices, stride, t, surface.p));
 }
 
 /* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
@@ -277,8 +278,8 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     }
     Vec3 wi = frame_to_world(vertex.frame, sample.wi), beta = vec3_mul(vertex.beta, sample.weight);
     if (side == SIDE_LIGHT)
-        beta = vec3_scale(beta, adjoint_factor(vertex.ng, frame_to_world(vertex.frame, vertex.wo), wi, vertex.wo.z,
-                                               sample.wi.z));
+        beta = vec3_scale(
+            beta, adjoint_factor(vertex.ng, frame_to_world(vertex.frame, vertex.wo), wi, vertex.wo.z, sample.wi.z));
     float eta = side == SIDE_CAMERA ? sample.eta : 1.0f;
     float eta_scale = state_load_float(paths, stride, BD_ETA_SCALE, t) * eta * eta;
     float survival = depth >= BD_ROULETTE_FIRST_DEPTH ? vec3_max_component(beta) * eta_scale : 1.0f;

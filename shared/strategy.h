@@ -67,7 +67,7 @@ SHARED_FUNCTION void strategy_sum_light(MisSum *sum, uint set, uint s, uint t, c
     uint k = s + t - 1u;
     Scaled one = scaled_from(1.0f), connect = scaled_from(ends->connect);
     for (uint i = s; i-- > 0u;) {
-        float camera = i == s - 1u ? ends->camera_y1
+        float camera = i == s - 1u   ? ends->camera_y1
                        : i + 2u == s ? ends->camera_y2
                                      : density_load(view, SIDE_LIGHT, i, DENSITY_OTHER);
         float light = s == 1u ? ends->own_y0 : density_load(view, SIDE_LIGHT, i, DENSITY_OWN);
