@@ -145,9 +145,9 @@ static void worker_find_live(Worker *worker, uint count)
 }
 
 /* Step i of the list; returns the next. */
-static size_t worker_run_step(Worker *worker, const StepList *list, size_t i, void *const *arguments, uint count)
+static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *const *arguments, uint count)
 {
-    const Step *step = &list->steps[i];
+    const Step *step = &job->list->steps[i];
     switch (step->kind) {
     case STEP_KERNEL:
         kernel_run(step->kernel, arguments, step->live_only ? worker->live : worker->all,
@@ -164,6 +164,10 @@ static size_t worker_run_step(Worker *worker, const StepList *list, size_t i, vo
         worker_find_live(worker, count);
         if (worker->live_count == 0)
             return step->target;
+        break;
+    case STEP_SPLAT:
+        if (!job->inspect)
+            job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
         break;
     }
     return i + 1;
@@ -196,7 +200,7 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     if (job->inspect)
         worker_clear_state(worker, job->list);
     for (size_t i = 0; i < job->list->count;)
-        i = worker_run_step(worker, job->list, i, arguments, count);
+        i = worker_run_step(worker, job, i, arguments, count);
     if (job->inspect)
         worker_show_state(worker, job, first, count);
     else if (job->list->words_per_item[BUFFER_SPLATS] > 0)

@@ -19,6 +19,7 @@
 #define ARGUMENTS_7(a, b, c, d, e, f, g) ARGUMENTS_6(a, b, c, d, e, f), buffers[g]
 #define ARGUMENTS_8(a, b, c, d, e, f, g, h) ARGUMENTS_7(a, b, c, d, e, f, g), buffers[h]
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
+#define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 
 /* One loop a kernel, with the kernel and all it calls inlined into it, so that the scene's pointers are made once. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \

@@ -26,6 +26,8 @@ typedef enum BufferId {
     BUFFER_HITS,
     BUFFER_SHADOWS, /* shadow rays and their visibility */
     BUFFER_SPLATS, /* what goes to the film */
+    BUFFER_VERTICES, /* bd_state.h: vertices of bidirectional paths */
+    BUFFER_DENSITIES, /* and their densities */
     BUFFER_DIAGNOSTICS, /* counters, per thread or device; summed by the host */
     BUFFER_COUNTS, /* live rays, for backends that count with a kernel (count.cl) */
     BUFFER_COUNT
@@ -37,7 +39,9 @@ typedef enum StepKind {
     STEP_TRACE_SHADOW,
     /* When no item of the chunk has had a live ray in the latest STEP_TRACE_CLOSEST, go on at step `target`. A backend
      * may ignore it: the kernels between do nothing to dead paths. */
-    STEP_SKIP_IF_IDLE
+    STEP_SKIP_IF_IDLE,
+    /* Hands the splats to the sink before the list's end: for paths that meet the film in several places. */
+    STEP_SPLAT
 } StepKind;
 
 typedef struct Step {

@@ -16,21 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-typedef bool (*RenderFunction)(const Scene *scene, const BackendInterface *interface, Backend *backend,
-                               const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks,
-                               Film *film, RenderResult *result, Error *error);
-
-static const struct Integrator {
-    const char *name;
-    RenderFunction render;
-} INTEGRATORS[] = {{"pt", render_pt}};
-
-#define INTEGRATOR_COUNT (sizeof INTEGRATORS / sizeof INTEGRATORS[0])
-
 /* One rendering from command line to files. */
 typedef struct RenderJob {
     const RenderCommand *command;
-    RenderFunction render;
+    const Integrator *integrator;
     Scene scene;
     Film film;
     BackendMember backend;
@@ -41,18 +30,6 @@ typedef struct RenderJob {
     double load, build, rendering, write; /* seconds */
     double start;
 } RenderJob;
-
-static bool integrator_choose(const char *name, RenderFunction *render, Error *error)
-{
-    for (size_t i = 0; i < INTEGRATOR_COUNT; ++i) {
-        if (strcmp(INTEGRATORS[i].name, name) == 0) {
-            *render = INTEGRATORS[i].render;
-            return true;
-        }
-    }
-    error_set(error, "--integrator=%s: there is no such integrator in this version", name);
-    return error_fix(error, "use pt (path tracing)");
-}
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
 
@@ -143,6 +120,10 @@ static RenderOptions render_settings(const RenderJob *job)
         .samples = (unsigned)command->samples,
         .seconds = command->seconds,
         .max_depth = settings->max_depth,
+        .balance = command->balance,
+        .only_strategy = command->only_strategy,
+        .strategy = {command->strategy[0], command->strategy[1]},
+        .unweighted = command->unweighted,
         .seed = command->seed,
         .save_every = command->save_every,
         .stop = interrupt_flag(),
@@ -161,8 +142,8 @@ static bool film_render(RenderJob *job, Error *error)
     progress_init(&job->progress, stderr, command->quiet);
     bool rendered = interrupt_install(error) &&
                     film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
-                    job->render(&job->scene, job->backend.interface, job->backend.backend, &options, false, &callbacks,
-                                &job->film, &job->result, error);
+                    render_film(job->integrator, &job->scene, job->backend.interface, job->backend.backend, &options,
+                                false, &callbacks, &job->film, &job->result, error);
     progress_end(&job->progress);
     return rendered;
 }
@@ -273,7 +254,7 @@ static void film_rescue(RenderJob *job, Error *error)
 static int job_verify(RenderJob *job, Error *error)
 {
     const RenderOptions options = render_settings(job);
-    if (!interrupt_install(error) || !render_verify(job->command, &job->scene, &options, error))
+    if (!interrupt_install(error) || !render_verify(job->command, job->integrator, &job->scene, &options, error))
         return EXIT_FAILED;
     return *options.stop ? EXIT_STOPPED : EXIT_OK;
 }
@@ -281,7 +262,8 @@ static int job_verify(RenderJob *job, Error *error)
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
-    if (!integrator_choose(command->integrator, &job->render, error))
+    job->integrator = integrator_find(command->integrator, error);
+    if (!job->integrator)
         return EXIT_USAGE;
     if (command->output && !render_output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */

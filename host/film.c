@@ -33,8 +33,8 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
                   crop[1], crop[2], crop[3]);
         return error_fix(error, "x0 < x1 and y0 < y1 inside the film");
     }
-    /* Splats name pixels by 32 bits, and all ones mean none. */
-    if ((uint64_t)width * (uint64_t)height >= NONE) {
+    /* Splats name pixels by 31 bits. */
+    if ((uint64_t)width * (uint64_t)height >= SPLAT_FROM_LIGHT) {
         error_set(error, "a film of %d x %d pixels is too large", width, height);
         return error_fix(error, "choose a smaller --resolution");
     }
@@ -47,9 +47,18 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
     return error_memory(error, pixels * (3 * sizeof *film->sums + sizeof *film->counts), "the film");
 }
 
+bool film_light_reserve(Film *film, Error *error)
+{
+    size_t bytes = film_pixels(film) * 3 * sizeof *film->light_sums;
+    if (!film->light_sums)
+        film->light_sums = calloc(1, bytes);
+    return film->light_sums || error_memory(error, bytes, "the film of the light's paths");
+}
+
 void film_destroy(Film *film)
 {
     free((void *)film->sums);
+    free((void *)film->light_sums);
     free((void *)film->counts);
     *film = (Film){0};
 }
@@ -101,30 +110,39 @@ static bool film_slot(const Film *film, uint pixel, size_t *slot)
     return true;
 }
 
+/* Adds a contribution to three sums; false when it was clamped or a sum is full. */
+static bool sums_add(_Atomic int64_t *sums, Vec3 color, double scale)
+{
+    const float values[3] = {color.x, color.y, color.z};
+    bool fits = true;
+    for (size_t c = 0; c < 3; ++c) {
+        bool clamped;
+        int64_t units = film_quantize(values[c], scale, &clamped);
+        if (units != 0 && !sum_add(&sums[c], units))
+            fits = false;
+        fits = fits && !clamped;
+    }
+    return fits;
+}
+
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 {
     const double scale = ldexp(1.0, -film->quantum_exponent);
     uint64_t saturated = 0, not_finite = 0;
     for (uint t = 0; t < count; ++t) {
         size_t slot;
-        if (!film_slot(film, state_load(splats, stride, SPLAT_PIXEL, t), &slot))
+        uint pixel = state_load(splats, stride, SPLAT_PIXEL, t);
+        bool from_light = pixel != NONE && (pixel & SPLAT_FROM_LIGHT) != 0;
+        if (!film_slot(film, from_light ? pixel & ~SPLAT_FROM_LIGHT : pixel, &slot))
             continue;
+        assert(!from_light || film->light_sums);
         Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
-        atomic_fetch_add_explicit(&film->counts[slot], 1u, memory_order_relaxed);
-        if (!vec3_finite(color)) {
+        if (!from_light)
+            atomic_fetch_add_explicit(&film->counts[slot], 1u, memory_order_relaxed);
+        if (!vec3_finite(color))
             ++not_finite;
-            continue;
-        }
-        const float values[3] = {color.x, color.y, color.z};
-        bool fits = true;
-        for (size_t c = 0; c < 3; ++c) {
-            bool clamped;
-            int64_t units = film_quantize(values[c], scale, &clamped);
-            if (units != 0 && !sum_add(&film->sums[3 * slot + c], units))
-                fits = false;
-            fits = fits && !clamped;
-        }
-        saturated += fits ? 0 : 1;
+        else if (!sums_add((from_light ? film->light_sums : film->sums) + 3 * slot, color, scale))
+            ++saturated;
     }
     count_add(&film->saturated, saturated);
     count_add(&film->not_finite, not_finite);
@@ -142,6 +160,8 @@ static bool film_merge_check(const Film *film, const Film *from, Error *error)
     if (film->quantum_exponent != from->quantum_exponent)
         return error_set(error, "films of different quanta cannot be merged: 2^%d and 2^%d", film->quantum_exponent,
                          from->quantum_exponent);
+    if (!film->light_sums != !from->light_sums)
+        return error_set(error, "films of integrators with and without paths from the light cannot be merged");
     for (size_t i = 0; i < film_pixels(film); ++i)
         if ((uint64_t)film->counts[i] + from->counts[i] > UINT32_MAX)
             return error_set(error, "merged films have more than %u samples in a pixel", UINT32_MAX);
@@ -157,7 +177,8 @@ bool film_merge(Film *film, const Film *from, Error *error)
         atomic_fetch_add_explicit(&film->counts[i], from->counts[i], memory_order_relaxed);
         bool fits = true;
         for (size_t c = 0; c < 3; ++c)
-            if (!sum_add(&film->sums[3 * i + c], from->sums[3 * i + c]))
+            if (!sum_add(&film->sums[3 * i + c], from->sums[3 * i + c]) ||
+                (film->light_sums && !sum_add(&film->light_sums[3 * i + c], from->light_sums[3 * i + c])))
                 fits = false;
         count_add(&film->saturated, fits ? 0 : 1);
     }
@@ -170,11 +191,18 @@ void film_resolve(const Film *film, float scale, float *rgb)
 {
     const double unit = ldexp((double)scale, film->quantum_exponent);
     size_t pixels = film_pixels(film);
+    uint64_t samples = 0;
+    for (size_t i = 0; film->light_sums && i < pixels; ++i)
+        samples += atomic_load_explicit(&film->counts[i], memory_order_relaxed);
+    double light_unit = samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
     for (size_t i = 0; i < pixels; ++i) {
         uint32_t count = atomic_load_explicit(&film->counts[i], memory_order_relaxed);
         for (size_t c = 0; c < 3; ++c) {
             int64_t sum = atomic_load_explicit(&film->sums[3 * i + c], memory_order_relaxed);
-            rgb[3 * i + c] = count ? (float)((double)sum * unit / count) : 0.0f;
+            double value = count ? (double)sum * unit / count : 0.0;
+            if (film->light_sums)
+                value += (double)atomic_load_explicit(&film->light_sums[3 * i + c], memory_order_relaxed) * light_unit;
+            rgb[3 * i + c] = (float)value;
         }
     }
 }

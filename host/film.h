@@ -13,6 +13,7 @@ typedef struct Film {
     int crop[4]; /* x0 y0 x1 y1: the part that is kept */
     int quantum_exponent; /* one unit of a sum is 2^quantum_exponent of radiance */
     _Atomic int64_t *sums; /* 3 a pixel of the crop, row by row */
+    _Atomic int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
     _Atomic uint32_t *counts; /* samples of every pixel of the crop */
     _Atomic uint64_t saturated; /* contributions that did not fit and were clamped */
     _Atomic uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
@@ -22,6 +23,9 @@ typedef struct Film {
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
 void film_destroy(Film *film);
 
+/* Makes room for splats that paths from the light bring (SPLAT_FROM_LIGHT). Only while the film is empty. */
+bool film_light_reserve(Film *film, Error *error);
+
 /* Pixels of the crop. */
 size_t film_pixels(const Film *film);
 
@@ -30,14 +34,15 @@ size_t film_pixels(const Film *film);
 void film_quantum_set(Film *film, double mean);
 
 /* Adds `count` items of a splat buffer (state.h: SPLAT_PIXEL, SPLAT_COLOR at field * stride + item) and one sample to
- * each pixel named. Pixels outside the crop and NONE are skipped. Any number of threads may call it at once. */
+ * each pixel named; splats from the light are not samples of their pixel. Pixels outside the crop and NONE are skipped. Any number of threads may call it at once. */
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
 
 /* Adds the sums and counts of `from`, a film of the same size, crop and quantum; fails, naming the difference,
  * otherwise. */
 bool film_merge(Film *film, const Film *from, Error *error);
 
-/* rgb[3 * crop pixels] = scale * sum / count; zero where nothing was sampled. */
+/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (samples of all pixels / pixels)); where nothing was sampled
+ * the first is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
 void film_resolve(const Film *film, float scale, float *rgb);
 
 #endif

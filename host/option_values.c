@@ -118,3 +118,16 @@ bool option_crop(const char *option, const char *text, int crop[4], Error *error
     }
     return true;
 }
+
+bool option_strategy(const char *option, const char *text, unsigned strategy[2], Error *error)
+{
+    int numbers[2];
+    if (!read_list(text, ',', 2, numbers) || numbers[1] < 1 || numbers[0] + numbers[1] < 2) {
+        error_set(error, "--%s=%s: not a strategy", option, text);
+        return error_fix(error,
+                         "give s,t: s vertices from the light, t >= 1 from the camera (the lens counts), as in 1,2");
+    }
+    strategy[0] = (unsigned)numbers[0];
+    strategy[1] = (unsigned)numbers[1];
+    return true;
+}

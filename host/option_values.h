@@ -25,4 +25,7 @@ bool option_crop(const char *option, const char *text, int crop[4], Error *error
 /* The widest film: the square of this is below 2^32 - 1, so every pixel has a 32-bit index that is not NONE. */
 #define OPTION_SIZE_MAX 65535
 
+/* s,t of a bidirectional strategy: s >= 0 vertices from the light, t >= 1 from the camera, two at least. */
+bool option_strategy(const char *option, const char *text, unsigned strategy[2], Error *error);
+
 #endif

@@ -2,8 +2,8 @@
 #ifndef TWINLIGHT_RENDER_H
 #define TWINLIGHT_RENDER_H
 
-#include "backend.h"
 #include "film.h"
+#include "integrator.h"
 #include "scene.h"
 
 #define DIAGNOSTIC_NAMES_MAX 16
@@ -14,6 +14,10 @@ typedef struct RenderOptions {
     double seconds; /* 0: no limit but `samples` */
     int max_depth; /* path segments, >= 1 */
     uint64_t seed;
+    bool balance; /* balance heuristic; else the power heuristic */
+    bool only_strategy; /* show one strategy alone: */
+    unsigned strategy[2]; /* s, t */
+    bool unweighted; /* its weights taken for 1 */
     double save_every; /* seconds between calls of `save`; 0: never */
     const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */
 } RenderOptions;
@@ -43,13 +47,13 @@ typedef struct RenderResult {
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];
 } RenderResult;
 
-/* Path tracing's list of steps, to be freed by step_list_destroy, and its frame for all items from the first on. */
-bool render_pt_list(const Scene *scene, const RenderOptions *options, StepList *list, FrameParams *frame, Error *error);
-void step_list_destroy(StepList *list);
+/* The frame of the scene for all items from the first on, its depth within the integrator's limit. */
+void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame);
 
-/* Path tracing (integrator_pt.c). `film` must be initialised with the scene's size and crop; its quantum is set from
- * a pilot of the scene unless `keep_quantum`. */
-bool render_pt(const Scene *scene, const BackendInterface *interface, Backend *backend, const RenderOptions *options,
-               bool keep_quantum, const RenderCallbacks *callbacks, Film *film, RenderResult *result, Error *error);
+/* `film` must be initialised with the scene's size and crop; its quantum is set from a pilot of the scene unless
+ * `keep_quantum`. On failure the film holds what was finished, and *result says how much that is. */
+bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
+                 const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
+                 RenderResult *result, Error *error);
 
 #endif

@@ -9,6 +9,9 @@
 enum {
     OPTION_OUTPUT,
     OPTION_INTEGRATOR,
+    OPTION_HEURISTIC,
+    OPTION_STRATEGY,
+    OPTION_UNWEIGHTED,
     OPTION_SAMPLES,
     OPTION_TIME,
     OPTION_BACKEND,
@@ -34,6 +37,10 @@ enum {
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME", "algorithm: pt, path tracing (default)"},
+    [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
+    [OPTION_STRATEGY] = {"strategy", 0, "s,t",
+                         "show one bidirectional strategy: s vertices from the light, t from the camera"},
+    [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: as if there were no other"},
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
     [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
@@ -118,6 +125,15 @@ static bool path_set(const char **path, int index, const char *value, const char
     return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
 }
 
+static bool heuristic_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->balance = strcmp(value, "balance") == 0;
+    if (command->balance || strcmp(value, "power") == 0)
+        return true;
+    error_set(error, "--heuristic=%s: there is no such heuristic", value);
+    return error_fix(error, "use power or balance");
+}
+
 static bool option_set(void *context, int index, const char *value, Error *error)
 {
     Parse *parse = context;
@@ -140,6 +156,14 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return true;
     case OPTION_INTEGRATOR:
         command->integrator = value;
+        return true;
+    case OPTION_HEURISTIC:
+        return heuristic_set(command, value, error);
+    case OPTION_STRATEGY:
+        command->only_strategy = true;
+        return option_strategy("strategy", value, command->strategy, error);
+    case OPTION_UNWEIGHTED:
+        command->unweighted = true;
         return true;
     case OPTION_BACKEND:
         parse->backend = value;
@@ -209,5 +233,9 @@ bool render_options_parse(RenderCommand *command, const BackendTable *backends, 
         return error_fix(error, "render one scene at a time; options come as --name=value");
     }
     command->scene = argv[first];
+    if (command->unweighted && !command->only_strategy) {
+        error_set(error, "--unweighted without --strategy would count every path several times");
+        return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
+    }
     return backends_set(command, backends, parse.backend, error);
 }

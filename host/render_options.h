@@ -14,6 +14,9 @@ typedef struct RenderCommand {
     const char *png_path;
     double exposure; /* stops */
     const char *integrator;
+    bool balance; /* balance heuristic */
+    bool only_strategy, unweighted;
+    unsigned strategy[2]; /* s, t */
     BackendChoices backends; /* at least one */
     bool verify; /* compare them with `reference` instead of rendering */
     const BackendInterface *reference;

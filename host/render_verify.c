@@ -30,7 +30,8 @@ static uint64_t items_limit(const SceneSettings *settings, unsigned samples)
     return items < limit ? items : limit;
 }
 
-bool render_verify(const RenderCommand *command, const Scene *scene, const RenderOptions *options, Error *error)
+bool render_verify(const RenderCommand *command, const Integrator *integrator, const Scene *scene,
+                   const RenderOptions *options, Error *error)
 {
     const BackendScene view = scene_backend_view(scene);
     const BackendOptions open_options = {.threads = command->threads, .batch = command->batch};
@@ -38,9 +39,10 @@ bool render_verify(const RenderCommand *command, const Scene *scene, const Rende
     BackendMember sides[2] = {{command->reference, NULL}, {NULL, NULL}};
     StepList list = {0};
     FrameParams frame;
+    render_frame(integrator, scene, options, &frame);
     sides[0].backend = command->reference->open(&view, &open_options, error);
     bool same = sides[0].backend && backend_choices_open(&command->backends, &view, &open_options, &opened, error) &&
-                render_pt_list(scene, options, &list, &frame, error);
+                integrator->list(&frame, &list, error);
     size_t count = same ? backend_group_members(opened, members) : 0;
     for (size_t i = 0; i < count && same; ++i) {
         sides[1] = members[i];

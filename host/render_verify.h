@@ -6,6 +6,7 @@
 #include "render_options.h"
 
 /* Compares every device of the command with the CPU backend on the scene's samples. Says what agreed. */
-bool render_verify(const RenderCommand *command, const Scene *scene, const RenderOptions *options, Error *error);
+bool render_verify(const RenderCommand *command, const Integrator *integrator, const Scene *scene,
+                   const RenderOptions *options, Error *error);
 
 #endif

@@ -30,6 +30,8 @@ libtwinlight_host_la_SOURCES = \
 	host/image_formats.h \
 	host/image_pfm.c \
 	host/image_stb.c \
+	host/integrator.c host/integrator.h \
+	host/integrator_bdpt.c \
 	host/integrator_pt.c \
 	host/interrupt.c host/interrupt.h \
 	host/json.c host/json.h \
@@ -64,7 +66,7 @@ libtwinlight_host_la_SOURCES = \
 	host/ply_internal.h \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
-	host/render.h \
+	host/render.c host/render.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
 	host/render_verify.c host/render_verify.h \

@@ -76,7 +76,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, __global const uint *
         return false;
     Random4 random = bd_random(frame, paths, item, bd_random_connection(1u, t));
     uint light = light_select(scene, random.x[0], random.x[1]);
-    LightSample sample;
+    LightSample sample = {0};
     if (!light_sample(scene, light, z.p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return false;
     BsdfValue f = bsdf_eval(scene, &z.bsdf, z.wo, frame_to_local(z.frame, sample.wi), TRANSPORT_RADIANCE);
@@ -152,7 +152,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         (frame->only_s != NONE && (frame->only_s != s || frame->only_t != t)))
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    Connection connection;
+    Connection connection = {0};
     connection.target = NONE;
     connection.ends.connect = 1.0f;
     bool possible;
@@ -216,7 +216,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     }
     Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
     if (camera && visible)
-        splat_store(splats, diagnostics, stride, item, state_load(paths, stride, BD_TARGET, item), contribution);
+        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | state_load(paths, stride, BD_TARGET, item),
+                    contribution);
     else if (camera)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else if (visible)

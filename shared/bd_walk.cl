@@ -64,7 +64,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
         return;
     Random4 choice = bd_random(frame, paths, t, BD_RANDOM_LIGHT), random = bd_random(frame, paths, t, BD_RANDOM_EMIT);
     uint light = light_select(&scene, choice.x[0], choice.x[1]);
-    LightEmission emission;
+    LightEmission emission = {0};
     if (!light_emit(&scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
                     vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
         return;
@@ -153,8 +153,7 @@ SHARED_FUNCTION Vec3 walk_emission(const SceneView *scene, __global const uint *
 }
 
 /* The same for what has met nothing, and every light at infinity. */
-SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, __global const uint *restrict paths, DensityView view,
-                                      Vec3 d, Vec3 ng, uint depth)
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);
     StrategyEnds ends;
@@ -205,7 +204,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
                           ? state_load_vec3(vertices, stride, vertex_base(frame, side, depth - 1u) + VERTEX_NG, t)
                           : ray.d;
             state_store_float(densities, stride, own, t, pdf);
-            bd_add_radiance(paths, stride, t, vec3_mul(beta, walk_environment(&scene, paths, view, ray.d, ng, depth)));
+            bd_add_radiance(paths, stride, t, vec3_mul(beta, walk_environment(&scene, view, ray.d, ng, depth)));
         }
         walk_end(paths, rays, stride, t);
         return;

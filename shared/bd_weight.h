@@ -39,7 +39,7 @@ SHARED_FUNCTION float bd_emitter_ratio(const SceneView *scene, __global const ui
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return 1.0f;
-    Surface point; /* all that spheres ask for */
+    Surface point = {0}; /* spheres ask for no more than this */
     point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
     point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
     Vec3 d = vec3_sub(point.p, p);

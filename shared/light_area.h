@@ -312,8 +312,9 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
         sample->pdf_w = area_light_pdf_from_area(point.pdf, distance2, vec3_dot(point.ng, sample->wi));
     sample->pdf_emit = point.pdf;
     if (SCENE_HAS(scene, FEATURE_SPHERE) && point.by_angle != 0u) {
-        __global const Quadric *sphere = scene->quadrics + primitive.a;
-        sample->pdf_emit = quadric_light_pdf(sphere, sphere_object_area(sphere), point.ng);
+        Surface hit = {0}; /* spheres ask for the normal alone */
+        hit.ng = point.ng;
+        sample->pdf_emit = area_light_pdf_a(scene, light, &primitive, &hit);
     }
     sample->delta = 0u;
     sample->infinite = 0u;

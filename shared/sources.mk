@@ -1,5 +1,11 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/bd_connect.cl \
+	shared/bd_random.h \
+	shared/bd_state.h \
+	shared/bd_walk.cl \
+	shared/bd_walk.h \
+	shared/bd_weight.h \
 	shared/bilinear.h \
 	shared/box.h \
 	shared/bsdf.h \
@@ -8,6 +14,7 @@ SHARED_FILES = \
 	shared/bsdf_dielectric.h \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_state.h \
 	shared/bsdf_thin_dielectric.h \
 	shared/bvh_traverse.h \
 	shared/camera.h \
@@ -19,6 +26,7 @@ SHARED_FILES = \
 	shared/elementary.h \
 	shared/film_splat.h \
 	shared/fresnel.h \
+	shared/item.h \
 	shared/kernel_list.h \
 	shared/kernels.cl \
 	shared/light.h \
@@ -38,10 +46,12 @@ SHARED_FILES = \
 	shared/pt.cl \
 	shared/ray.h \
 	shared/rng.h \
+	shared/scaled.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
 	shared/sphere.h \
 	shared/state.h \
+	shared/strategy.h \
 	shared/surface.h \
 	shared/texture.h \
 	shared/trace.cl \

@@ -57,7 +57,9 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_V 4u
 #define HIT_WORDS 5u
 
-/* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. */
+/* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. Every pixel has as many samples as splats
+ * without SPLAT_FROM_LIGHT; those with it come from paths that could have met any pixel. */
+#define SPLAT_FROM_LIGHT 0x80000000u
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
 #define SPLAT_WORDS 4u

@@ -38,9 +38,8 @@ static const BackendInterface *setup_interface(const RenderSetup *setup)
 Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error)
 {
     BackendScene view = scene_backend_view(scene);
-    BackendOptions options = {.threads = setup->threads > 0 ? setup->threads : 2,
-                              .batch = setup->batch,
-                              .record_spans = setup->record_spans};
+    BackendOptions options = {
+        .threads = setup->threads > 0 ? setup->threads : 2, .batch = setup->batch, .record_spans = setup->record_spans};
     return setup_interface(setup)->open(&view, &options, error);
 }
 
@@ -61,9 +60,13 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
     RenderOptions options = {.first_sample = setup->first_sample,
                              .samples = setup->samples,
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
-                             .seed = setup->seed};
-    require(render_pt(&scene, interface, backend, &options, setup->quantum_of != NULL, NULL, &image->film,
-                      &image->result, &error),
+                             .seed = setup->seed,
+                             .balance = setup->balance,
+                             .only_strategy = setup->only_strategy,
+                             .strategy = {setup->strategy[0], setup->strategy[1]},
+                             .unweighted = setup->unweighted};
+    require(render_film(setup->integrator ? setup->integrator : integrator_pt(), &scene, interface, backend, &options,
+                        setup->quantum_of != NULL, NULL, &image->film, &image->result, &error),
             &error);
     interface->close(backend);
     image->rgb = malloc((size_t)image->width * (size_t)image->height * 3 * sizeof *image->rgb);

@@ -17,6 +17,9 @@ typedef struct RenderSetup {
     uint batch; /* of a device; 0: it chooses */
     bool record_spans;
     uint64_t seed;
+    const Integrator *integrator; /* NULL: path tracing */
+    bool balance, only_strategy, unweighted; /* RenderOptions */
+    unsigned strategy[2];
     const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */
 } RenderSetup;
 

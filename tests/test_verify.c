@@ -59,6 +59,13 @@ static bool fault_inspect(Backend *backend, const FrameParams *frame, const Step
                    : backend_cpu()->inspect(backend, frame, list, sink, context, error);
 }
 
+static bool integrator_list(const Scene *scene, const RenderOptions *options, StepList *list, FrameParams *frame,
+                            Error *error)
+{
+    render_frame(integrator_pt(), scene, options, frame);
+    return integrator_pt()->list(frame, list, error);
+}
+
 /* Verifies the scene on CPU backends of one and three threads, the second with `interface`. */
 static bool scene_verify(const BackendInterface *interface, uint64_t items, const atomic_int *stop,
                          VerifyReport *report, Error *error)
@@ -75,7 +82,7 @@ static bool scene_verify(const BackendInterface *interface, uint64_t items, cons
         sides[i].backend = fixture_open(&setup, &scene, error);
         ck_assert_msg(sides[i].backend != NULL, "%s", error->message);
     }
-    ck_assert(render_pt_list(&scene, &options, &list, &frame, error));
+    ck_assert(integrator_list(&scene, &options, &list, &frame, error));
     bool same = verify_run(sides, &frame, &list, items, stop, report, error);
     step_list_destroy(&list);
     for (int i = 0; i < 2; ++i)
@@ -136,7 +143,7 @@ START_TEST(test_field_names)
     FrameParams frame;
     uint named[PATH_WORDS] = {0};
     fixture_scene(&setup, &scene);
-    ck_assert(render_pt_list(&scene, &options, &list, &frame, &error));
+    ck_assert(integrator_list(&scene, &options, &list, &frame, &error));
     for (size_t i = 0; i < list.field_count; ++i)
         for (uint k = 0; k < list.fields[i].words; ++k)
             ++named[list.fields[i].first + k];

@@ -1,0 +1,27 @@
+#include "integrator.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void step_list_destroy(StepList *list)
+{
+    free((void *)(uintptr_t)list->steps);
+    *list = (StepList){0};
+}
+
+const Integrator *integrator_find(const char *name, Error *error)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt()};
+    char names[256] = "";
+    for (size_t i = 0; i < sizeof integrators / sizeof integrators[0]; ++i) {
+        if (strcmp(integrators[i]->name, name) == 0)
+            return integrators[i];
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s (%s)", i > 0 ? ", " : "", integrators[i]->name,
+                 integrators[i]->summary);
+    }
+    error_set(error, "--integrator=%s: there is no such integrator in this version", name);
+    error_fix(error, "use one of: %s", names);
+    return NULL;
+}

@@ -1,0 +1,25 @@
+/* Algorithms that light is carried by: each is a list of steps over items, one item a path or a pair of them. */
+#ifndef TWINLIGHT_INTEGRATOR_H
+#define TWINLIGHT_INTEGRATOR_H
+
+#include "backend.h"
+#include "mis.h"
+
+typedef struct Integrator {
+    const char *name; /* of --integrator */
+    const char *summary;
+    int depth_limit; /* the longest path in segments */
+    uint strategies; /* STRATEGIES_* */
+    /* Records the steps for paths of up to frame->max_depth segments, to be freed by step_list_destroy. */
+    bool (*list)(FrameParams *frame, StepList *list, Error *error);
+} Integrator;
+
+void step_list_destroy(StepList *list);
+
+const Integrator *integrator_pt(void);
+const Integrator *integrator_bdpt(void);
+
+/* NULL with an error that lists what there is. */
+const Integrator *integrator_find(const char *name, Error *error);
+
+#endif
