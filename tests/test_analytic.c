@@ -1,0 +1,11 @@
+#include "analytic.h"
+
+int main(void)
+{
+    Suite *suite = suite_create("analytic");
+    suite_add_tcase(suite, analytic_area_case());
+    suite_add_tcase(suite, analytic_glass_case());
+    suite_add_tcase(suite, analytic_opaque_case());
+    suite_add_tcase(suite, analytic_lights_case());
+    return test_run(suite);
+}
