@@ -7,5 +7,7 @@ int main(void)
     suite_add_tcase(suite, analytic_glass_case());
     suite_add_tcase(suite, analytic_opaque_case());
     suite_add_tcase(suite, analytic_lights_case());
+    suite_add_tcase(suite, analytic_environment_case());
+    suite_add_tcase(suite, analytic_camera_case());
     return test_run(suite);
 }
