@@ -1,3 +1,4 @@
+/* Pictures against numbers that do not come from the renderer; see analytic.h. */
 #include "analytic.h"
 
 int main(void)
@@ -9,5 +10,7 @@ int main(void)
     suite_add_tcase(suite, analytic_lights_case());
     suite_add_tcase(suite, analytic_environment_case());
     suite_add_tcase(suite, analytic_camera_case());
+    suite_add_tcase(suite, analytic_textures_case());
+    suite_add_tcase(suite, analytic_instances_case());
     return test_run(suite);
 }

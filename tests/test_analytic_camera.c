@@ -223,19 +223,21 @@ static void spot_moments(const RenderedImage *image, double *sum, double middle[
 /* A square lamp of half side h at depth z. The lens of radius R in focus at f shows a point as a disk of the radius
  * R |z - f| / z in the plane in focus; squared distances from the middle of a disk have the mean r^2 / 2, of a square
  * 2 h^2 / 3, of a pixel 1/6. Perspective: a pixel spans 2 f tan(fov / 2) / 32 there and the lamp's image shrinks by
- * f / z; orthographic: neither. */
-static void lens_case(const char *name, bool perspective, double radius, double f, double z)
+ * f / z; orthographic: neither. A camera that is scaled with its world shows the same. */
+static void lens_case(const char *name, bool perspective, double radius, double f, double z, double scale)
 {
     const double half = 0.25, fov = 30.0 * M_PI / 180.0;
     RenderedImage image;
     double sum, middle[2], square;
     analytic_picture(&image, 2048, 1,
                      "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\nPixelFilter \"box\"\n"
+                     "Scale %.9g %.9g %.9g "
                      "Camera \"%s\" \"float lensradius\" %g \"float focaldistance\" %g %s\nWorldBegin\n"
-                     "AreaLightSource \"diffuse\" \"bool twosided\" true\nTranslate %.9g %.9g %.9g Scale %g %g 1\n"
+                     "AreaLightSource \"diffuse\" \"bool twosided\" true\nScale %.9g %.9g %.9g Translate %.9g %.9g "
+                     "%.9g Scale %g %g 1\n"
                      "Shape \"bilinearmesh\" \"point3 P\" [ -1 -1 0  1 -1 0  -1 1 0  1 1 0 ]",
-                     perspective ? "perspective" : "orthographic", radius, f, perspective ? "\"float fov\" 30" : "",
-                     0.05 * z, -0.02 * z, z, half, half);
+                     1.0 / scale, 1.0 / scale, 1.0 / scale, perspective ? "perspective" : "orthographic", radius, f,
+                     perspective ? "\"float fov\" 30" : "", scale, scale, scale, 0.05 * z, -0.02 * z, z, half, half);
     spot_moments(&image, &sum, middle, &square);
     double pixel = perspective ? 2.0 * f * tan(0.5 * fov) / 32.0 : 2.0 / 32.0;
     double blur = radius * fabs(z - f) / (perspective ? z : f) / pixel;
@@ -252,9 +254,10 @@ static void lens_case(const char *name, bool perspective, double radius, double 
 
 START_TEST(test_lenses)
 {
-    lens_case("thin lens, behind the focus", true, 0.3, 4.0, 8.0);
-    lens_case("thin lens, before the focus", true, 0.2, 6.0, 3.0);
-    lens_case("telecentric lens", false, 0.4, 5.0, 8.0);
+    lens_case("thin lens, behind the focus", true, 0.3, 4.0, 8.0, 1.0);
+    lens_case("thin lens, before the focus", true, 0.2, 6.0, 3.0, 1.0);
+    lens_case("thin lens of a scaled camera", true, 0.3, 4.0, 8.0, 2.5);
+    lens_case("telecentric lens", false, 0.4, 5.0, 8.0, 1.0);
 }
 END_TEST
 
