@@ -21,6 +21,18 @@
     "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"                                       \
     "Shape \"bilinearmesh\" \"point3 P\" [ -50 -50 0  50 -50 0  -50 50 0  50 50 0 ]\nAttributeEnd\n"
 
+/* The square [0,1]^2 of the plane z = 0 seen from above on a film of %d x %d, x to the right and y up, by rays through the
+ * middles of the pixels. Under the light from overhead the radiance is the reflectance. */
+#define ANALYTIC_FROM_ABOVE                                                                                            \
+    "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"                                             \
+    "PixelFilter \"box\" \"float xradius\" 1e-4 \"float yradius\" 1e-4\n"                                              \
+    "Scale -1 1 1 LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0\n"                                                                \
+    "Camera \"orthographic\" \"float screenwindow\" [ -0.5 0.5 -0.5 0.5 ]\nWorldBegin\n"
+#define ANALYTIC_OVERHEAD                                                                                              \
+    "LightSource \"distant\" \"rgb L\" [ 3.14159265 3.14159265 3.14159265 ] \"point3 to\" [ 0 0 -1 ]\n"
+#define ANALYTIC_SQUARE                                                                                                \
+    "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 1 1 ]\n"
+
 /* Renders the text that `format` makes, with paths of up to `depth` segments. */
 void analytic_picture(RenderedImage *image, unsigned samples, int depth, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
@@ -48,10 +60,19 @@ double analytic_polygon(const double (*vertices)[3], int count);
 /* Dielectric interface, eta = index beyond / index here: reflectance of unpolarised light. */
 double analytic_fresnel(double cosine, double eta);
 
-/* Grey floats as a PFM file; row 0 on top. */
+/* RGB floats as a PFM file; row 0 on top. */
 void analytic_write_pfm(const char *path, int width, int height, const float *rgb);
 
+/* What an image of `width` x `height` RGB texels, row 0 at v = 1, has at (u, v), interpolated; wrap is pbrt's "repeat",
+ * "clamp" or "black". */
+double analytic_bilinear(const float *rgb, int width, int height, double u, double v, int channel, const char *wrap);
+
+/* A pixel of a picture, and the middle of pixel (x, y) of n x n as (u, v) with v upwards. */
+double analytic_pixel(const RenderedImage *image, int x, int y, int channel);
+void analytic_middle(int x, int y, int n, double *u, double *v);
+
 TCase *analytic_area_case(void);
+TCase *analytic_bumps_case(void);
 TCase *analytic_camera_case(void);
 TCase *analytic_environment_case(void);
 TCase *analytic_glass_case(void);

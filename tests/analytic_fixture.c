@@ -155,3 +155,36 @@ void analytic_write_pfm(const char *path, int width, int height, const float *rg
     test_file_write(path, bytes, size);
     free(bytes);
 }
+
+static double texel(const float *rgb, int width, int height, int x, int y, int c, const char *wrap)
+{
+    if (strcmp(wrap, "black") == 0 && (x < 0 || x >= width || y < 0 || y >= height))
+        return 0.0;
+    if (strcmp(wrap, "clamp") == 0) {
+        x = x < 0 ? 0 : x >= width ? width - 1 : x;
+        y = y < 0 ? 0 : y >= height ? height - 1 : y;
+    }
+    return (double)rgb[3 * ((y + 9 * height) % height * width + (x + 9 * width) % width) + c];
+}
+
+double analytic_bilinear(const float *rgb, int width, int height, double u, double v, int channel, const char *wrap)
+{
+    double x = u * width - 0.5, y = (1.0 - v) * height - 0.5, sum = 0.0;
+    int i = (int)floor(x), j = (int)floor(y);
+    for (int k = 0; k < 4; ++k) {
+        double weight = (k % 2 ? x - i : 1.0 - (x - i)) * (k / 2 ? y - j : 1.0 - (y - j));
+        sum += weight * texel(rgb, width, height, i + k % 2, j + k / 2, channel, wrap);
+    }
+    return sum;
+}
+
+double analytic_pixel(const RenderedImage *image, int x, int y, int channel)
+{
+    return (double)image->rgb[3 * (y * image->width + x) + channel];
+}
+
+void analytic_middle(int x, int y, int n, double *u, double *v)
+{
+    *u = (x + 0.5) / n;
+    *v = 1.0 - (y + 0.5) / n;
+}

@@ -41,6 +41,7 @@ EXTRA_DIST += \
 tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/analytic_fixture.c \
 	tests/test_analytic_area.c \
+	tests/test_analytic_bumps.c \
 	tests/test_analytic_camera.c \
 	tests/test_analytic_environment.c \
 	tests/test_analytic_glass.c \

@@ -11,6 +11,7 @@ int main(void)
     suite_add_tcase(suite, analytic_environment_case());
     suite_add_tcase(suite, analytic_camera_case());
     suite_add_tcase(suite, analytic_textures_case());
+    suite_add_tcase(suite, analytic_bumps_case());
     suite_add_tcase(suite, analytic_instances_case());
     return test_run(suite);
 }

@@ -132,6 +132,29 @@ START_TEST(test_sides)
 }
 END_TEST
 
+/* What mirrored lamps send is what of them is seen: the plane gets the irradiance of the side that faces it. */
+START_TEST(test_light_of_mirrored)
+{
+    static const struct {
+        const char *name, *lamp;
+        double irradiance;
+    } LAMPS[] = {
+        {"mirrored disk that shines down", "Translate 0 0 1 Scale -1 1 1 Shape \"disk\" \"float radius\" 0.5", 0.2},
+        {"mirrored disk that shines up",
+         "Translate 0 0 1 Scale -1 1 1 ReverseOrientation Shape \"disk\" \"float radius\" 0.5", 0.0},
+        {"mirrored sphere, turned back",
+         "Translate 0 0 1 Scale 1 1 -1 ReverseOrientation Shape \"sphere\" \"float radius\" .5", 0.25},
+        {"mirrored sphere that shines inwards", "Translate 0 0 1 Scale 1 1 -1 Shape \"sphere\" \"float radius\" .5",
+         0.0},
+    };
+    for (int i = 0; i < 4; ++i) {
+        double got = analytic_mean(
+            4096, 2, ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE "AreaLightSource \"diffuse\" %s", LAMPS[i].lamp);
+        analytic_check(LAMPS[i].name, got, 0.5 * LAMPS[i].irradiance, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
 /* An object's lamp shines from every instance with its radiance, however large. */
 START_TEST(test_lamps_of_instances)
 {
@@ -154,6 +177,7 @@ TCase *analytic_instances_case(void)
     tcase_add_loop_test(tcase, test_instance, 0, (int)(sizeof PLACES / sizeof *PLACES));
     tcase_add_test(tcase, test_definition_state);
     tcase_add_loop_test(tcase, test_sides, 0, SHAPE_KINDS);
+    tcase_add_test(tcase, test_light_of_mirrored);
     tcase_add_test(tcase, test_lamps_of_instances);
     return tcase;
 }

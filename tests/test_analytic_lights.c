@@ -122,6 +122,20 @@ START_TEST(test_power_of_scaled_sphere)
 }
 END_TEST
 
+/* As in pbrt, every triangle of a mesh has the power, and its own radiance. */
+START_TEST(test_power_of_mesh)
+{
+    const double large[3][3] = {{-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}}, small[3][3] = {{1, -1, 1}, {1, 0, 1}, {0, 0, 1}};
+    double expected =
+        10.0 / (2.0 * M_PI) * analytic_polygon(large, 3) + 10.0 / (0.5 * M_PI) * analytic_polygon(small, 3);
+    analytic_check("two triangles of power 10",
+                   plane_under(2048, "AreaLightSource \"diffuse\" \"float power\" 10 ReverseOrientation Shape "
+                                     "\"trianglemesh\" \"point3 P\" [ -1 -1 1  1 -1 1  -1 1 1  1 0 1  0 0 1 ] "
+                                     "\"integer indices\" [ 0 1 2 1 3 4 ]"),
+                   expected * UNIT, ANALYTIC_TOLERANCE);
+}
+END_TEST
+
 START_TEST(test_constant_environment)
 {
     analytic_check("environment, L and scale",
@@ -198,6 +212,7 @@ TCase *analytic_lights_case(void)
     tcase_add_test(tcase, test_distant);
     tcase_add_test(tcase, test_area_scales);
     tcase_add_test(tcase, test_power_of_scaled_sphere);
+    tcase_add_test(tcase, test_power_of_mesh);
     tcase_add_test(tcase, test_constant_environment);
     tcase_add_test(tcase, test_blackbodies);
     return tcase;

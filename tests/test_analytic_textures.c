@@ -1,17 +1,7 @@
-/* Textures, bump and normal maps and alpha as they appear in pictures. The square [0,1]^2 of the plane z = 0 is seen
- * from above, x to the right, y up, by one ray through the middle of every pixel; a distant light from above makes the
- * radiance the reflectance. */
+/* Textures as they appear in pictures: images, mappings, expressions, encodings and alpha. */
 #include "analytic.h"
 #include "png_write.h"
 #include "test_files.h"
-
-#define FROM_ABOVE                                                                                                     \
-    "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"                                             \
-    "PixelFilter \"box\" \"float xradius\" 1e-4 \"float yradius\" 1e-4\n"                                              \
-    "Scale -1 1 1 LookAt 0.5 0.5 5  0.5 0.5 0  0 1 0\n"                                                                \
-    "Camera \"orthographic\" \"float screenwindow\" [ -0.5 0.5 -0.5 0.5 ]\nWorldBegin\n"
-#define OVERHEAD "LightSource \"distant\" \"rgb L\" [ 3.14159265 3.14159265 3.14159265 ] \"point3 to\" [ 0 0 -1 ]\n"
-#define SQUARE "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 1 1 ]\n"
 
 enum { MAP_WIDTH = 4, MAP_HEIGHT = 3 };
 
@@ -24,10 +14,6 @@ static void setup(void)
     for (int i = 0; i < 3 * MAP_WIDTH * MAP_HEIGHT; ++i)
         map[i] = (float)(0.9 * test_random_unit(&state));
     analytic_write_pfm(test_path("map.pfm"), MAP_WIDTH, MAP_HEIGHT, map);
-    float grey[3 * MAP_WIDTH * MAP_HEIGHT];
-    for (int i = 0; i < 3 * MAP_WIDTH * MAP_HEIGHT; ++i)
-        grey[i] = map[i - i % 3];
-    analytic_write_pfm(test_path("grey.pfm"), MAP_WIDTH, MAP_HEIGHT, grey);
 }
 
 static void teardown(void)
@@ -35,16 +21,10 @@ static void teardown(void)
     test_folder_remove();
 }
 
-static double pixel(const RenderedImage *image, int x, int y, int channel)
+/* The map at (u, v). */
+static double bilinear(double u, double v, int c, const char *wrap)
 {
-    return (double)image->rgb[3 * (y * image->width + x) + channel];
-}
-
-/* The middle of pixel (x, y) of n x n in texture coordinates. */
-static void middle(int x, int y, int n, double *u, double *v)
-{
-    *u = (x + 0.5) / n;
-    *v = 1.0 - (y + 0.5) / n;
+    return analytic_bilinear(map, MAP_WIDTH, MAP_HEIGHT, u, v, c, wrap);
 }
 
 /* ---- images -------------------------------------------------------------------------------------------------------- */
@@ -54,38 +34,18 @@ START_TEST(test_orientation)
 {
     RenderedImage image;
     analytic_picture(&image, 1, 2,
-                     FROM_ABOVE OVERHEAD "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" "
-                                         "\"string filter\" \"point\"\n"
-                                         "Material \"diffuse\" \"texture reflectance\" \"t\"\n" SQUARE,
+                     ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
+                     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" "
+                     "\"string filter\" \"point\"\n"
+                     "Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
                      12, 12, test_path("map.pfm"));
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 12; ++x)
             for (int c = 0; c < 3; ++c)
-                TEST_NEAR(pixel(&image, x, y, c), map[3 * (y / 4 * MAP_WIDTH + x / 3) + c], 1e-5);
+                TEST_NEAR(analytic_pixel(&image, x, y, c), map[3 * (y / 4 * MAP_WIDTH + x / 3) + c], 1e-5);
     fixture_destroy(&image);
 }
 END_TEST
-
-static double texel(int x, int y, int c, const char *wrap)
-{
-    bool outside = x < 0 || x >= MAP_WIDTH || y < 0 || y >= MAP_HEIGHT;
-    if (wrap[0] == 'b' && outside)
-        return 0.0;
-    if (wrap[0] == 'c') {
-        x = x < 0 ? 0 : x >= MAP_WIDTH ? MAP_WIDTH - 1 : x;
-        y = y < 0 ? 0 : y >= MAP_HEIGHT ? MAP_HEIGHT - 1 : y;
-    }
-    return (double)map[3 * ((y + 9 * MAP_HEIGHT) % MAP_HEIGHT * MAP_WIDTH + (x + 9 * MAP_WIDTH) % MAP_WIDTH) + c];
-}
-
-/* (u, v) with v upwards. */
-static double bilinear(double u, double v, int c, const char *wrap)
-{
-    double x = u * MAP_WIDTH - 0.5, y = (1.0 - v) * MAP_HEIGHT - 0.5, fx = x - floor(x), fy = y - floor(y);
-    int i = (int)floor(x), j = (int)floor(y);
-    return (1 - fy) * ((1 - fx) * texel(i, j, c, wrap) + fx * texel(i + 1, j, c, wrap)) +
-           fy * ((1 - fx) * texel(i, j + 1, c, wrap) + fx * texel(i + 1, j + 1, c, wrap));
-}
 
 START_TEST(test_bilinear)
 {
@@ -94,16 +54,16 @@ START_TEST(test_bilinear)
     RenderedImage image;
     double u, v;
     analytic_picture(&image, 1, 2,
-                     FROM_ABOVE OVERHEAD
+                     ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string wrap\" \"%s\" "
                      "\"float uscale\" 2.3 \"float vscale\" -1.7 \"float udelta\" -0.4 \"float vdelta\" 1.1\n"
-                     "Material \"diffuse\" \"texture reflectance\" \"t\"\n" SQUARE,
+                     "Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
                      N, N, test_path("map.pfm"), WRAPS[_i]);
     for (int y = 0; y < N; ++y)
         for (int x = 0; x < N; ++x)
             for (int c = 0; c < 3; ++c) {
-                middle(x, y, N, &u, &v);
-                TEST_NEAR(pixel(&image, x, y, c), bilinear(2.3 * u - 0.4, -1.7 * v + 1.1, c, WRAPS[_i]), 5e-5);
+                analytic_middle(x, y, N, &u, &v);
+                TEST_NEAR(analytic_pixel(&image, x, y, c), bilinear(2.3 * u - 0.4, -1.7 * v + 1.1, c, WRAPS[_i]), 5e-5);
             }
     fixture_destroy(&image);
 }
@@ -116,17 +76,17 @@ START_TEST(test_planar)
     RenderedImage image;
     double u, v;
     analytic_picture(&image, 1, 2,
-                     FROM_ABOVE OVERHEAD
+                     ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "AttributeBegin Translate 0.25 0.5 0 Scale 2 4 1\n"
                      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string mapping\" \"planar\" "
                      "\"vector3 v1\" [ 0 3 0 ] \"vector3 v2\" [ 1 0 0 ] \"float udelta\" 0.1 \"float vdelta\" 0.2\n"
-                     "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\"\n" SQUARE,
+                     "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
                      N, N, test_path("map.pfm"));
     for (int y = 0; y < N; ++y)
         for (int x = 0; x < N; ++x) {
-            middle(x, y, N, &u, &v); /* x and y of the world */
+            analytic_middle(x, y, N, &u, &v); /* x and y of the world */
             double s = 0.1 + 3.0 * (v - 0.5) / 4.0, t = 0.2 + (u - 0.25) / 2.0;
-            TEST_NEAR(pixel(&image, x, y, 1), bilinear(s, t, 1, "repeat"), 5e-5);
+            TEST_NEAR(analytic_pixel(&image, x, y, 1), bilinear(s, t, 1, "repeat"), 5e-5);
         }
     fixture_destroy(&image);
 }
@@ -140,7 +100,7 @@ START_TEST(test_expressions)
     double u, v;
     analytic_picture(
         &image, 1, 2,
-        FROM_ABOVE OVERHEAD
+        ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
         "Texture \"image\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"float scale\" 0.6\n"
         "Texture \"negative\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"bool invert\" true\n"
         "Texture \"squares\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 2 "
@@ -148,15 +108,15 @@ START_TEST(test_expressions)
         "Texture \"scaled\" \"spectrum\" \"scale\" \"texture tex\" \"negative\" \"texture scale\" \"squares\"\n"
         "Texture \"mixed\" \"spectrum\" \"mix\" \"texture tex1\" \"image\" \"texture tex2\" \"scaled\" "
         "\"float amount\" 0.3\n"
-        "Material \"diffuse\" \"texture reflectance\" \"mixed\"\n" SQUARE,
+        "Material \"diffuse\" \"texture reflectance\" \"mixed\"\n" ANALYTIC_SQUARE,
         N, N, test_path("map.pfm"), test_path("map.pfm"));
     for (int y = 0; y < N; ++y)
         for (int x = 0; x < N; ++x)
             for (int c = 0; c < 3; ++c) {
-                middle(x, y, N, &u, &v);
+                analytic_middle(x, y, N, &u, &v);
                 double here = bilinear(u, v, c, "repeat");
                 double square = ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0 ? 0.25 : 1.0;
-                TEST_NEAR(pixel(&image, x, y, c), 0.7 * 0.6 * here + 0.3 * (1.0 - here) * square, 5e-5);
+                TEST_NEAR(analytic_pixel(&image, x, y, c), 0.7 * 0.6 * here + 0.3 * (1.0 - here) * square, 5e-5);
             }
     fixture_destroy(&image);
 }
@@ -181,13 +141,14 @@ START_TEST(test_encodings)
     for (int e = 0; e < 3; ++e) {
         RenderedImage image;
         analytic_picture(&image, 1, 2,
-                         FROM_ABOVE OVERHEAD "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" "
-                                             "\"string encoding\" \"%s\" \"string filter\" \"point\"\n"
-                                             "Material \"diffuse\" \"texture reflectance\" \"t\"\n" SQUARE,
+                         ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
+                         "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" "
+                         "\"string encoding\" \"%s\" \"string filter\" \"point\"\n"
+                         "Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
                          N, N, test_path("levels.png"), ENCODINGS[e]);
         for (int i = 0; i < N * N; ++i) {
             double k = i / 255.0, expected = e == 0 ? srgb_decode(k) : e == 1 ? k : pow(k, 1.8);
-            TEST_NEAR(pixel(&image, i % N, i / N, 0), expected, 1e-5);
+            TEST_NEAR(analytic_pixel(&image, i % N, i / N, 0), expected, 1e-5);
         }
         fixture_destroy(&image);
     }
@@ -280,8 +241,8 @@ START_TEST(test_parametrisation)
             continue;
         ++seen;
         for (int c = 0; c < 3; ++c)
-            ck_assert_msg(fabs(pixel(&image, i % N, i / N, c) - bilinear(u, v, c, "repeat")) < 0.03,
-                          "%s at (%g, %g): %g, not %g", name, x, y, pixel(&image, i % N, i / N, c),
+            ck_assert_msg(fabs(analytic_pixel(&image, i % N, i / N, c) - bilinear(u, v, c, "repeat")) < 0.03,
+                          "%s at (%g, %g): %g, not %g", name, x, y, analytic_pixel(&image, i % N, i / N, c),
                           bilinear(u, v, c, "repeat"));
     }
     ck_assert_int_gt(seen, N * N / 4);
@@ -289,98 +250,7 @@ START_TEST(test_parametrisation)
 }
 END_TEST
 
-/* ---- bumps --------------------------------------------------------------------------------------------------------- */
-
-/* A slanting light L = pi from the direction (0.48, 0.6, 0.64). */
-#define SLANTING                                                                                                       \
-    "LightSource \"distant\" \"rgb L\" [ 3.14159265 3.14159265 3.14159265 ] \"point3 from\" [ 0.48 0.6 0.64 ] "        \
-    "\"point3 to\" [ 0 0 0 ]\nMaterial \"diffuse\" \"rgb reflectance\" [ 1 1 1 ] "
-
-static double lit(double x, double y, double z)
-{
-    return fmax(0.0, (0.48 * x + 0.6 * y + 0.64 * z) / sqrt(x * x + y * y + z * z));
-}
-
-/* The height 0.2 map(u, v) over the square: normal (-dh/dx, -dh/dy, 1). Under ReverseOrientation the heights go down,
- * as in pbrt. Differences in double. */
-START_TEST(test_bump)
-{
-    enum { N = 16 };
-    RenderedImage image;
-    double u, v;
-    const double step = 1e-6, sign = _i ? 1.0 : -1.0;
-    analytic_picture(&image, 1, 2,
-                     FROM_ABOVE
-                     "Texture \"grey\" \"float\" \"imagemap\" \"string filename\" \"%s\" \"float scale\" 0.2\n" SLANTING
-                     "\"texture displacement\" \"grey\"\n%s " SQUARE,
-                     N, N, test_path("grey.pfm"), _i ? "ReverseOrientation" : "");
-    for (int y = 0; y < N; ++y)
-        for (int x = 0; x < N; ++x) {
-            middle(x, y, N, &u, &v);
-            double du = 0.1 / step * (bilinear(u + step, v, 0, "repeat") - bilinear(u - step, v, 0, "repeat"));
-            double dv = 0.1 / step * (bilinear(u, v + step, 0, "repeat") - bilinear(u, v - step, 0, "repeat"));
-            TEST_NEAR(pixel(&image, x, y, 0), lit(sign * du, sign * dv, 1.0), 1e-3);
-        }
-    fixture_destroy(&image);
-}
-END_TEST
-
-/* Texels (n + 1) / 2 in the frame of dp/du, n x dp/du and n. */
-START_TEST(test_normal_map)
-{
-    RenderedImage image;
-    float normals[3 * MAP_WIDTH * MAP_HEIGHT];
-    for (int i = 0; i < MAP_WIDTH * MAP_HEIGHT; ++i) {
-        normals[3 * i] = 0.2f + 0.6f * map[3 * i];
-        normals[3 * i + 1] = 0.2f + 0.6f * map[3 * i + 1];
-        normals[3 * i + 2] = 1.0f;
-    }
-    analytic_write_pfm(test_path("normals.pfm"), MAP_WIDTH, MAP_HEIGHT, normals);
-    analytic_picture(&image, 1, 2, FROM_ABOVE SLANTING "\"string normalmap\" \"%s\"\n%s " SQUARE, MAP_WIDTH * 3,
-                     MAP_HEIGHT * 3, test_path("normals.pfm"), _i ? "ReverseOrientation" : "");
-    for (int y = 0; y < MAP_HEIGHT; ++y)
-        for (int x = 0; x < MAP_WIDTH; ++x) {
-            const float *n = normals + 3 * (y * MAP_WIDTH + x);
-            double local[3];
-            for (int c = 0; c < 3; ++c)
-                local[c] = 2.0 * (double)n[c] - 1.0;
-            /* With n = -z the frame is x, -y, -z, and its back is lit. */
-            TEST_NEAR(pixel(&image, 3 * x + 1, 3 * y + 1, 0), lit(_i ? -local[0] : local[0], local[1], local[2]), 1e-4);
-        }
-    fixture_destroy(&image);
-}
-END_TEST
-
 /* ---- alpha --------------------------------------------------------------------------------------------------------- */
-
-/* Rays are let through by a hash of the ray, as in pbrt: the view must be wide enough for rays to differ by more than
- * rounding. */
-#define VEIL_VIEW ANALYTIC_FILM "LookAt 8 1 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 1\nWorldBegin\n"
-#define VEIL "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] "
-
-START_TEST(test_alpha)
-{
-    analytic_check(
-        "lamp behind a veil of alpha 0.3",
-        analytic_mean(4096, 1,
-                      VEIL_VIEW VEIL
-                      "AttributeBegin Translate 0 0 0.5 Shape \"disk\" \"float radius\" 9 \"float alpha\" 0.3 "
-                      "AttributeEnd AreaLightSource \"diffuse\" Shape \"disk\""),
-        0.7, ANALYTIC_TOLERANCE);
-    analytic_check("veil of alpha 0.3 before a distant light",
-                   analytic_mean(4096, 2,
-                                 VEIL_VIEW ANALYTIC_DIFFUSE_PLANE VEIL
-                                 "LightSource \"distant\" \"rgb L\" [ 3.14159265 3.14159265 3.14159265 ] "
-                                 "\"point3 to\" [ 0 0 -1 ] Translate 0 0 2 Shape \"disk\" \"float alpha\" 0.3"),
-                   0.7 * 0.5, ANALYTIC_TOLERANCE);
-    analytic_check("lamp of alpha 0.25",
-                   analytic_mean(4096, 2,
-                                 ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE
-                                 "AreaLightSource \"diffuse\" Translate 0 0 1 ReverseOrientation "
-                                 "Shape \"disk\" \"float radius\" 0.5 \"float alpha\" 0.25"),
-                   0.25 * 0.5 * 0.25 / 1.25, ANALYTIC_TOLERANCE);
-}
-END_TEST
 
 /* Holes where the texture is 0. */
 START_TEST(test_alpha_texture)
@@ -389,7 +259,7 @@ START_TEST(test_alpha_texture)
     RenderedImage image;
     double u, v;
     analytic_picture(&image, 1, 2,
-                     FROM_ABOVE OVERHEAD
+                     ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 2 "
                      "\"float tex1\" 0 \"float tex2\" 1\n"
                      "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
@@ -399,9 +269,9 @@ START_TEST(test_alpha_texture)
                      N, N);
     for (int y = 0; y < N; ++y)
         for (int x = 0; x < N; ++x) {
-            middle(x, y, N, &u, &v);
+            analytic_middle(x, y, N, &u, &v);
             double expected = ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0 ? 0.0 : 1.0;
-            TEST_NEAR(pixel(&image, x, y, 0), expected, 1e-5);
+            TEST_NEAR(analytic_pixel(&image, x, y, 0), expected, 1e-5);
         }
     fixture_destroy(&image);
 }
@@ -418,9 +288,6 @@ TCase *analytic_textures_case(void)
     tcase_add_test(tcase, test_expressions);
     tcase_add_test(tcase, test_encodings);
     tcase_add_loop_test(tcase, test_parametrisation, 0, (int)(sizeof PARAMETRISATIONS / sizeof *PARAMETRISATIONS));
-    tcase_add_loop_test(tcase, test_bump, 0, 2);
-    tcase_add_loop_test(tcase, test_normal_map, 0, 2);
-    tcase_add_test(tcase, test_alpha);
     tcase_add_test(tcase, test_alpha_texture);
     return tcase;
 }
