@@ -5,6 +5,7 @@ TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 
 if HAVE_CHECK
 check_PROGRAMS += \
+	tests/test_analytic \
 	tests/test_bsdf \
 	tests/test_film \
 	tests/test_geometry \
@@ -21,6 +22,7 @@ TESTS += $(check_PROGRAMS)
 endif
 
 EXTRA_DIST += \
+	tests/analytic.h \
 	tests/bsdf_cases.h \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
@@ -35,6 +37,21 @@ EXTRA_DIST += \
 	tests/test_matrix.h \
 	tests/test_util.h \
 	tests/platform_probe.cl
+
+tests_test_analytic_SOURCES = tests/test_analytic.c \
+	tests/analytic_fixture.c \
+	tests/test_analytic_area.c \
+	tests/test_analytic_bumps.c \
+	tests/test_analytic_camera.c \
+	tests/test_analytic_environment.c \
+	tests/test_analytic_glass.c \
+	tests/test_analytic_instances.c \
+	tests/test_analytic_lights.c \
+	tests/test_analytic_opaque.c \
+	tests/test_analytic_textures.c \
+	tests/render_fixture.c
+tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
+tests_test_analytic_LDADD = $(TEST_LIBS)
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
