@@ -39,7 +39,6 @@ EXTRA_DIST += \
 	tests/platform_probe.cl
 
 tests_test_analytic_SOURCES = tests/test_analytic.c \
-	tests/analytic_fixture.c \
 	tests/test_analytic_area.c \
 	tests/test_analytic_bumps.c \
 	tests/test_analytic_camera.c \
@@ -48,8 +47,7 @@ tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/test_analytic_instances.c \
 	tests/test_analytic_lights.c \
 	tests/test_analytic_opaque.c \
-	tests/test_analytic_textures.c \
-	tests/render_fixture.c
+	tests/test_analytic_textures.c
 tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
 tests_test_analytic_LDADD = $(TEST_LIBS)
 
