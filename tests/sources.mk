@@ -5,6 +5,7 @@ TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 
 if HAVE_CHECK
 check_PROGRAMS += \
+	tests/test_analytic \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_film \
@@ -23,6 +24,7 @@ TESTS += $(check_PROGRAMS)
 endif
 
 EXTRA_DIST += \
+	tests/analytic.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
 	tests/geometry_fixture.h \
@@ -39,6 +41,19 @@ EXTRA_DIST += \
 	tests/test_matrix.h \
 	tests/test_util.h \
 	tests/platform_probe.cl
+
+tests_test_analytic_SOURCES = tests/test_analytic.c \
+	tests/test_analytic_area.c \
+	tests/test_analytic_bumps.c \
+	tests/test_analytic_camera.c \
+	tests/test_analytic_environment.c \
+	tests/test_analytic_glass.c \
+	tests/test_analytic_instances.c \
+	tests/test_analytic_lights.c \
+	tests/test_analytic_opaque.c \
+	tests/test_analytic_textures.c
+tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
+tests_test_analytic_LDADD = $(TEST_LIBS)
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
