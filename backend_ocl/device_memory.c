@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Items of a batch when nobody asks for a number. A CPU's caches want it small, a GPU's many lanes want it large. */
-#define BATCH_CPU 16384u
+#define BATCH_CPU 32768u
 #define BATCH_PER_GPU_UNIT 8192u
 #define BATCH_MIN 256u
 #define BATCH_MAX (1u << 26)
