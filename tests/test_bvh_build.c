@@ -122,10 +122,10 @@ static uint census_take(Census *census, uint word)
         uint item = word & BVH_LEAF_FIRST_MASK, count = (word >> BVH_LEAF_COUNT_SHIFT & BVH_LEAF_COUNT_MASK) + 1;
         for (uint i = 0; i < count; ++i, ++census->items) {
             const uint *words = census->bvh->words + (size_t)(item + i) * 4 * BVH_ITEM_QUADS;
-            bool instance = words[7] == BVH_INSTANCE;
+            bool instance = words[13] == BVH_INSTANCE;
             census->instances += instance;
             if (!instance)
-                ++census->seen[words[3]];
+                ++census->seen[words[12]];
         }
         return 0;
     }
