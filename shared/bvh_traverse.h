@@ -50,8 +50,8 @@
 /* A ray as boxes see it. d is scaled by a power of two so that its largest component lies in [1, 2): reciprocals
  * neither overflow nor lose what is left of a very short one. */
 typedef struct BvhRay {
-    float ox, oy, oz;
     float ix, iy, iz; /* 1 / d */
+    float ox, oy, oz; /* -o / d: a plane at p is met at p i + o, one instruction on a device */
     uint nx, ny, nz; /* the quad of a node with the planes that the ray meets first; the others are in quad n ^ 1 */
     float scale; /* t of boxes over t of the ray */
 } BvhRay;
@@ -73,12 +73,12 @@ SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d)
     uint exponent = float_bits(vec3_max_abs(d)) & 0x7f800000u;
     float stretch = bits_float(0x7f000000u - exponent);
     ray.scale = bits_float(exponent != 0u ? exponent : 0x00400000u);
-    ray.ox = o.x;
-    ray.oy = o.y;
-    ray.oz = o.z;
     ray.ix = bvh_reciprocal(d.x * stretch);
     ray.iy = bvh_reciprocal(d.y * stretch);
     ray.iz = bvh_reciprocal(d.z * stretch);
+    ray.ox = -(o.x * ray.ix);
+    ray.oy = -(o.y * ray.iy);
+    ray.oz = -(o.z * ray.iz);
     ray.nx = d.x < 0.0f ? 1u : 0u;
     ray.ny = d.y < 0.0f ? 3u : 2u;
     ray.nz = d.z < 0.0f ? 5u : 4u;
@@ -89,9 +89,12 @@ SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d)
  * two; BVH_MISS where it does not enter it before `limit`. */
 SHARED_FUNCTION Uint4 bvh_node_keys(__global const Float4 *node, const BvhRay *ray, float limit)
 {
-    Float4 near_x = (node[ray->nx] - ray->ox) * ray->ix, far_x = (node[ray->nx ^ 1u] - ray->ox) * ray->ix;
-    Float4 near_y = (node[ray->ny] - ray->oy) * ray->iy, far_y = (node[ray->ny ^ 1u] - ray->oy) * ray->iy;
-    Float4 near_z = (node[ray->nz] - ray->oz) * ray->iz, far_z = (node[ray->nz ^ 1u] - ray->oz) * ray->iz;
+    Float4 near_x = float4_mad(node[ray->nx], ray->ix, ray->ox);
+    Float4 far_x = float4_mad(node[ray->nx ^ 1u], ray->ix, ray->ox);
+    Float4 near_y = float4_mad(node[ray->ny], ray->iy, ray->oy);
+    Float4 far_y = float4_mad(node[ray->ny ^ 1u], ray->iy, ray->oy);
+    Float4 near_z = float4_mad(node[ray->nz], ray->iz, ray->oz);
+    Float4 far_z = float4_mad(node[ray->nz ^ 1u], ray->iz, ray->oz);
     Float4 enter = float4_max(float4_max(near_x, near_y), float4_max(near_z, float4_splat(0.0f)));
     Float4 leave = float4_min(float4_min(far_x, far_y), float4_min(far_z, float4_splat(limit)));
     Uint4 key = (float4_bits(enter) & 0x7ffffffcu) | uint4_make(0u, 1u, 2u, 3u);
