@@ -76,30 +76,31 @@ typedef struct Flattener {
     uint next_node, next_item;
 } Flattener;
 
-static void item_put_vec3(uint *out, Vec3 p)
+static void corner_write(uint *out, Vec3 p)
 {
     out[0] = float_bits(p.x);
-    out[1] = float_bits(p.y);
-    out[2] = float_bits(p.z);
+    out[4] = float_bits(p.y);
+    out[8] = float_bits(p.z);
 }
 
 static void item_write(const Flattener *flattener, uint *out, BvhItem item)
 {
     const SceneView *view = flattener->view;
+    uint *tag = out + 4 * BVH_ITEM_TAG;
     memset(out, 0, ITEM_WORDS * sizeof *out);
-    out[3] = item.id;
+    tag[0] = item.id;
     if (item.instance) {
-        out[0] = flattener->objects[view->instances[item.id].object].root;
-        out[7] = BVH_INSTANCE;
+        tag[1] = BVH_INSTANCE;
+        tag[2] = flattener->objects[view->instances[item.id].object].root;
         return;
     }
     Primitive primitive = view->primitives[item.id];
-    out[7] = primitive.shape_and_kind;
+    tag[1] = primitive.shape_and_kind;
     if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
         return;
-    item_put_vec3(out, view->positions[primitive.a]);
-    item_put_vec3(out + 4, view->positions[primitive.b]);
-    item_put_vec3(out + 8, view->positions[primitive.c]);
+    corner_write(out, view->positions[primitive.a]);
+    corner_write(out + 1, view->positions[primitive.b]);
+    corner_write(out + 2, view->positions[primitive.c]);
 }
 
 static uint leaf_write(Flattener *flattener, const BvhTreeNode *leaf)
