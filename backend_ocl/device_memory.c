@@ -1,8 +1,5 @@
 #include "device_memory.h"
 
-#include "diagnostics.h"
-#include "state.h"
-
 #include <stdio.h>
 #include <string.h>
 
@@ -183,15 +180,16 @@ static bool staging_map(DeviceMemory *memory, BatchMemory *batch, size_t bytes, 
 
 static bool batches_make(DeviceMemory *memory, uint64_t stride, Error *error)
 {
-    uint64_t bytes = stride * memory->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    uint64_t words = stride * memory->words_per_item[BUFFER_SPLATS], bytes = words * sizeof(uint);
+    uint64_t staging = bytes + sizeof(BatchResults);
     for (int i = 0; i < BATCH_SLOTS; ++i) {
         BatchMemory *batch = &memory->batches[i];
-        if (!buffer_make(memory, &batch->frame, CL_MEM_READ_ONLY, sizeof(FrameParams), error))
+        if (!buffer_make(memory, &batch->frame, CL_MEM_READ_ONLY, sizeof(FrameParams), error) ||
+            (bytes > 0 && !buffer_make(memory, &batch->splats, CL_MEM_READ_WRITE, bytes, error)) ||
+            !buffer_make(memory, &batch->staging, CL_MEM_ALLOC_HOST_PTR, staging, error) ||
+            !staging_map(memory, batch, (size_t)staging, error))
             return false;
-        if (bytes > 0 && (!buffer_make(memory, &batch->splats, CL_MEM_READ_WRITE, bytes, error) ||
-                          !buffer_make(memory, &batch->staging, CL_MEM_ALLOC_HOST_PTR, bytes, error) ||
-                          !staging_map(memory, batch, (size_t)bytes, error)))
-            return false;
+        batch->results = (BatchResults *)(batch->host + words);
     }
     return true;
 }

@@ -23,7 +23,7 @@
 #include "primitive.h"
 
 /* Entries of the stack. The build refuses what would need more. */
-#define BVH_STACK 64u
+#define BVH_STACK 96u
 
 #define BVH_NODE_QUADS 8u
 #define BVH_ITEM_QUADS 4u
@@ -103,26 +103,37 @@ SHARED_FUNCTION Uint4 bvh_node_keys(__global const Float4 *node, const BvhRay *r
 
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
-typedef struct BvhStack {
-    uint count;
-    uint word[BVH_STACK];
-    float enter[BVH_STACK]; /* where the ray enters, in t of boxes; 0 for what must be done in any case */
-} BvhStack;
+/* What waits to be done. */
+typedef struct BvhEntry {
+    uint word; /* of a child */
+    float enter; /* where the ray enters it, in t of boxes; 0 for what must be done in any case */
+} BvhEntry;
 
-SHARED_FUNCTION void bvh_push(BvhStack *stack, uint word, float enter)
+/* One traversal under way, but for the stack: an array whose index is known at run time only lies in memory, and what
+ * shares a struct with it would too. */
+typedef struct BvhWalk {
+    BvhRay boxes; /* the ray in the space of `instance` */
+    RayQuery query; /* the same for primitives */
+    uint instance; /* NONE in the world */
+    float limit; /* best.t in t of boxes */
+    Hit best;
+    uint waiting; /* entries of the stack */
+} BvhWalk;
+
+SHARED_FUNCTION void bvh_push(BvhWalk *walk, BvhEntry *stack, uint word, float enter)
 {
-    stack->word[stack->count] = word;
-    stack->enter[stack->count] = enter;
-    ++stack->count;
+    stack[walk->waiting].word = word;
+    stack[walk->waiting].enter = enter;
+    ++walk->waiting;
 }
 
-/* The next child that the ray enters before `limit`. The lowest entry is BVH_EMPTY at 0, which ends every walk. */
-SHARED_FUNCTION uint bvh_pop(BvhStack *stack, float limit)
+/* The next child that the ray enters before the limit. The lowest entry is BVH_EMPTY at 0, which ends every walk. */
+SHARED_FUNCTION uint bvh_pop(BvhWalk *walk, const BvhEntry *stack)
 {
     do
-        --stack->count;
-    while (stack->enter[stack->count] > limit);
-    return stack->word[stack->count];
+        --walk->waiting;
+    while (stack[walk->waiting].enter > walk->limit);
+    return stack[walk->waiting].word;
 }
 
 SHARED_FUNCTION uint uint_lower(uint a, uint b)
@@ -136,11 +147,11 @@ SHARED_FUNCTION uint uint_upper(uint a, uint b)
 }
 
 /* Meets the node's children: the nearest is returned, the others wait on the stack, the next nearest on top. */
-SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, const BvhRay *ray, float limit, BvhStack *stack)
+SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, BvhWalk *walk, BvhEntry *stack)
 {
     __global const Float4 *quads = bvh + node * BVH_NODE_QUADS;
     __global const uint *children = (__global const uint *)(quads + 6);
-    Uint4 keys = bvh_node_keys(quads, ray, limit);
+    Uint4 keys = bvh_node_keys(quads, &walk->boxes, walk->limit);
     uint a = uint_lower(lane_of(keys, 0), lane_of(keys, 1)), b = uint_upper(lane_of(keys, 0), lane_of(keys, 1));
     uint c = uint_lower(lane_of(keys, 2), lane_of(keys, 3)), d = uint_upper(lane_of(keys, 2), lane_of(keys, 3));
     uint first = uint_lower(a, c), fourth = uint_upper(b, d);
@@ -148,25 +159,15 @@ SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, const Bv
     b = uint_lower(b, d);
     uint second = uint_lower(a, b), third = uint_upper(a, b);
     if (first == BVH_MISS)
-        return bvh_pop(stack, limit);
+        return bvh_pop(walk, stack);
     if (fourth != BVH_MISS)
-        bvh_push(stack, children[fourth & 3u], bits_float(fourth));
+        bvh_push(walk, stack, children[fourth & 3u], bits_float(fourth));
     if (third != BVH_MISS)
-        bvh_push(stack, children[third & 3u], bits_float(third));
+        bvh_push(walk, stack, children[third & 3u], bits_float(third));
     if (second != BVH_MISS)
-        bvh_push(stack, children[second & 3u], bits_float(second));
+        bvh_push(walk, stack, children[second & 3u], bits_float(second));
     return children[first & 3u];
 }
-
-/* One traversal under way. */
-typedef struct BvhWalk {
-    BvhRay boxes; /* the ray in the space of `instance` */
-    RayQuery query; /* the same for primitives */
-    uint instance; /* NONE in the world */
-    float limit; /* best.t in t of boxes */
-    Hit best;
-    BvhStack stack;
-} BvhWalk;
 
 SHARED_FUNCTION void bvh_walk_space(BvhWalk *walk, RayQuery query, uint instance)
 {
@@ -232,20 +233,21 @@ SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float
 
 /* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done after
  * it. False when the ray cannot be traced there. */
-SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, uint id, uint rest)
+SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, BvhEntry *stack, uint id, uint rest)
 {
     RayQuery query = ray_query_transform(scene->instances[id].object_from_world, &walk->query);
     if (!ray_traceable(query.o, query.d))
         return false;
     if (rest != BVH_EMPTY)
-        bvh_push(&walk->stack, rest, 0.0f);
-    bvh_push(&walk->stack, BVH_RETURN, 0.0f);
+        bvh_push(walk, stack, rest, 0.0f);
+    bvh_push(walk, stack, BVH_RETURN, 0.0f);
     bvh_walk_space(walk, query, id);
     return true;
 }
 
 /* Asks the items of a leaf. Returns the word to go on with; BVH_EMPTY when `any` hit was asked for and is found. */
-SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh, uint word, bool any, BvhWalk *walk)
+SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh, uint word, bool any, BvhWalk *walk,
+                              BvhEntry *stack)
 {
     uint item = word & BVH_LEAF_FIRST_MASK, end = item + (word >> BVH_LEAF_COUNT_SHIFT & BVH_LEAF_COUNT_MASK) + 1u;
     for (; item < end; ++item) {
@@ -254,7 +256,7 @@ SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh
         if (SCENE_HAS(scene, FEATURE_INSTANCE) && tag[1] == BVH_INSTANCE) {
             uint left = end - item - 1u;
             uint rest = left == 0u ? BVH_EMPTY : BVH_LEAF | (left - 1u) << BVH_LEAF_COUNT_SHIFT | (item + 1u);
-            if (bvh_instance_enter(scene, walk, tag[0], rest))
+            if (bvh_instance_enter(scene, walk, stack, tag[0], rest))
                 return tag[2];
             continue;
         }
@@ -269,7 +271,7 @@ SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh
         if (hit_improve(&walk->best, hit, walk->instance, id))
             walk->limit = walk->best.t * walk->boxes.scale;
     }
-    return bvh_pop(&walk->stack, walk->limit);
+    return bvh_pop(walk, stack);
 }
 
 /* The closest hit, or when `any` is asked for, some primitive that lies within the ray. */
@@ -277,21 +279,22 @@ SHARED_FUNCTION Hit bvh_walk(const SceneView *scene, __global const uint *words,
 {
     __global const Float4 *bvh = (__global const Float4 *)words;
     BvhWalk walk;
+    BvhEntry stack[BVH_STACK];
     walk.best = hit_none(ray.t_max);
     if (!ray_traceable(ray.o, ray.d))
         return walk.best;
-    walk.stack.count = 0u;
-    bvh_push(&walk.stack, BVH_EMPTY, 0.0f);
+    walk.waiting = 0u;
+    bvh_push(&walk, stack, BVH_EMPTY, 0.0f);
     bvh_walk_space(&walk, ray_query(ray), NONE);
     uint word = words[BVH_ROOT];
     while (word != BVH_EMPTY) {
         while ((word & BVH_LEAF) == 0u)
-            word = bvh_descend(bvh, word, &walk.boxes, walk.limit, &walk.stack);
+            word = bvh_descend(bvh, word, &walk, stack);
         if (SCENE_HAS(scene, FEATURE_INSTANCE) && word == BVH_RETURN) {
             bvh_walk_space(&walk, ray_query(ray), NONE);
-            word = bvh_pop(&walk.stack, walk.limit);
+            word = bvh_pop(&walk, stack);
         } else if (word != BVH_EMPTY)
-            word = bvh_leaf(scene, bvh, word, any, &walk);
+            word = bvh_leaf(scene, bvh, word, any, &walk, stack);
     }
     return walk.best;
 }

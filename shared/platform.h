@@ -75,10 +75,10 @@ SHARED_FUNCTION float bits_float(uint bits)
     return x;
 }
 
-/* Four lanes at once, for boxes: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and
- * the operators of integers work lane by lane, a scalar beside them counts for every lane. The bits of
- * float4_mad may differ from device to device, those of float4_min and float4_max where they get a NaN or zeros of both
- * signs: boxes alone may use them. */
+/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the operators
+ * of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad differ from
+ * device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use them, which
+ * decide no bit of a result. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 typedef uint Uint4 __attribute__((vector_size(16), may_alias));
 #define lane_of(v, i) ((v)[i])

@@ -147,7 +147,7 @@ static void walks_compare(const BvhCase *entry, bool specialised)
 }
 
 /* Building a program takes longer than running it; between them these need every branch of the kernels. */
-static const char *const CASES[] = {"huge", "coplanar", "curved", "alpha", "instances"};
+static const char *const CASES[] = {"huge", "coplanar", "instances"};
 #define CASE_COUNT ((int)(sizeof CASES / sizeof CASES[0]))
 
 static const BvhCase *case_named(const char *name)

@@ -50,41 +50,109 @@ static bool device_promises(void)
 /* Every material and kind of light that the scenes of the tree leave out, lens and other cameras. */
 #define SPHERE_AT(x, y) "AttributeBegin Translate " #x " " #y " 0 Shape \"sphere\" \"float radius\" 0.45 AttributeEnd\n"
 static const char
-    MATERIALS[] = "LookAt 0 1 -5  0 0 0  0 1 0\n"
-                  "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\n"
-                  "PixelFilter \"mitchell\"\n"
-                  "Camera \"perspective\" \"float fov\" 45 \"float lensradius\" 0.05 \"float focaldistance\" "
-                  "5\nWorldBegin\n"
-                  "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n"
-                  "LightSource \"distant\" \"rgb L\" [ 1 0.9 0.8 ] \"point3 from\" [ 1 2 -1 ] \"point3 to\" [ 0 0 0 ]\n"
-                  "LightSource \"spot\" \"rgb I\" [ 9 9 9 ] \"point3 from\" [ 0 3 -2 ] \"point3 to\" [ 0 0 0 ]\n"
-                  "Texture \"squares\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ 0.1 0.2 0.3 ] \"rgb tex2\" [ 0.8 "
-                  "0.7 0.6 ]\n"
-                  "Texture \"bumps\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 0.02\n"
-                  "Material \"diffuse\" \"texture reflectance\" \"squares\" \"texture displacement\" "
-                  "\"bumps\"\n" SPHERE_AT(-1.5, 0.5) "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.7 ] "
-                                                     "\"float uroughness\" 0.3 \"float vroughness\" 0.1\n" SPHERE_AT(-0.5, 0.5) "Material \"dielectric\" \"float eta\" 1.5\n" SPHERE_AT(0.5, 0.5) "Material \"dielectric\" \"float eta\" 1.4 \"float roughness\" 0.2\n" SPHERE_AT(1.5, 0.5) "Material \"thindielectric\"\n" SPHERE_AT(
-                                                         -1.5, -0.5) "Material \"coateddiffuse\" \"rgb reflectance\" [ "
-                                                                     "0.2 0.5 0.3 ] \"float roughness\" "
-                                                                     "0.1\n" SPHERE_AT(-0.5, -0.5) "Material "
-                                                                                                   "\"diffusetransmissi"
-                                                                                                   "on\" \"rgb "
-                                                                                                   "reflectance\" [ "
-                                                                                                   "0.3 0.3 0.3 ] "
-                                                                                                   "\"rgb "
-                                                                                                   "transmittance\" [ "
-                                                                                                   "0.4 0.3 0.2 "
-                                                                                                   "]\n" SPHERE_AT(0.5,
-                                                                                                                   -0.5) "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0.9 0.1 0.1 ]\n"
-                                                                                                                         "MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0\n"
-                                                                                                                         "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.3\n" SPHERE_AT(
-                                                                                                                             1.5,
-                                                                                                                             -0.5) "Texture \"holes\" \"float\" \"checkerboard\" \"float tex1\" 1 \"float tex2\" 0.4\n"
-                                                                                                                                   "Material \"diffuse\"\n"
-                                                                                                                                   "Shape \"bilinearmesh\" \"point3 P\" [ -3 -1 -3  3 -1 -3  -3 -1 3  3 -1 3 ] \"texture alpha\" \"holes\"\n"
-                                                                                                                                   "AreaLightSource \"diffuse\" \"rgb L\" [ 4 4 4 ] \"bool twosided\" true\n"
-                                                                                                                                   "Shape \"trianglemesh\" \"point3 P\" [ -1 2 0  1 2 0  0 2 1 ]\n"
-                                                                                                                                   "Shape \"disk\" \"float radius\" 0.2 \"float height\" -1\n";
+    MATERIALS[] =
+        "LookAt 0 1 -5  0 0 0  0 1 0\n"
+        "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\n"
+        "PixelFilter \"mitchell\"\n"
+        "Camera \"perspective\" \"float fov\" 45 \"float lensradius\" 0.05 \"float focaldistance\" "
+        "5\nWorldBegin\n"
+        "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n"
+        "LightSource \"distant\" \"rgb L\" [ 1 0.9 0.8 ] \"point3 from\" [ 1 2 -1 ] \"point3 to\" [ 0 0 0 ]\n"
+        "LightSource \"spot\" \"rgb I\" [ 9 9 9 ] \"point3 from\" [ 0 3 -2 ] \"point3 to\" [ 0 0 0 ]\n"
+        "Texture \"squares\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ 0.1 0.2 0.3 ] \"rgb tex2\" [ 0.8 "
+        "0.7 0.6 ]\n"
+        "Texture \"bumps\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 0.02\n"
+        "Material \"diffuse\" \"texture reflectance\" \"squares\" \"texture displacement\" "
+        "\"bumps\"\n" SPHERE_AT(-1.5, 0.5) "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.7 ] "
+                                           "\"float uroughness\" 0.3 \"float vroughness\" 0.1\n" SPHERE_AT(-0.5, 0.5) "Material \"dielectric\" \"float eta\" 1.5\n" SPHERE_AT(
+                                               0.5,
+                                               0.5) "Material \"dielectric\" \"float eta\" 1.4 \"float "
+                                                    "roughness\" 0.2\n" SPHERE_AT(
+                                                        1.5,
+                                                        0.5) "Material "
+                                                             "\"thindielectric\""
+                                                             "\n" SPHERE_AT(
+                                                                 -1.5,
+                                                                 -0.5) "Mater"
+                                                                       "ial "
+                                                                       "\"coa"
+                                                                       "teddi"
+                                                                       "ffuse"
+                                                                       "\" "
+                                                                       "\"rgb"
+                                                                       " refl"
+                                                                       "ectan"
+                                                                       "ce\" "
+                                                                       "[ "
+                                                                       "0.2 "
+                                                                       "0.5 "
+                                                                       "0.3 "
+                                                                       "] "
+                                                                       "\"flo"
+                                                                       "at "
+                                                                       "rough"
+                                                                       "ness"
+                                                                       "\" "
+                                                                       "0."
+                                                                       "1"
+                                                                       "\n" SPHERE_AT(
+                                                                           -0.5,
+                                                                           -0.5) "Material "
+                                                                                 "\"diffusetransmissi"
+                                                                                 "on\" \"rgb "
+                                                                                 "reflectance\" [ "
+                                                                                 "0.3 0.3 0.3 ] "
+                                                                                 "\"rgb "
+                                                                                 "transmittance\" [ "
+                                                                                 "0.4 0.3 0.2 "
+                                                                                 "]\n" SPHERE_AT(
+                                                                                     0.5,
+                                                                                     -0.5) "MakeNamedMaterial \"a\" "
+                                                                                           "\"string type\" "
+                                                                                           "\"diffuse\" \"rgb "
+                                                                                           "reflectance\" [ 0.9 0.1 "
+                                                                                           "0.1 ]\n"
+                                                                                           "MakeNamedMaterial \"b\" "
+                                                                                           "\"string type\" "
+                                                                                           "\"conductor\" \"rgb "
+                                                                                           "reflectance\" [ 1 1 1 ] "
+                                                                                           "\"float roughness\" 0\n"
+                                                                                           "Material \"mix\" \"string "
+                                                                                           "materials\" [ \"a\" \"b\" "
+                                                                                           "] \"float amount\" "
+                                                                                           "0.3\n" SPHERE_AT(
+                                                                                               1.5,
+                                                                                               -0.5) "Texture "
+                                                                                                     "\"holes\" "
+                                                                                                     "\"float\" "
+                                                                                                     "\"checkerboard\" "
+                                                                                                     "\"float tex1\" 1 "
+                                                                                                     "\"float tex2\" "
+                                                                                                     "0.4\n"
+                                                                                                     "Material "
+                                                                                                     "\"diffuse\"\n"
+                                                                                                     "Shape "
+                                                                                                     "\"bilinearmesh\" "
+                                                                                                     "\"point3 P\" [ "
+                                                                                                     "-3 -1 -3  3 -1 "
+                                                                                                     "-3  -3 -1 3  3 "
+                                                                                                     "-1 3 ] \"texture "
+                                                                                                     "alpha\" "
+                                                                                                     "\"holes\"\n"
+                                                                                                     "AreaLightSource "
+                                                                                                     "\"diffuse\" "
+                                                                                                     "\"rgb L\" [ 4 4 "
+                                                                                                     "4 ] \"bool "
+                                                                                                     "twosided\" true\n"
+                                                                                                     "Shape "
+                                                                                                     "\"trianglemesh\" "
+                                                                                                     "\"point3 P\" [ "
+                                                                                                     "-1 2 0  1 2 0  0 "
+                                                                                                     "2 1 ]\n"
+                                                                                                     "Shape \"disk\" "
+                                                                                                     "\"float radius\" "
+                                                                                                     "0.2 \"float "
+                                                                                                     "height\" -1\n";
 
 START_TEST(test_bits_of_shapes)
 {
@@ -101,18 +169,7 @@ START_TEST(test_bits_of_materials)
 }
 END_TEST
 
-/* With instances, images, normals. */
-static const char *const TREE_SCENES[] = {"cornell.pbrt", "showcase.pbrt"};
-
-START_TEST(test_bits_of_tree_scenes)
-{
-    char path[1200];
-    snprintf(path, sizeof path, "%s/scenes/%s", test_source_folder(), TREE_SCENES[_i]);
-    if (device_promises())
-        backends_agree(path, (RenderSetup){.path = path, .width = 40, .height = 30, .samples = 4, .seed = 5});
-}
-END_TEST
-
+/* The scenes of the tree are compared in test_cli.sh. */
 static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
                                             "coffee/gray.pbrt"};
 
@@ -152,7 +209,6 @@ TCase *opencl_bits_tests(void)
     tcase_set_timeout(bits, 120); /* the first time, kernels are built */
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
-    tcase_add_loop_test(bits, test_bits_of_tree_scenes, 0, 2);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;
