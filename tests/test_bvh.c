@@ -44,6 +44,7 @@ static void walk_state_init(WalkState *state, const Comparison *comparison)
     memset(state, 0, sizeof *state);
     state->frame = *scene->frame;
     state->frame.stride = BLOCK;
+    state->frame.item_count = BLOCK;
     for (int i = 0; i < BUFFER_COUNT; ++i)
         state->buffers[i] = WALK_BUFFER_WORDS[i] > 0 ? calloc(WALK_BUFFER_WORDS[i] * BLOCK, sizeof(uint)) : NULL;
     state->buffers[BUFFER_FRAME] = &state->frame;

@@ -70,6 +70,7 @@ static bool twin_open(Twin *twin, const BvhCase *entry, bool specialised)
     ck_assert_msg(bvh_build(scene, &twin->bvh, &error), "%s", error.message);
     twin->frame = *scene->frame;
     twin->frame.stride = STRIDE;
+    twin->frame.item_count = WALKS;
     twin_buffer(twin, BUFFER_FRAME, &twin->frame, sizeof twin->frame / sizeof(uint));
     twin_buffer(twin, BUFFER_GEOMETRY, scene->geometry, scene->geometry_words);
     twin_buffer(twin, BUFFER_TABLES, scene->tables, scene->tables_words);
