@@ -159,7 +159,7 @@ static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
         return trace_device(bench, shadow);
     double begin = seconds_now();
     if (path == PATH_C)
-        kernel_run(shadow ? KERNEL_trace_shadow : KERNEL_trace_closest, bench->buffers, ITEMS);
+        kernel_run(shadow ? KERNEL_trace_shadow : KERNEL_trace_closest, bench->buffers, NULL, ITEMS);
     else if (shadow)
         *traced = rays_embree_trace_shadow(bench->rays, bench->buffers[BUFFER_SHADOWS], ITEMS, STRIDE);
     else
@@ -200,14 +200,14 @@ static void scene_bench(const char *shared, const char *path)
     Bench bench = {.probe = NULL};
     bench_open(&bench, path);
     device_open(&bench, shared);
-    kernel_run(KERNEL_pt_start_paths, bench.buffers, ITEMS);
+    kernel_run(KERNEL_pt_start_paths, bench.buffers, NULL, ITEMS);
     for (uint depth = 1; depth <= MAX_DEPTH; ++depth) {
         trace_step(&bench, false);
-        kernel_run(KERNEL_pt_shade_hits, bench.buffers, ITEMS);
-        kernel_run(KERNEL_pt_sample_lights, bench.buffers, ITEMS);
+        kernel_run(KERNEL_pt_shade_hits, bench.buffers, NULL, ITEMS);
+        kernel_run(KERNEL_pt_sample_lights, bench.buffers, NULL, ITEMS);
         trace_step(&bench, true);
-        kernel_run(KERNEL_pt_add_lights, bench.buffers, ITEMS);
-        kernel_run(KERNEL_pt_extend_paths, bench.buffers, ITEMS);
+        kernel_run(KERNEL_pt_add_lights, bench.buffers, NULL, ITEMS);
+        kernel_run(KERNEL_pt_extend_paths, bench.buffers, NULL, ITEMS);
     }
     printf("# %s: %u items, %u nodes, depth %u, stack %u, %.1f MB, built in %.3f s; %u words differ\n", path,
            bench.bvh.item_count, bench.bvh.node_count, bench.bvh.max_depth, bench.bvh.stack,

@@ -53,6 +53,8 @@ EXTRA_DIST += \
 	tests/platform_probe.cl
 
 tests_test_analytic_SOURCES = tests/test_analytic.c \
+	tests/analytic_fixture.c \
+	tests/render_fixture.c \
 	tests/test_analytic_area.c \
 	tests/test_analytic_bumps.c \
 	tests/test_analytic_camera.c \

@@ -65,7 +65,7 @@ static void closest_compare(Comparison *comparison, WalkState *state)
 {
     uint *hits = state->buffers[BUFFER_HITS];
     memcpy(state->hits, hits, sizeof state->hits);
-    kernel_run(KERNEL_trace_closest, state->buffers, BLOCK);
+    kernel_run(KERNEL_trace_closest, state->buffers, NULL, BLOCK);
     atomic_fetch_add(&comparison->traced, rays_embree_trace_closest(comparison->rays, state->buffers[BUFFER_RAYS],
                                                                     state->hits, BLOCK, BLOCK));
     uint differ = 0, met = 0;
@@ -97,7 +97,7 @@ static void shadows_compare(Comparison *comparison, WalkState *state)
 {
     uint *shadows = state->buffers[BUFFER_SHADOWS];
     memcpy(state->shadows, shadows, sizeof state->shadows);
-    kernel_run(KERNEL_trace_shadow, state->buffers, BLOCK);
+    kernel_run(KERNEL_trace_shadow, state->buffers, NULL, BLOCK);
     rays_embree_trace_shadow(comparison->rays, state->shadows, BLOCK, BLOCK);
     uint differ = 0, occluded = 0;
     for (uint t = 0; t < BLOCK; ++t) {
@@ -121,10 +121,10 @@ static void *compare_thread(void *argument)
         if (block >= comparison->blocks)
             break;
         state->frame.first_item = block * BLOCK;
-        kernel_run(KERNEL_walk_start, state->buffers, BLOCK);
+        kernel_run(KERNEL_walk_start, state->buffers, NULL, BLOCK);
         for (int bounce = 0; bounce < BOUNCES; ++bounce) {
             closest_compare(comparison, state);
-            kernel_run(KERNEL_walk_extend, state->buffers, BLOCK);
+            kernel_run(KERNEL_walk_extend, state->buffers, NULL, BLOCK);
             if (bounce % 4 == 0)
                 shadows_make(state);
             if (bounce % 2 == 0)

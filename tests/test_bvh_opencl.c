@@ -109,7 +109,7 @@ static uint twin_trace(Twin *twin, unsigned kernel, const char *name, const Buff
     ck_assert(opencl_buffer_write(twin->probe, twin->device[out], ours, twin->words[out]));
     ck_assert(opencl_probe_launch(twin->probe, name, arguments, count, WALKS, &seconds));
     ck_assert(opencl_buffer_read(twin->probe, twin->device[out], theirs, twin->words[out]));
-    kernel_run(kernel, twin->buffers, WALKS);
+    kernel_run(kernel, twin->buffers, NULL, WALKS);
     for (size_t i = 0; i < twin->words[out]; ++i)
         differ += ours[i] != theirs[i];
     free(theirs);
@@ -128,14 +128,14 @@ static void walks_compare(const BvhCase *entry, bool specialised)
     Twin twin;
     uint hits = 0, shadows = 0, met = 0;
     if (twin_open(&twin, entry, specialised)) {
-        kernel_run(KERNEL_walk_start, twin.buffers, WALKS);
+        kernel_run(KERNEL_walk_start, twin.buffers, NULL, WALKS);
         for (uint bounce = 0; bounce < BOUNCES; ++bounce) {
             if (bounce > 0)
                 rays_blank(&twin, BUFFER_RAYS, bounce);
             hits += twin_trace(&twin, KERNEL_trace_closest, "trace_closest", CLOSEST, 7, BUFFER_RAYS, BUFFER_HITS);
             for (uint t = 0; t < WALKS; ++t)
                 met += state_load(twin.buffers[BUFFER_HITS], STRIDE, HIT_PRIMITIVE, t) != NONE;
-            kernel_run(KERNEL_walk_extend, twin.buffers, WALKS);
+            kernel_run(KERNEL_walk_extend, twin.buffers, NULL, WALKS);
             rays_blank(&twin, BUFFER_SHADOWS, bounce);
             shadows +=
                 twin_trace(&twin, KERNEL_trace_shadow, "trace_shadow", SHADOW, 6, BUFFER_SHADOWS, BUFFER_SHADOWS);
