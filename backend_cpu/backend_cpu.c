@@ -38,7 +38,6 @@ typedef struct Worker {
     size_t buffer_words[BUFFER_COUNT];
     uint64_t diagnostics[DIAGNOSTIC_COUNT];
     uint64_t closest_rays, shadow_rays, ray_nanoseconds;
-    uint all[CHUNK_ITEMS]; /* 0, 1, 2 ... */
     uint live[CHUNK_ITEMS]; /* items with a ray in the latest closest-hit step */
     uint live_count;
     char padding[64]; /* no two workers' counters on a cache line */
@@ -150,7 +149,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
     const Step *step = &job->list->steps[i];
     switch (step->kind) {
     case STEP_KERNEL:
-        kernel_run(step->kernel, arguments, step->live_only ? worker->live : worker->all,
+        kernel_run(step->kernel, arguments, step->live_only ? worker->live : NULL,
                    step->live_only ? worker->live_count : count);
         break;
     case STEP_TRACE_CLOSEST:
@@ -330,8 +329,6 @@ static bool workers_start(Backend *backend, uint count, Error *error)
         return error_memory(error, count * sizeof *backend->workers, "threads");
     for (uint i = 0; i < count; ++i) {
         backend->workers[i].backend = backend;
-        for (uint t = 0; t < CHUNK_ITEMS; ++t)
-            backend->workers[i].all[t] = t;
         if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
             error_set(error, "thread %u of %u cannot be started", i + 1, count);
             return error_fix(error, "ask for fewer with --threads");

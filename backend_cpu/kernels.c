@@ -26,7 +26,7 @@
     static void run_##name(void *const *buffers, const uint *items, uint count)                                        \
     {                                                                                                                  \
         for (uint i = 0; i < count; ++i) {                                                                             \
-            platform_item = items[i];                                                                                  \
+            platform_item = items ? items[i] : i;                                                                      \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \
         }                                                                                                              \
     }

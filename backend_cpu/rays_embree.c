@@ -143,10 +143,8 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
     const Instance *instance = &rays->view.instances[args->primID];
     const ObjectRays *object = &rays->objects[instance->object];
     Box box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    if (object->scene) {
-        Box inner = box_inflate(object->box, object->margin);
-        box = box_inflate(box_transform(&inner, instance->world_from_object), rays->objects[0].margin);
-    }
+    if (object->scene)
+        box = instance_box(instance, object->box, object->margin, rays->objects[0].margin);
     *args->bounds_o = embree_bounds(box);
 }
 
@@ -226,16 +224,16 @@ static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *
     rtcReleaseGeometry(geometry);
 }
 
-/* The largest coordinate that a ray's origin or the object's geometry takes in the object's space. */
-static float object_reach(const RaysEmbree *rays, size_t object)
+static void margins_set(RaysEmbree *rays)
 {
     float world = rays->view.frame->ray_epsilon_scale;
-    float reach = world;
-    for (size_t i = 0; object > 0 && i < rays->instance_count; ++i)
-        if (rays->view.instances[i].object == object)
-            reach = float_max(reach, vec3_max_abs(affine_magnitude(rays->view.instances[i].object_from_world,
-                                                                   vec3(world, world, world))));
-    return reach;
+    for (size_t i = 0; i < rays->object_count; ++i)
+        rays->objects[i].margin = box_margin(world);
+    for (size_t i = 0; i < rays->instance_count; ++i) {
+        const Instance *instance = &rays->view.instances[i];
+        float *margin = &rays->objects[instance->object].margin;
+        *margin = float_max(*margin, box_margin(instance_reach(instance, world)));
+    }
 }
 
 /* Splits the object's primitives into triangles, which are grouped, and others. */
@@ -270,7 +268,6 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     ObjectRays *object = &rays->objects[index];
     uint instances = index == 0 ? (uint)rays->instance_count : 0u;
     object->rays = rays;
-    object->margin = box_margin(object_reach(rays, index));
     if (!object_sort(object, rays->view.objects[index], error))
         return false;
     if (object->cluster_count == 0 && object->other_count == 0 && instances == 0)
@@ -302,6 +299,7 @@ static bool rays_build(RaysEmbree *rays, int threads, Error *error)
     rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);
     if (!rays->objects)
         return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
+    margins_set(rays);
     /* The world last: its instances need their objects' bounds. */
     for (size_t i = rays->object_count; i-- > 0;)
         if (!object_build(rays, i, error))

@@ -132,8 +132,8 @@ static bool trace_closest(Launch *launch)
     if (launch->turn + 1 >= launcher->first_check &&
         !check(launch,
                clEnqueueReadBuffer(launcher->compute, launcher->memory->state[BUFFER_COUNTS], CL_FALSE,
-                                   COUNT_CLOSEST * sizeof(uint), sizeof(uint), &launch->batch->live[launch->turn % 2],
-                                   0, NULL, &launch->counted),
+                                   COUNT_CLOSEST * sizeof(uint), sizeof(uint),
+                                   &launch->batch->memory->results->live[launch->turn % 2], 0, NULL, &launch->counted),
                "reading the number of rays"))
         return false;
     return kernel_enqueue(launch, KERNEL_trace_closest, items, true);
@@ -156,7 +156,8 @@ static bool turn_was_idle(Launch *launch, bool *idle)
         !check(launch, clWaitForEvents(1, &launch->counted), "tracing rays"))
         return false;
     /* The queue is in order: the number of the turn before has been read as well. */
-    *idle = launch->batch->live[0] == launch->batch->live[1];
+    const uint *live = launch->batch->memory->results->live;
+    *idle = live[0] == live[1];
     if (*idle)
         launch->idle_turn = launch->turn;
     return true;
@@ -203,15 +204,16 @@ static bool results_read(Launch *launch)
     Launcher *launcher = launch->launcher;
     const DeviceMemory *memory = launcher->memory;
     Batch *batch = launch->batch;
+    BatchResults *results = batch->memory->results;
     cl_event computed = NULL;
     size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
     bool done = check(launch,
                       clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_DIAGNOSTICS], CL_FALSE, 0,
-                                          sizeof batch->diagnostics, batch->diagnostics, 0, NULL, NULL),
+                                          sizeof results->diagnostics, results->diagnostics, 0, NULL, NULL),
                       "reading counters") &&
                 check(launch,
                       clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_COUNTS], CL_FALSE, 0,
-                                          sizeof batch->counts, batch->counts, 0, NULL, &computed),
+                                          sizeof results->counts, results->counts, 0, NULL, &computed),
                       "reading counters") &&
                 check(launch, clFlush(launcher->compute), "starting commands");
     if (done && bytes > 0)
@@ -220,8 +222,10 @@ static bool results_read(Launch *launch)
                                          1, &computed, &batch->copied),
                      "copying splats") &&
                check(launch, clFlush(launcher->copy), "starting copies");
-    else if (done)
-        done = check(launch, clRetainEvent(computed), "waiting"), batch->copied = computed;
+    else if (done) {
+        batch->copied = computed;
+        return true;
+    }
     if (computed)
         clReleaseEvent(computed);
     return done;

@@ -6,8 +6,6 @@
 #include "program.h"
 #include "timeline.h"
 
-#include "state.h"
-
 /* A command whose time counts. */
 typedef struct BatchEvent {
     cl_event event;
@@ -19,9 +17,6 @@ typedef struct Batch {
     BatchMemory *memory;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the batch */
     uint64_t number; /* since the backend was opened */
-    uint live[2]; /* closest-hit rays up to the latest odd and even turn, as they are read back */
-    uint counts[COUNT_WORDS]; /* read back at its end */
-    uint diagnostics[DIAGNOSTIC_COUNT];
     BatchEvent *events;
     size_t event_count, event_capacity;
     cl_event copied; /* its splats are in memory->host */

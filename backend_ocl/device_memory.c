@@ -1,13 +1,10 @@
 #include "device_memory.h"
 
-#include "diagnostics.h"
-#include "state.h"
-
 #include <stdio.h>
 #include <string.h>
 
 /* Items of a batch when nobody asks for a number. A CPU's caches want it small, a GPU's many lanes want it large. */
-#define BATCH_CPU 16384u
+#define BATCH_CPU 32768u
 #define BATCH_PER_GPU_UNIT 8192u
 #define BATCH_MIN 256u
 #define BATCH_MAX (1u << 26)
@@ -183,15 +180,16 @@ static bool staging_map(DeviceMemory *memory, BatchMemory *batch, size_t bytes, 
 
 static bool batches_make(DeviceMemory *memory, uint64_t stride, Error *error)
 {
-    uint64_t bytes = stride * memory->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    uint64_t words = stride * memory->words_per_item[BUFFER_SPLATS], bytes = words * sizeof(uint);
+    uint64_t staging = bytes + sizeof(BatchResults);
     for (int i = 0; i < BATCH_SLOTS; ++i) {
         BatchMemory *batch = &memory->batches[i];
-        if (!buffer_make(memory, &batch->frame, CL_MEM_READ_ONLY, sizeof(FrameParams), error))
+        if (!buffer_make(memory, &batch->frame, CL_MEM_READ_ONLY, sizeof(FrameParams), error) ||
+            (bytes > 0 && !buffer_make(memory, &batch->splats, CL_MEM_READ_WRITE, bytes, error)) ||
+            !buffer_make(memory, &batch->staging, CL_MEM_ALLOC_HOST_PTR, staging, error) ||
+            !staging_map(memory, batch, (size_t)staging, error))
             return false;
-        if (bytes > 0 && (!buffer_make(memory, &batch->splats, CL_MEM_READ_WRITE, bytes, error) ||
-                          !buffer_make(memory, &batch->staging, CL_MEM_ALLOC_HOST_PTR, bytes, error) ||
-                          !staging_map(memory, batch, (size_t)bytes, error)))
-            return false;
+        batch->results = (BatchResults *)(batch->host + words);
     }
     return true;
 }

@@ -6,14 +6,24 @@
 #include "devices.h"
 
 #include "bvh.h"
+#include "diagnostics.h"
+#include "state.h"
 
 /* Batches under way: one computed, one copied, one added to the film. */
 #define BATCH_SLOTS 3
 
+/* What is read back beside the splats. */
+typedef struct BatchResults {
+    uint live[2]; /* closest-hit rays up to the latest odd and even turn of the loop */
+    uint counts[COUNT_WORDS]; /* of the whole batch */
+    uint diagnostics[DIAGNOSTIC_COUNT];
+} BatchResults;
+
 typedef struct BatchMemory {
     cl_mem frame, splats;
     cl_mem staging; /* host memory that the device reaches directly, mapped as long as it lives */
-    uint *host;
+    uint *host; /* its splats */
+    BatchResults *results; /* behind them */
 } BatchMemory;
 
 typedef struct DeviceMemory {

@@ -52,11 +52,12 @@ static void slot_free(FilmAdders *adders, Slot *slot)
 /* With the lock held: a copied batch's numbers; its splats are added afterwards. */
 static void batch_account(FilmAdders *adders, const Batch *batch, uint64_t ray_nanoseconds)
 {
-    adders->total.closest_rays += batch->counts[COUNT_CLOSEST];
-    adders->total.shadow_rays += batch->counts[COUNT_SHADOW];
+    const BatchResults *results = batch->memory->results;
+    adders->total.closest_rays += results->counts[COUNT_CLOSEST];
+    adders->total.shadow_rays += results->counts[COUNT_SHADOW];
     adders->total.ray_nanoseconds += ray_nanoseconds;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i)
-        adders->total.diagnostics[i] += batch->diagnostics[i];
+        adders->total.diagnostics[i] += results->diagnostics[i];
 }
 
 /* Called and returns with the lock held. */
@@ -87,7 +88,7 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
     slot->next += count;
     pthread_mutex_unlock(&adders->mutex);
     uint64_t begin = timeline_now();
-    if (adders->sink && batch->memory->host)
+    if (adders->sink)
         adders->sink(adders->context, batch->memory->host + first, count, batch->frame.stride);
     timeline_add(adders->timeline, (BackendSpan){.name = "add to film",
                                                  .track = SPAN_FILM,

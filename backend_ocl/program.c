@@ -81,6 +81,7 @@ static bool build_from_source(OclProgram *program, const char *source, const cha
                               Error *error)
 {
     cl_int status;
+    log_message(LOG_INFO, "building the kernels for %s; they are kept for the next time", program->device->info.name);
     program->program = clCreateProgramWithSource(program->context, 1, &source, NULL, &status);
     if (status != CL_SUCCESS)
         return ocl_fail(error, program->device->info.name, "making a program", status);

@@ -76,30 +76,31 @@ typedef struct Flattener {
     uint next_node, next_item;
 } Flattener;
 
-static void item_put_vec3(uint *out, Vec3 p)
+static void corner_write(uint *out, Vec3 p)
 {
     out[0] = float_bits(p.x);
-    out[1] = float_bits(p.y);
-    out[2] = float_bits(p.z);
+    out[4] = float_bits(p.y);
+    out[8] = float_bits(p.z);
 }
 
 static void item_write(const Flattener *flattener, uint *out, BvhItem item)
 {
     const SceneView *view = flattener->view;
+    uint *tag = out + 4 * BVH_ITEM_TAG;
     memset(out, 0, ITEM_WORDS * sizeof *out);
-    out[3] = item.id;
+    tag[0] = item.id;
     if (item.instance) {
-        out[0] = flattener->objects[view->instances[item.id].object].root;
-        out[7] = BVH_INSTANCE;
+        tag[1] = BVH_INSTANCE;
+        tag[2] = flattener->objects[view->instances[item.id].object].root;
         return;
     }
     Primitive primitive = view->primitives[item.id];
-    out[7] = primitive.shape_and_kind;
+    tag[1] = primitive.shape_and_kind;
     if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
         return;
-    item_put_vec3(out, view->positions[primitive.a]);
-    item_put_vec3(out + 4, view->positions[primitive.b]);
-    item_put_vec3(out + 8, view->positions[primitive.c]);
+    corner_write(out, view->positions[primitive.a]);
+    corner_write(out + 1, view->positions[primitive.b]);
+    corner_write(out + 2, view->positions[primitive.c]);
 }
 
 static uint leaf_write(Flattener *flattener, const BvhTreeNode *leaf)
@@ -210,16 +211,16 @@ static bool object_tree(Builder *builder, size_t index, RTCBVH bvh, BvhBoxes *bo
     return tree_flatten(builder, object, tree, error);
 }
 
-/* The largest coordinate that a ray's origin or the object's geometry takes in the object's space. */
-static float object_reach(const Builder *builder, size_t object)
+static void margins_set(Builder *builder)
 {
     float world = builder->view.frame->ray_epsilon_scale;
-    float reach = world;
-    for (size_t i = 0; object > 0 && i < builder->instance_count; ++i)
-        if (builder->view.instances[i].object == object)
-            reach = float_max(reach, vec3_max_abs(affine_magnitude(builder->view.instances[i].object_from_world,
-                                                                   vec3(world, world, world))));
-    return reach;
+    for (size_t i = 0; i < builder->object_count; ++i)
+        builder->objects[i].margin = box_margin(world);
+    for (size_t i = 0; i < builder->instance_count; ++i) {
+        const Instance *instance = &builder->view.instances[i];
+        float *margin = &builder->objects[instance->object].margin;
+        *margin = float_max(*margin, box_margin(instance_reach(instance, world)));
+    }
 }
 
 static void object_boxes(const Builder *builder, BuiltObject *object, Object record, BvhBoxes *boxes)
@@ -240,9 +241,8 @@ static void instance_boxes(const Builder *builder, BvhBoxes *boxes)
         const BuiltObject *object = &builder->objects[instance->object];
         if (object->root == BVH_EMPTY)
             continue;
-        Box inner = box_inflate(object->box, object->margin);
-        Box box = box_transform(&inner, instance->world_from_object);
-        bvh_boxes_add(boxes, box_inflate(box, builder->objects[0].margin), (BvhItem){.instance = 1, .id = i});
+        Box box = instance_box(instance, object->box, object->margin, builder->objects[0].margin);
+        bvh_boxes_add(boxes, box, (BvhItem){.instance = 1, .id = i});
     }
 }
 
@@ -253,7 +253,6 @@ static bool object_build(Builder *builder, size_t index, Error *error)
     size_t instances = index == 0 ? builder->instance_count : 0;
     BvhBoxes boxes = {0};
     object->root = BVH_EMPTY;
-    object->margin = box_margin(object_reach(builder, index));
     if (!bvh_boxes_create(&boxes, record.primitive_count + instances, error))
         return false;
     object_boxes(builder, object, record, &boxes);
@@ -305,6 +304,7 @@ static bool builder_run(Builder *builder, Error *error)
         return false;
     memset(builder->bvh->words, 0, NODE_WORDS * sizeof *builder->bvh->words);
     builder->bvh->word_count = NODE_WORDS;
+    margins_set(builder);
     /* The world last: its instances need their objects' boxes and roots. */
     for (size_t i = builder->object_count; i-- > 0;)
         if (!object_build(builder, i, error))

@@ -7,6 +7,9 @@
 #define COST_NODE 1.0f
 #define COST_ITEM 1.0f
 
+/* Items of a leaf that cost as much as one. */
+#define COST_BLOCK 2
+
 bool bvh_boxes_create(BvhBoxes *boxes, size_t capacity, Error *error)
 {
     size_t bytes = (capacity + 1) * sizeof *boxes->boxes;
@@ -81,6 +84,7 @@ BvhTreeNode *bvh_tree_build(RTCBVH bvh, BvhBoxes *boxes, uint max_depth)
     arguments.primitiveArrayCapacity = boxes->count;
     arguments.maxBranchingFactor = BVH_WIDTH;
     arguments.maxDepth = max_depth;
+    arguments.sahBlockSize = COST_BLOCK;
     arguments.maxLeafSize = BVH_LEAF_ITEMS;
     arguments.traversalCost = COST_NODE;
     arguments.intersectionCost = COST_ITEM;

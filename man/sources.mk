@@ -1,5 +1,6 @@
 dist_man_MANS += \
 	man/twinlight-compare.1 \
+	man/twinlight-devices.1 \
 	man/twinlight-render.1 \
 	man/twinlight-scene.5 \
 	man/twinlight.1

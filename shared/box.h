@@ -80,6 +80,20 @@ SHARED_FUNCTION float box_margin(float largest)
     return BOX_MARGIN_ULPS * FLOAT_EPSILON * largest;
 }
 
+/* The largest coordinate that a ray's origin takes in the instance's object space, where all of the world lie within
+ * `world`. An object's margin follows from the largest of its instances, and of `world`. */
+SHARED_FUNCTION float instance_reach(__global const Instance *instance, float world)
+{
+    return vec3_max_abs(affine_magnitude(instance->object_from_world, vec3(world, world, world)));
+}
+
+/* Around an instance, with margin, in world space. `object`: the box of its object without; it must not be empty. */
+SHARED_FUNCTION Box instance_box(__global const Instance *instance, Box object, float object_margin, float world_margin)
+{
+    Box inner = box_inflate(object, object_margin);
+    return box_inflate(box_transform(&inner, instance->world_from_object), world_margin);
+}
+
 SHARED_FUNCTION Box quadric_box(__global const Quadric *quadric, uint kind)
 {
     float r = quadric->radius, w = quadric->world_radius;

@@ -29,6 +29,11 @@ typedef uint4 Uint4;
 #define float4_at_most(a, b) as_uint4((a) <= (b))
 #define float4_min(a, b) fmin(a, b)
 #define float4_max(a, b) fmax(a, b)
+#ifdef FP_FAST_FMAF
+#define float4_mad(a, b, c) fma(a, float4_splat(b), float4_splat(c))
+#else
+#define float4_mad(a, b, c) ((a) * (b) + (c))
+#endif
 
 #else
 
@@ -70,9 +75,10 @@ SHARED_FUNCTION float bits_float(uint bits)
     return x;
 }
 
-/* Four lanes at once, for boxes: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and
- * the operators of integers work lane by lane, a scalar beside them counts for every lane. The bits may differ between
- * languages where float4_min and float4_max get a NaN or zeros of both signs. */
+/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the operators
+ * of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad differ from
+ * device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use them, which
+ * decide no bit of a result. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 typedef uint Uint4 __attribute__((vector_size(16), may_alias));
 #define lane_of(v, i) ((v)[i])
@@ -81,6 +87,13 @@ typedef uint Uint4 __attribute__((vector_size(16), may_alias));
 #define float4_bits(a) ((Uint4)(a))
 #define float4_at_most(a, b) ((Uint4)((a) <= (b)))
 
+#define float4_mad(a, b, c) ((a) * (b) + (c))
+
+#if defined(__SSE__)
+/* gcc makes six instructions of the text below. */
+#define float4_min(a, b) ((Float4)__builtin_ia32_minps(a, b))
+#define float4_max(a, b) ((Float4)__builtin_ia32_maxps(a, b))
+#else
 SHARED_FUNCTION Float4 float4_min(Float4 a, Float4 b)
 {
     Uint4 less = (Uint4)(a < b);
@@ -89,9 +102,10 @@ SHARED_FUNCTION Float4 float4_min(Float4 a, Float4 b)
 
 SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 {
-    Uint4 less = (Uint4)(a < b);
-    return (Float4)(((Uint4)b & less) | ((Uint4)a & ~less));
+    Uint4 more = (Uint4)(a > b);
+    return (Float4)(((Uint4)a & more) | ((Uint4)b & ~more));
 }
+#endif
 
 #define float_sqrt(x) sqrtf(x)
 #define float_abs(x) fabsf(x)

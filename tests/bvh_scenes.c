@@ -124,6 +124,7 @@ static void make_slivers(TestScene *test)
     test_scene_init(test);
     add_mesh(test, mesh_slivers(150, 1.5f, 1e-3f, 3), 1.0f, vec3_splat(0.0f));
     add_mesh(test, mesh_slivers(150, 2.0f, 1e-5f, 4), 1.0f, vec3(0.1f, 0.2f, -0.1f));
+    add_mesh(test, mesh_star(5, 6, 0.2f, 6), 2.0f, vec3_splat(0.0f));
     test_scene_finish(test);
 }
 
@@ -131,6 +132,7 @@ static void make_many_slivers(TestScene *test)
 {
     test_scene_init(test);
     add_mesh(test, mesh_slivers(20000, 0.5f, 1e-4f, 5), 100.0f, vec3(3.0f, -50.0f, 1e3f));
+    add_mesh(test, mesh_star(5, 6, 0.2f, 6), 200.0f, vec3(3.0f, -50.0f, 1e3f));
     test_scene_finish(test);
 }
 
@@ -211,6 +213,7 @@ static void make_swarm(TestScene *test)
     ck_assert(scene_object_begin(&test->scene, &object, &error));
     add_mesh(test, mesh_star(30, 40, 0.05f, 33), 1.0f, vec3_splat(0.0f));
     ck_assert(scene_object_end(&test->scene, &error));
+    add_mesh(test, mesh_star(5, 6, 0.2f, 34), 4.0f, vec3_splat(0.0f));
     add_instances(test, &random, object, 2000, 0.5f);
     test_scene_finish(test);
 }

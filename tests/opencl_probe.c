@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 struct OpenclProbe {
     cl_device_id device;
@@ -126,5 +127,55 @@ bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, 
         if (buffers[i])
             clReleaseMemObject(buffers[i]);
     clReleaseKernel(kernel);
+    return ok;
+}
+
+/* ---- buffers that stay ------------------------------------------------------------------------------------------- */
+
+OpenclBuffer *opencl_buffer_create(OpenclProbe *probe, const uint32_t *words, size_t count)
+{
+    return (OpenclBuffer *)buffer_make(probe, words, count);
+}
+
+void opencl_buffer_destroy(OpenclBuffer *buffer)
+{
+    if (buffer)
+        clReleaseMemObject((cl_mem)buffer);
+}
+
+bool opencl_buffer_write(OpenclProbe *probe, OpenclBuffer *buffer, const uint32_t *words, size_t count)
+{
+    return clEnqueueWriteBuffer(probe->queue, (cl_mem)buffer, CL_TRUE, 0, count * sizeof *words, words, 0, NULL,
+                                NULL) == CL_SUCCESS;
+}
+
+bool opencl_buffer_read(OpenclProbe *probe, OpenclBuffer *buffer, uint32_t *words, size_t count)
+{
+    return clEnqueueReadBuffer(probe->queue, (cl_mem)buffer, CL_TRUE, 0, count * sizeof *words, words, 0, NULL, NULL) ==
+           CL_SUCCESS;
+}
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bool opencl_probe_launch(OpenclProbe *probe, const char *name, OpenclBuffer *const *buffers, size_t count, size_t items,
+                         double *seconds)
+{
+    cl_kernel kernel = clCreateKernel(probe->program, name, NULL);
+    bool ok = kernel != NULL;
+    for (cl_uint i = 0; ok && i < count; ++i) {
+        cl_mem buffer = (cl_mem)buffers[i];
+        ok = buffer && clSetKernelArg(kernel, i, sizeof buffer, &buffer) == CL_SUCCESS;
+    }
+    double begin = seconds_now();
+    ok = ok && clEnqueueNDRangeKernel(probe->queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL) == CL_SUCCESS;
+    ok = ok && clFinish(probe->queue) == CL_SUCCESS;
+    *seconds = seconds_now() - begin;
+    if (kernel)
+        clReleaseKernel(kernel);
     return ok;
 }

@@ -31,3 +31,33 @@ bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, 
     (void)out, (void)out_words, (void)items;
     return false;
 }
+
+OpenclBuffer *opencl_buffer_create(OpenclProbe *probe, const uint32_t *words, size_t count)
+{
+    (void)probe, (void)words, (void)count;
+    return NULL;
+}
+
+void opencl_buffer_destroy(OpenclBuffer *buffer)
+{
+    (void)buffer;
+}
+
+bool opencl_buffer_write(OpenclProbe *probe, OpenclBuffer *buffer, const uint32_t *words, size_t count)
+{
+    (void)probe, (void)buffer, (void)words, (void)count;
+    return false;
+}
+
+bool opencl_buffer_read(OpenclProbe *probe, OpenclBuffer *buffer, uint32_t *words, size_t count)
+{
+    (void)probe, (void)buffer, (void)words, (void)count;
+    return false;
+}
+
+bool opencl_probe_launch(OpenclProbe *probe, const char *name, OpenclBuffer *const *buffers, size_t count, size_t items,
+                         double *seconds)
+{
+    (void)probe, (void)name, (void)buffers, (void)count, (void)items, (void)seconds;
+    return false;
+}

@@ -1,10 +1,11 @@
 # One Check program per area; each lists every unit of the area that can be wrong.
-TEST_LIBS = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
+TEST_LIBS = libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
 # Check prints floats as doubles.
 TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 
 if HAVE_CHECK
 check_PROGRAMS += \
+	tests/test_analytic \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_film \
@@ -19,10 +20,20 @@ check_PROGRAMS += \
 	tests/test_render \
 	tests/test_texture \
 	tests/test_verify
+	tests/test_texture
+if HAVE_OPENCL
+check_PROGRAMS += tests/test_opencl
+endif
 TESTS += $(check_PROGRAMS)
 endif
 
+# Kernels that one test program has had built serve the next, and the user's own cache is left alone.
+AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
+clean-local:
+	rm -rf test-cache
+
 EXTRA_DIST += \
+	tests/analytic.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
 	tests/geometry_fixture.h \
@@ -36,9 +47,25 @@ EXTRA_DIST += \
 	tests/test_import.h \
 	tests/test_light.h \
 	tests/test_math.h \
+	tests/test_opencl.h \
 	tests/test_matrix.h \
 	tests/test_util.h \
 	tests/platform_probe.cl
+
+tests_test_analytic_SOURCES = tests/test_analytic.c \
+	tests/analytic_fixture.c \
+	tests/render_fixture.c \
+	tests/test_analytic_area.c \
+	tests/test_analytic_bumps.c \
+	tests/test_analytic_camera.c \
+	tests/test_analytic_environment.c \
+	tests/test_analytic_glass.c \
+	tests/test_analytic_instances.c \
+	tests/test_analytic_lights.c \
+	tests/test_analytic_opaque.c \
+	tests/test_analytic_textures.c
+tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
+tests_test_analytic_LDADD = $(TEST_LIBS)
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
@@ -115,6 +142,15 @@ tests_test_math_LDADD = $(TEST_LIBS)
 tests_test_metrics_SOURCES = tests/test_metrics.c
 tests_test_metrics_CFLAGS = $(TEST_CFLAGS)
 tests_test_metrics_LDADD = $(TEST_LIBS)
+
+tests_test_opencl_SOURCES = tests/test_opencl.c \
+	tests/test_opencl_bits.c \
+	tests/test_opencl_devices.c \
+	tests/test_opencl_pipeline.c \
+	tests/test_opencl_program.c \
+	tests/render_fixture.c
+tests_test_opencl_CFLAGS = $(TEST_CFLAGS)
+tests_test_opencl_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
 
 tests_test_options_SOURCES = tests/test_options.c
 tests_test_options_CFLAGS = $(TEST_CFLAGS)

@@ -64,6 +64,7 @@ expect 0 'Usage: twinlight render' render --help
 expect 0 '--save-every=TIME' render --help
 expect 0 'Usage: twinlight info' info --help
 expect 0 'twinlight compare' compare --help
+expect 0 'Usage: twinlight devices' devices --help
 expect 2 'no command is given'
 expect 2 'unknown command paint' paint
 expect 2 'unknown option --verbose' --verbose
@@ -94,6 +95,11 @@ expect 2 '--exposure=bright: not a number' render --exposure=bright "$scene"
 expect 2 'does not end in .exr' render -o image.jpg "$scene"
 expect 2 'does not end in .png' render --png=image.jpg "$scene"
 expect 2 'use one of: cpu' render --backend=gpu "$scene"
+expect 2 '--batch is for devices' render --batch=64 "$scene"
+expect 2 '--device is for devices' render --device=0 "$scene"
+expect 2 '--trace is for devices' render --trace=trace.json --backend=cpu "$scene"
+expect 2 '--batch=0: out of range' render --batch=0 "$scene"
+expect 2 'devices takes no file' devices "$scene"
 expect 2 'use pt' render --integrator=bdpt "$scene"
 expect 2 'no scene is given' info
 expect 2 '' compare
@@ -201,6 +207,77 @@ assert stats["rays"]["closest"] >= 192 and stats["stopped"] is False
 assert 0 < sum(seconds[s] for s in ("load", "build", "render", "write")) <= seconds["total"]
 PYTHON
     result 'stats.json is not valid JSON, or holds wrong values' $?
+fi
+
+# ---- OpenCL ---------------------------------------------------------------------------------------------------------
+
+expect 0 'the same image, bit for bit      promised' devices
+expect 0 '"same_bits": true' devices --json
+
+# opencl ARGUMENT...: a small rendering on device 0.
+opencl() {
+    render --backend=opencl "$@"
+}
+
+if ! "$program" --version | grep -q opencl; then
+    expect 2 'configured without OpenCL' render --backend=opencl "$scene"
+elif "$program" devices | grep -A1 '^opencl' | grep -q 'no device'; then
+    expect 1 'there is no OpenCL device' render --backend=opencl "$scene"
+    echo 'skipped: there is no OpenCL device'
+else
+    for other in "$scene" "${scene%/*}/showcase.pbrt"; do
+        render --samples=3 -o cpu.exr "$other"
+        opencl --samples=3 -o opencl.exr "$other"
+        result "$other on OpenCL: exit status" $?
+        cmp cpu.exr opencl.exr
+        result "$other: OpenCL's image is not the CPU's" $?
+    done
+    expect 1 'there is no OpenCL device of that number' render --backend=opencl --device=99 "$scene"
+    expect 1 'no OpenCL device has that in its name' render --backend=opencl --device=nonesuch "$scene"
+    expect 1 'use --batch=' render --backend=opencl --batch=67108864 --quiet -o batch.exr "$scene"
+    file_missing batch.exr
+    expect 1 'nowhere/trace.json' render --backend=opencl --trace=nowhere/trace.json "$scene"
+
+    # Another folder of sources, another program: built, kept, taken from the cache, built again when damaged.
+    mkdir sources
+    cp "${scene%/*/*}"/shared/*.h "${scene%/*/*}"/shared/*.cl sources/
+    echo '// not the installed text' >>sources/kernels.cl
+    (
+        TWINLIGHT_KERNELS=$work/sources XDG_CACHE_HOME=$work/cache
+        export TWINLIGHT_KERNELS XDG_CACHE_HOME
+        opencl -o first.exr "$scene" && [ "$(find cache/twinlight -name '*.program' | wc -l)" -eq 1 ] &&
+            entry=$(find cache/twinlight -name '*.program') &&
+            echo damage >"$entry" && opencl -o second.exr "$scene" && [ "$(wc -c <"$entry")" -gt 1000 ] &&
+            cmp first.exr second.exr && [ "$(find cache/twinlight -type f | wc -l)" -eq 1 ]
+    )
+    result 'a damaged program in the cache is not built again' $?
+    echo 'this is not OpenCL' >>sources/fresnel.h
+    line=$(wc -l <sources/fresnel.h)
+    TWINLIGHT_KERNELS=$work/sources expect 1 "shared/fresnel.h:$line" render --backend=opencl "$scene"
+    TWINLIGHT_KERNELS=$work/none expect 1 "$work/none/kernels.cl" render --backend=opencl "$scene"
+
+    # A device that fails on its way: batches 0 ... 63 are the pilot's 4096 paths, three of 64 paths each follow.
+    TWINLIGHT_TEST_FAIL_BATCH=66 expect 1 'what was finished, 0.666667 samples per pixel, is in fail.exr' \
+        render --backend=opencl --batch=64 --resolution=16x12 --samples=1 -o fail.exr "$scene"
+    file_exists fail.exr
+    file_exists fail.png
+
+    opencl --trace=trace.json --stats=device.json --batch=64 -o traced.exr "$scene"
+    result '--trace: exit status' $?
+    if command -v python3 >/dev/null 2>&1; then
+        python3 - <<'PYTHON'
+import json
+events = [e for e in json.load(open("trace.json"))["traceEvents"] if e["ph"] == "X"]
+names = {e["name"] for e in events}
+assert {"trace_closest", "pt_shade_hits", "copy splats", "add to film"} <= names, names
+assert all(e["ts"] >= 0 and e["dur"] >= 0 for e in events)
+assert {e["args"]["batch"] for e in events} == set(range(67))
+stats = json.load(open("device.json"))
+assert stats["backend"] == "opencl" and stats["device"] and stats["rays"]["closest"] >= 192
+assert stats["rays"]["seconds_all_threads"] > 0
+PYTHON
+        result 'trace.json or device.json is not what it should be' $?
+    fi
 fi
 
 # ---- long runs: signals, saving -----------------------------------------------------------------------------------
