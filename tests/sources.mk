@@ -6,6 +6,7 @@ TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_bsdf \
+	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_import \
@@ -28,6 +29,7 @@ EXTRA_DIST += \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
+	tests/test_emit.h \
 	tests/test_files.h \
 	tests/test_import.h \
 	tests/test_light.h \
@@ -44,6 +46,18 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_sampling.c
 tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
 tests_test_bsdf_LDADD = $(TEST_LIBS)
+
+tests_test_emit_SOURCES = tests/test_emit.c \
+	tests/test_emit_area.c \
+	tests/test_emit_camera.c \
+	tests/test_emit_direction.c \
+	tests/test_emit_distance.c \
+	tests/test_emit_image.c \
+	tests/test_emit_power.c \
+	tests/test_emit_splat.c \
+	tests/render_fixture.c
+tests_test_emit_CFLAGS = $(TEST_CFLAGS)
+tests_test_emit_LDADD = $(TEST_LIBS)
 
 tests_test_film_SOURCES = tests/test_film.c \
 	tests/test_film_output.c
