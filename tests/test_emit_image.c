@@ -35,7 +35,7 @@ static const ImageCase CASES[] = {
      "Camera \"perspective\" \"float fov\" 40 \"float screenwindow\" [ -1 0.7 -1 1.3 ] \"float lensradius\" 0.1 "
      "\"float focaldistance\" 4\n",
      "LightSource \"spot\" \"rgb I\" [ 2 2 2 ] \"point3 from\" [ 0.3 0.3 2 ] \"point3 to\" [ 0 0 0 ] "
-     "\"float coneangle\" 60 \"float conedeltaangle\" 20\n"},
+     "\"float coneangle\" 75 \"float conedeltaangle\" 25\n"},
     {"\"integer pixelbounds\" [ 3 12 0 5 ]", "\"sinc\"", PINHOLE,
      "LightSource \"distant\" \"rgb L\" [ 1 1 1 ] \"point3 from\" [ 1 0.5 1 ] \"point3 to\" [ 0 0 0 ]\n"},
     {"", "\"sinc\" \"float xradius\" 2 \"float yradius\" 3",

@@ -57,7 +57,8 @@ static double filter_density(const FilterSettings *s, double radius, double offs
     return sum / integral;
 }
 
-/* At a few film positions, inside the crop window and around it, the mean over u of what every pixel gets. */
+/* At a few film positions, inside the crop window and around it, the mean over u of what every pixel gets. A table's
+ * cells are differences of floats up to 1, which rounds densities by up to 1e-5. */
 START_TEST(test_expectation)
 {
     enum { N = 256, POSITIONS = 60 };
@@ -85,7 +86,7 @@ START_TEST(test_expectation)
                 double expected =
                     filter_density(s, rx, (double)film.x - x - 0.5) * filter_density(s, ry, (double)film.y - y - 0.5);
                 double got = pixels[(y - Y0) * COLUMNS + x - X0];
-                if (fabs(got - expected) > largest * (3.0 / N + 1e-6) + 1e-4 * fabs(expected))
+                if (fabs(got - expected) > largest * 3.0 / N + 1e-4 * fabs(expected) + 2e-5)
                     ck_abort_msg("%s at %g %g: pixel %d %d gets %g, not %g", CASES[_i].name, (double)film.x,
                                  (double)film.y, x, y, got, expected);
             }
@@ -117,7 +118,7 @@ START_TEST(test_constant)
     }
     for (int i = 0; i < ROWS * COLUMNS; ++i) {
         double mean = sums[i] / SAMPLES, error = sqrt((squares[i] / SAMPLES - mean * mean) / SAMPLES);
-        ck_assert_msg(fabs(mean - 1.0) < 4.5 * error && error < 0.03, "%s: pixel %d gets %g +- %g", CASES[_i].name, i,
+        ck_assert_msg(fabs(mean - 1.0) < 4.5 * error && error < 0.04, "%s: pixel %d gets %g +- %g", CASES[_i].name, i,
                       mean, error);
     }
     fixture_destroy(&f);
