@@ -89,56 +89,67 @@ START_TEST(test_covers)
 }
 END_TEST
 
-/* Irradiance of receivers across the light, in the middle of the scene and at its rim, is as light_sample finds it. The
- * receivers are a twentieth of the scene wide. */
+/* Receivers across the light, a twentieth of the scene wide: in the middle of the scene, inside it and at its rim; their
+ * centres in units of the scene's radius, in the frame around the direction to the light. */
+static const double RECEIVERS[][2] = {{0.0, 0.0}, {0.94, 0.0}, {-0.5, 0.5}, {0.0, 0.94}};
+enum { RECEIVER_COUNT = sizeof RECEIVERS / sizeof *RECEIVERS };
+#define RECEIVER_RADIUS 0.05
+
+/* Where the ray meets the plane of the receivers through the scene's centre. False: from behind. */
+static bool receivers_meet(const LightFixture *f, const LightEmission *e, const Frame *frame, double at[2])
+{
+    const Vec3 axes[3] = {frame->t, frame->b, frame->n}, p = vec3_sub(e->p, f->scene.frame.world_center);
+    const double from[3] = {(double)p.x, (double)p.y, (double)p.z};
+    const double along[3] = {(double)e->w.x, (double)e->w.y, (double)e->w.z};
+    double o[3], d[3];
+    for (int k = 0; k < 3; ++k) {
+        o[k] = dot(from, axes[k]);
+        d[k] = dot(along, axes[k]);
+    }
+    at[0] = o[0] - o[2] / d[2] * d[0];
+    at[1] = o[1] - o[2] / d[2] * d[1];
+    return d[2] < 0.0;
+}
+
+/* The irradiance of every receiver, in units of `expected`, by rays from the light. */
+static void receivers_check(const DistanceCase *c, const LightFixture *f, const Frame *frame, double expected)
+{
+    enum { SAMPLES = 400000 };
+    double sums[RECEIVER_COUNT] = {0.0}, squares[RECEIVER_COUNT] = {0.0}, r = RECEIVER_RADIUS * c->radius, at[2];
+    for (uint i = 0; i < SAMPLES; ++i) {
+        LightEmission e;
+        if (!light_emit(&f->view, 0, fixture_random(2, i), fixture_random(9, i), &e) ||
+            !receivers_meet(f, &e, frame, at))
+            continue;
+        double value = (double)e.radiance.x / ((double)e.pdf_p * (double)e.pdf_w) / (M_PI * r * r) / expected;
+        for (int k = 0; k < RECEIVER_COUNT; ++k)
+            if (hypot(at[0] - c->radius * RECEIVERS[k][0], at[1] - c->radius * RECEIVERS[k][1]) < r) {
+                sums[k] += value;
+                squares[k] += value * value;
+            }
+    }
+    for (int k = 0; k < RECEIVER_COUNT; ++k) {
+        double mean = sums[k] / SAMPLES, error = sqrt((squares[k] / SAMPLES - mean * mean) / SAMPLES);
+        ck_assert_msg(fabs(mean - 1.0) <= 4.5 * error && error < 0.05,
+                      "radius %g, shift %g, receiver %d: %g of what light_sample finds, +- %g", c->radius, c->shift, k,
+                      mean, error);
+    }
+}
+
 START_TEST(test_irradiance)
 {
-    enum { SAMPLES = 400000, RECEIVERS = 4 };
     for (int sun = 0; sun < 2; ++sun) {
         float low[3], high[3];
         LightFixture f;
-        setup(&f, &CASES[_i], sun != 0, low, high);
-        double R = CASES[_i].radius, r = 0.05 * R, expected = 0.0, sums[RECEIVERS] = {0.0}, squares[RECEIVERS] = {0.0};
         LightSample s;
+        double expected = 0.0;
+        setup(&f, &CASES[_i], sun != 0, low, high);
         TEST_TRUE(light_sample(&f.view, 0, vec3(0, 0, 0), vec2(0.5f, 0.5f), &s));
         Frame frame = frame_from_normal(s.wi); /* towards the sun, whose texel is 0.7 degrees wide */
         for (uint i = 0; i < 10000; ++i)
             if (light_sample(&f.view, 0, vec3(0, 0, 0), fixture_stratified(7, i, 100), &s))
                 expected += (double)s.radiance.x * fmax(0.0, (double)vec3_dot(s.wi, frame.n)) / (double)s.pdf_w / 1e4;
-        for (uint i = 0; i < SAMPLES; ++i) {
-            LightEmission e;
-            if (!light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e))
-                continue;
-            double value = (double)e.radiance.x / ((double)e.pdf_p * (double)e.pdf_w) / (M_PI * r * r);
-            for (int k = 0; k < RECEIVERS; ++k) {
-                double at[3] = {k == 1   ? 0.94 * R
-                                : k == 2 ? -0.5 * R
-                                         : 0.0,
-                                k == 3   ? 0.94 * R
-                                : k == 2 ? 0.5 * R
-                                         : 0.0};
-                /* The ray in the frame of the receivers, in double, meets z = 0. */
-                double o[3], d[3];
-                const Vec3 axes[3] = {frame.t, frame.b, frame.n};
-                Vec3 p = vec3_sub(e.p, f.scene.frame.world_center);
-                for (int j = 0; j < 3; ++j) {
-                    o[j] = (double)p.x * (double)axes[j].x + (double)p.y * (double)axes[j].y +
-                           (double)p.z * (double)axes[j].z;
-                    d[j] = (double)e.w.x * (double)axes[j].x + (double)e.w.y * (double)axes[j].y +
-                           (double)e.w.z * (double)axes[j].z;
-                }
-                double t = -o[2] / d[2];
-                if (d[2] < 0.0 && hypot(o[0] + t * d[0] - at[0], o[1] + t * d[1] - at[1]) < r) {
-                    sums[k] += value;
-                    squares[k] += value * value;
-                }
-            }
-        }
-        for (int k = 0; k < RECEIVERS; ++k) {
-            double mean = sums[k] / SAMPLES, error = sqrt((squares[k] / SAMPLES - mean * mean) / SAMPLES);
-            ck_assert_msg(fabs(mean - expected) <= 4.5 * error && error < 0.05 * expected,
-                          "radius %g, sun %d, receiver %d: %g, not %g +- %g", R, sun, k, mean, expected, error);
-        }
+        receivers_check(&CASES[_i], &f, &frame, expected);
         fixture_destroy(&f);
     }
 }
