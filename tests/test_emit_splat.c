@@ -72,7 +72,8 @@ START_TEST(test_expectation)
         Vec2 film = vec2(X0 - 4.5f + r.x * (COLUMNS + 9.0f), Y0 - 4.5f + r.y * (ROWS + 9.0f));
         for (uint i = 0; i < N * N; ++i) {
             float weight;
-            Vec2 u = vec2(((float)(i % N) + 0.5f) / N, ((float)(i / N) + 0.5f) / N);
+            uint column = i % N, row = i / N;
+            Vec2 u = vec2(((float)column + 0.5f) / N, ((float)row + 0.5f) / N);
             uint pixel = film_splat_pixel(&f.view, film, u, &weight);
             if (pixel == NONE)
                 continue;
@@ -135,8 +136,9 @@ START_TEST(test_box)
     for (uint i = 0; i < 20000; ++i) {
         Vec2 r = fixture_random(1, i);
         Vec2 film = vec2(X0 + r.x * COLUMNS, Y0 + r.y * ROWS);
+        uint column = X0 + i % COLUMNS, row = Y0 + i / COLUMNS;
         if (i < ROWS * COLUMNS) /* corners belong to the pixel on their lower right */
-            film = vec2((float)(X0 + i % COLUMNS), (float)(Y0 + i / COLUMNS));
+            film = vec2((float)column, (float)row);
         uint pixel = film_splat_pixel(&f.view, film, fixture_random(2, i), &weight);
         TEST_TRUE(pixel == (uint)film.y * WIDTH + (uint)film.x && weight == 1.0f);
     }
