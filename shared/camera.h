@@ -117,7 +117,8 @@ typedef struct CameraConnection {
     float pdf; /* camera_pdf */
 } CameraConnection;
 
-/* Whether the filter of a pixel of the crop window reaches the film position. */
+/* Whether the film position is no further from the crop window than the pixel filter reaches. (Between pixels, a filter
+ * narrower than a pixel leaves gaps; film_splat_pixel says so.) */
 SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2 film)
 {
     float x = frame->filter.radius_x - 0.5f, y = frame->filter.radius_y - 0.5f;
@@ -126,7 +127,7 @@ SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2
 }
 
 /* Joins the world point p to the lens point of u_lens: the inverse of camera_ray. False when p is behind the camera or
- * no pixel of the crop window, with its filter, sees it. Directions are taken relative to the lens point, so that a
+ * beyond the filter's reach around the crop window. Everything is taken relative to the place of the camera, so that a
  * camera far from (0,0,0) loses no more than its own position's rounding. */
 SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, Vec2 u_lens,
                                     CameraConnection *connection)

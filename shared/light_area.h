@@ -274,15 +274,18 @@ SHARED_FUNCTION float area_light_pdf_a(const SceneView *scene, uint light, const
                                        const Surface *hit)
 {
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    __global const Quadric *quadric = scene->quadrics + primitive->a;
     if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
         PatchCorners corners = patch_corners(scene, primitive->a);
         return patch_light_pdf(&corners, hit->u, hit->v);
     }
-    if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE)
-        return quadric_light_pdf(quadric, sphere_object_area(quadric), hit->ng);
-    if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK)
-        return quadric_light_pdf(quadric, disk_object_area(quadric), hit->ng);
+    if (SCENE_HAS(scene, FEATURE_SPHERE) && kind == PRIMITIVE_SPHERE) {
+        __global const Quadric *sphere = scene->quadrics + primitive->a;
+        return quadric_light_pdf(sphere, sphere_object_area(sphere), hit->ng);
+    }
+    if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK) {
+        __global const Quadric *disk = scene->quadrics + primitive->a;
+        return quadric_light_pdf(disk, disk_object_area(disk), hit->ng);
+    }
     return 1.0f / scene->lights[light].area;
 }
 

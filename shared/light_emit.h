@@ -31,11 +31,11 @@ SHARED_FUNCTION float light_emit_disc_radius(const SceneView *scene)
     return radius > 0.0f ? radius + 4.0f * FLOAT_EPSILON * size : 0.0f;
 }
 
-/* Density of points on the disc, 1 / (pi R^2). */
+/* Density of points on the disc, 1 / (pi R^2); 0 when there is nothing to shine on. */
 SHARED_FUNCTION float light_emit_pdf_disc(const SceneView *scene)
 {
     float radius = light_emit_disc_radius(scene);
-    return INV_PI / (radius * radius);
+    return radius > 0.0f ? INV_PI / (radius * radius) : 0.0f;
 }
 
 /* Sets p, pdf_p and what all light from infinity has in common, w given: p on a disc across w that touches the bounding
@@ -48,7 +48,7 @@ SHARED_FUNCTION bool light_emit_from_disc(const SceneView *scene, Vec2 u, LightE
     emission->p = vec3_mad(scene->frame->world_center, radius, offset);
     emission->pdf_p = light_emit_pdf_disc(scene);
     emission->infinite = 1u;
-    return radius > 0.0f && float_finite(emission->pdf_p) && emission->pdf_p > 0.0f;
+    return emission->pdf_p > 0.0f && float_finite(emission->pdf_p);
 }
 
 SHARED_FUNCTION bool light_emit_infinite(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,

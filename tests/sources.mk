@@ -8,6 +8,7 @@ check_PROGRAMS += \
 	tests/test_analytic \
 	tests/test_bsdf \
 	tests/test_bvh \
+	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_import \
@@ -43,6 +44,7 @@ EXTRA_DIST += \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
 	tests/test_bvh.h \
+	tests/test_emit.h \
 	tests/test_files.h \
 	tests/test_import.h \
 	tests/test_light.h \
@@ -88,6 +90,17 @@ tests_test_bvh_SOURCES += tests/opencl_probe_absent.c
 endif
 tests_test_bvh_CFLAGS = $(TEST_CFLAGS)
 tests_test_bvh_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
+tests_test_emit_SOURCES = tests/test_emit.c \
+	tests/test_emit_area.c \
+	tests/test_emit_camera.c \
+	tests/test_emit_direction.c \
+	tests/test_emit_distance.c \
+	tests/test_emit_image.c \
+	tests/test_emit_power.c \
+	tests/test_emit_splat.c \
+	tests/render_fixture.c
+tests_test_emit_CFLAGS = $(TEST_CFLAGS)
+tests_test_emit_LDADD = $(TEST_LIBS)
 
 tests_test_film_SOURCES = tests/test_film.c \
 	tests/test_film_output.c
