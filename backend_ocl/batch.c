@@ -146,6 +146,19 @@ static bool trace_shadow(Launch *launch)
            kernel_enqueue(launch, KERNEL_trace_shadow, items, true);
 }
 
+/* Puts the splats behind those put aside before. */
+static bool splats_put_aside(Launch *launch)
+{
+    Batch *batch = launch->batch;
+    cl_mem splats = batch->memory->splats;
+    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    size_t to = batch->splat_sections++ * bytes;
+    cl_event *event;
+    return event_slot(launch, "put splats aside", false, &event) &&
+           check(launch, clEnqueueCopyBuffer(launch->launcher->compute, splats, splats, 0, to, bytes, 0, NULL, event),
+                 "putting splats aside");
+}
+
 /* Whether the turn just enqueued had no live ray, as far as that is known by now. */
 static bool turn_was_idle(Launch *launch, bool *idle)
 {
@@ -179,6 +192,9 @@ static bool steps_enqueue(Launch *launch)
         case STEP_TRACE_SHADOW:
             done = trace_shadow(launch);
             break;
+        case STEP_SPLAT:
+            done = splats_put_aside(launch);
+            break;
         case STEP_SKIP_IF_IDLE:
             done = turn_was_idle(launch, &idle);
             if (done && idle)
@@ -189,10 +205,21 @@ static bool steps_enqueue(Launch *launch)
     return done;
 }
 
-/* The next batch asks a turn before this one ended: the turns differ by one or two. */
+/* The next batch asks a turn before this one ended: the turns differ by one or two. Of several walks in a list each may
+ * end early, so all turns are asked. */
 static void first_check_adapt(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
+    unsigned target = 0;
+    for (size_t i = 0; i < launch->list->count; ++i) {
+        if (launch->list->steps[i].kind != STEP_SKIP_IF_IDLE)
+            continue;
+        if (target > 0 && launch->list->steps[i].target != target) {
+            launcher->first_check = 2;
+            return;
+        }
+        target = launch->list->steps[i].target;
+    }
     uint turns = launch->idle_turn > 0 ? launch->idle_turn : launch->turn;
     launcher->first_check = turns > 2 ? turns - 1 : 2;
 }
@@ -206,7 +233,8 @@ static bool results_read(Launch *launch)
     Batch *batch = launch->batch;
     BatchResults *results = batch->memory->results;
     cl_event computed = NULL;
-    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint) *
+                   batch->splat_sections;
     bool done = check(launch,
                       clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_DIAGNOSTICS], CL_FALSE, 0,
                                           sizeof results->diagnostics, results->diagnostics, 0, NULL, NULL),
@@ -234,6 +262,7 @@ static bool results_read(Launch *launch)
 bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, Error *error)
 {
     Launch launch = {.launcher = launcher, .batch = batch, .list = list, .error = error};
+    batch->splat_sections = 1;
     bool done = batch_begin(&launch) && steps_enqueue(&launch) && results_read(&launch);
     counted_release(&launch);
     if (done)

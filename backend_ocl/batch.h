@@ -17,6 +17,7 @@ typedef struct Batch {
     BatchMemory *memory;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the batch */
     uint64_t number; /* since the backend was opened */
+    uint splat_sections; /* of frame.stride items in memory->host: at the end, and before it at every STEP_SPLAT */
     BatchEvent *events;
     size_t event_count, event_capacity;
     cl_event copied; /* its splats are in memory->host */

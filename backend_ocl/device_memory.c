@@ -237,14 +237,23 @@ static bool state_make(DeviceMemory *memory, uint batch, Error *error)
     return true;
 }
 
+/* Splats of an item, those of every STEP_SPLAT beside those of the end. */
+static uint splat_words(const StepList *list)
+{
+    uint sections = 1;
+    for (size_t i = 0; i < list->count; ++i)
+        sections += list->steps[i].kind == STEP_SPLAT;
+    return list->words_per_item[BUFFER_SPLATS] * sections;
+}
+
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error)
 {
     uint words[BUFFER_COUNT], batch;
     bool enough = memory->batch > 0;
     for (int id = 0; id < BUFFER_COUNT; ++id) {
-        enough = enough && list->words_per_item[id] <= memory->words_per_item[id];
-        words[id] = list->words_per_item[id] > memory->words_per_item[id] ? list->words_per_item[id]
-                                                                          : memory->words_per_item[id];
+        uint wanted = id == BUFFER_SPLATS ? splat_words(list) : list->words_per_item[id];
+        enough = enough && wanted <= memory->words_per_item[id];
+        words[id] = wanted > memory->words_per_item[id] ? wanted : memory->words_per_item[id];
     }
     if (enough)
         return true;

@@ -20,7 +20,8 @@ typedef struct BatchResults {
 } BatchResults;
 
 typedef struct BatchMemory {
-    cl_mem frame, splats;
+    cl_mem frame;
+    cl_mem splats; /* what kernels write, and behind it what every STEP_SPLAT has put aside */
     cl_mem staging; /* host memory that the device reaches directly, mapped as long as it lives */
     uint *host; /* its splats */
     BatchResults *results; /* behind them */

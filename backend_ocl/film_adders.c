@@ -88,8 +88,9 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
     slot->next += count;
     pthread_mutex_unlock(&adders->mutex);
     uint64_t begin = timeline_now();
-    if (adders->sink)
-        adders->sink(adders->context, batch->memory->host + first, count, batch->frame.stride);
+    for (uint section = 0; adders->sink && section < batch->splat_sections; ++section)
+        adders->sink(adders->context, batch->memory->host + (size_t)section * SPLAT_WORDS * batch->frame.stride + first,
+                     count, batch->frame.stride);
     timeline_add(adders->timeline, (BackendSpan){.name = "add to film",
                                                  .track = SPAN_FILM,
                                                  .lane = lane,
