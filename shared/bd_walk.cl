@@ -13,30 +13,6 @@
 #include "pixel_filter.h"
 #include "surface.h"
 
-SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
-{
-    state_store(paths, stride, BD_DEPTH, t, 0u);
-    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
-}
-
-/* The first ray of a walk. */
-SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
-                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray, Vec3 beta,
-                                float pdf, uint flags)
-{
-    ray_store(rays, stride, t, ray);
-    state_store(paths, stride, BD_SIDE, t, side);
-    state_store(paths, stride, BD_DEPTH, t, 1u);
-    state_store_vec3(paths, stride, BD_BETA, t, beta);
-    state_store_float(paths, stride, BD_PDF, t, pdf);
-    state_store(paths, stride, BD_WALK_FLAGS, t, flags);
-    state_store_float(paths, stride, BD_ETA_SCALE, t, 1.0f / vec3_max_component(beta));
-    if (!ray_traceable(ray.o, ray.d)) {
-        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
-        walk_end(paths, rays, stride, t);
-    }
-}
-
 /* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
 __kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                              __global const uint *restrict tables, __global const uint *restrict texels,
@@ -122,48 +98,13 @@ SHARED_FUNCTION float walk_way_back(__global const FrameParams *frame, __global 
                      state_load_vec3(vertices, stride, base + VERTEX_NG, t), flags);
 }
 
-/* Per area, the density with which the walk has made the point it has just met. */
-SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
-                                   float distance2, uint side, uint depth, uint flags, float pdf)
-{
-    if (side == SIDE_CAMERA && depth == 1u)
-        return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
-    if ((flags & WALK_PARALLEL) != 0u)
-        return pdf * float_abs(vec3_dot(ray->d, surface->ng));
-    return pdf * solid_angle_to_area(ray->d, surface->ng, distance2);
-}
-
-/* s = 0 at a light of the scene: the camera's vertex z_i has met it after `depth` = i segments. */
-SHARED_FUNCTION Vec3 walk_emission(const SceneView *scene, __global const uint *restrict paths, DensityView view,
-                                   uint light, const Surface *surface, const Ray *ray, Vec3 from, float distance2,
-                                   uint depth)
-{
-    Vec3 towards = vec3_negate(ray->d);
-    Vec3 radiance = light_emitted(scene, light, surface->ng, towards);
-    if (vec3_is_zero(radiance))
-        return radiance;
-    float select = scene->lights[light].select_pdf, emitted = select * light_emit_pdf_p(scene, light, surface);
-    StrategyEnds ends;
-    ends.light_z1 = emitted;
-    ends.light_z2 =
-        light_emit_pdf_w(scene, light, surface->ng, towards) * state_load_float(paths, view.stride, BD_BACK, view.t);
-    ends.connect = light_connect_ratio(scene, light, from, ray->d, distance2, surface);
-    ends.hittable = true;
-    return vec3_scale(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends));
-}
-
-/* The same for what has met nothing, and every light at infinity. */
+/* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
 SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);
-    StrategyEnds ends;
-    ends.light_z2 = light_emit_pdf_disc(scene) * float_abs(vec3_dot(d, ng));
-    ends.connect = 1.0f;
-    ends.hittable = true;
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
-        uint light = scene->infinite_lights[i];
-        Vec3 radiance = environment_light_radiance(scene, light, d);
-        ends.light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+        StrategyEnds ends = {0};
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
         if (!vec3_is_zero(radiance))
             sum = vec3_mad(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), sum);
     }
@@ -222,9 +163,12 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     uint first_light = scene.shapes[surface.shape].first_light;
     if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
         uint light = first_light + hit.primitive - scene.shapes[surface.shape].first_primitive;
-        bd_add_radiance(
-            paths, stride, t,
-            vec3_mul(beta, walk_emission(&scene, paths, view, light, &surface, &ray, from, distance2, depth)));
+        StrategyEnds ends = {0};
+        Vec3 radiance = emission_met(&scene, light, &surface, ray.d, from, distance2,
+                                     state_load_float(paths, stride, BD_BACK, t), &ends);
+        if (!vec3_is_zero(radiance))
+            bd_add_radiance(paths, stride, t,
+                            vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
     uint last = side == SIDE_CAMERA ? frame->max_depth : frame->max_depth - 1u;
     if (side == SIDE_CAMERA && depth >= last) { /* a vertex that nothing can be connected to */
@@ -233,15 +177,10 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     }
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
     Vertex vertex;
-    material_resolve(&scene, random_float(random.x[0]), &surface, &vertex.bsdf, &vertex.frame);
-    if (vertex.bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(vertex.bsdf.color0)) {
+    if (!vertex_make(&scene, &surface, ray.d, beta, random_float(random.x[0]), &vertex)) {
         walk_end(paths, rays, stride, t);
         return;
     }
-    vertex.p = surface.p;
-    vertex.ng = surface.ng;
-    vertex.wo = frame_to_local(vertex.frame, vec3_negate(ray.d));
-    vertex.beta = beta;
     vertex_store(&scene, vertices, stride, vertex_base(frame, side, depth), t, &vertex);
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
@@ -268,47 +207,23 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     Vertex vertex = vertex_load(&scene, vertices, stride, vertex_base(frame, side, depth), t);
-    uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
-    BsdfSample sample;
-    if (!bsdf_sample(&scene, &vertex.bsdf, vertex.wo, random_float(random.x[0]),
-                     vec2(random_float(random.x[1]), random_float(random.x[2])), transport, &sample)) {
+    WalkStep step;
+    if (!walk_scatter(&scene, &vertex, side, depth, state_load_float(paths, stride, BD_ETA_SCALE, t), random, &step)) {
         walk_end(paths, rays, stride, t);
         return;
     }
-    Vec3 wi = frame_to_world(vertex.frame, sample.wi), beta = vec3_mul(vertex.beta, sample.weight);
-    if (side == SIDE_LIGHT)
-        beta = vec3_scale(
-            beta, adjoint_factor(vertex.ng, frame_to_world(vertex.frame, vertex.wo), wi, vertex.wo.z, sample.wi.z));
-    float eta = side == SIDE_CAMERA ? sample.eta : 1.0f;
-    float eta_scale = state_load_float(paths, stride, BD_ETA_SCALE, t) * eta * eta;
-    float survival = depth >= BD_ROULETTE_FIRST_DEPTH ? vec3_max_component(beta) * eta_scale : 1.0f;
-    Ray ray = ray_spawn(vertex.p, vertex.ng, wi);
-    if (!(random_float(random.x[3]) < survival) || vec3_is_zero(beta)) {
-        walk_end(paths, rays, stride, t);
-        return;
-    }
-    if (!ray_traceable(ray.o, ray.d)) {
+    if (!ray_traceable(step.ray.o, step.ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         walk_end(paths, rays, stride, t);
         return;
     }
-    float forward = sample.pdf_w, reverse = sample.pdf_rev_w;
     uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
-    if (sample.delta != 0u) {
-        delta_densities(&sample, vertex.wo, &forward, &reverse);
+    if (step.delta != 0u)
         state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
-    }
     if (side == SIDE_LIGHT || depth > 1u)
         state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t,
-                          reverse * state_load_float(paths, stride, BD_BACK, t));
-    if (survival < 1.0f)
-        beta = vec3_scale(beta, 1.0f / survival);
-    state_store(paths, stride, BD_DEPTH, t, depth + 1u);
-    state_store_vec3(paths, stride, BD_BETA, t, beta);
-    state_store_float(paths, stride, BD_PDF, t, forward);
-    state_store(paths, stride, BD_WALK_FLAGS, t, sample.delta != 0u ? WALK_DELTA : 0u);
-    state_store_float(paths, stride, BD_ETA_SCALE, t, eta_scale);
-    ray_store(rays, stride, t, ray);
+                          step.reverse * state_load_float(paths, stride, BD_BACK, t));
+    walk_step_store(paths, rays, stride, t, depth, &step);
 }
 
 #endif

@@ -5,9 +5,15 @@
 #include "bd_state.h"
 #include "bsdf.h"
 #include "bsdf_state.h"
+#include "camera.h"
+#include "diagnostics.h"
 #include "light.h"
 #include "light_emit.h"
+#include "material.h"
 #include "ray.h"
+#include "rng.h"
+#include "strategy.h"
+#include "surface.h"
 
 /* The first vertices of a walk always survive Russian roulette. */
 #define BD_ROULETTE_FIRST_DEPTH 3u
@@ -106,6 +112,133 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     float emitted = light_emit_pdf_p(scene, light, point);
     float drawn = area_light_pdf_w(scene, light, from, w, point) * solid_angle_to_area(w, point->ng, distance2);
     return emitted > 0.0f ? drawn / emitted : 0.0f;
+}
+
+/* Per area, the density with which the walk has made the point it has just met. */
+SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
+                                   float distance2, uint side, uint depth, uint flags, float pdf)
+{
+    if (side == SIDE_CAMERA && depth == 1u)
+        return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
+    if ((flags & WALK_PARALLEL) != 0u)
+        return pdf * float_abs(vec3_dot(ray->d, surface->ng));
+    return pdf * solid_angle_to_area(ray->d, surface->ng, distance2);
+}
+
+/* ---- a step ------------------------------------------------------------------------------------------------------ */
+
+SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+{
+    state_store(paths, stride, BD_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+/* The first ray of a walk. */
+SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
+                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray, Vec3 beta,
+                                float pdf, uint flags)
+{
+    ray_store(rays, stride, t, ray);
+    state_store(paths, stride, BD_SIDE, t, side);
+    state_store(paths, stride, BD_DEPTH, t, 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, beta);
+    state_store_float(paths, stride, BD_PDF, t, pdf);
+    state_store(paths, stride, BD_WALK_FLAGS, t, flags);
+    state_store_float(paths, stride, BD_ETA_SCALE, t, 1.0f / vec3_max_component(beta));
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        walk_end(paths, rays, stride, t);
+    }
+}
+
+/* The vertex at a surface that a walk of throughput beta has met along d. False when nothing leaves it. u_mix: decides
+ * mix materials. */
+SHARED_FUNCTION bool vertex_make(const SceneView *scene, Surface *surface, Vec3 d, Vec3 beta, float u_mix,
+                                 Vertex *vertex)
+{
+    material_resolve(scene, u_mix, surface, &vertex->bsdf, &vertex->frame);
+    if (vertex->bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(vertex->bsdf.color0))
+        return false;
+    vertex->p = surface->p;
+    vertex->ng = surface->ng;
+    vertex->wo = frame_to_local(vertex->frame, vec3_negate(d));
+    vertex->beta = beta;
+    return true;
+}
+
+/* Where a walk goes on. */
+typedef struct WalkStep {
+    Ray ray;
+    Vec3 beta;
+    float forward; /* density of the new direction, and of the way back; per solid angle */
+    float reverse;
+    float eta_scale;
+    uint delta;
+} WalkStep;
+
+/* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which
+ * leaves the weights alone: they need not know of it to sum to one. random: lobe, direction, roulette. */
+SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth, float eta_scale,
+                                  Random4 random, WalkStep *step)
+{
+    BsdfSample sample;
+    uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
+    if (!bsdf_sample(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]),
+                     vec2(random_float(random.x[1]), random_float(random.x[2])), transport, &sample))
+        return false;
+    Vec3 wi = frame_to_world(vertex->frame, sample.wi);
+    step->beta = vec3_mul(vertex->beta, sample.weight);
+    if (side == SIDE_LIGHT)
+        step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
+                                                           vertex->wo.z, sample.wi.z));
+    step->eta_scale = side == SIDE_CAMERA ? eta_scale * sample.eta * sample.eta : eta_scale;
+    float survival = depth >= BD_ROULETTE_FIRST_DEPTH ? vec3_max_component(step->beta) * step->eta_scale : 1.0f;
+    if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
+        return false;
+    if (survival < 1.0f)
+        step->beta = vec3_scale(step->beta, 1.0f / survival);
+    step->ray = ray_spawn(vertex->p, vertex->ng, wi);
+    step->delta = sample.delta;
+    step->forward = sample.pdf_w;
+    step->reverse = sample.pdf_rev_w;
+    if (sample.delta != 0u)
+        delta_densities(&sample, vertex->wo, &step->forward, &step->reverse);
+    return true;
+}
+
+SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t,
+                                     uint depth, const WalkStep *step)
+{
+    state_store(paths, stride, BD_DEPTH, t, depth + 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, step->beta);
+    state_store_float(paths, stride, BD_PDF, t, step->forward);
+    state_store(paths, stride, BD_WALK_FLAGS, t, step->delta != 0u ? WALK_DELTA : 0u);
+    state_store_float(paths, stride, BD_ETA_SCALE, t, step->eta_scale);
+    ray_store(rays, stride, t, step->ray);
+}
+
+/* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */
+
+/* What the light sends back along d (unit) from `surface`, and what the weight needs to know. back: BD_BACK there. */
+SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, uint light, const Surface *surface, Vec3 d, Vec3 from,
+                                  float distance2, float back, StrategyEnds *ends)
+{
+    Vec3 towards = vec3_negate(d);
+    ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
+    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * back;
+    ends->connect = light_connect_ratio(scene, light, from, d, distance2, surface);
+    ends->hittable = true;
+    return light_emitted(scene, light, surface->ng, towards);
+}
+
+/* The same for a light at infinity. ng: geometric normal of the vertex that d leaves. */
+SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, Vec3 d, Vec3 ng, StrategyEnds *ends)
+{
+    ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+    ends->light_z2 = light_emit_pdf_disc(scene) * float_abs(vec3_dot(d, ng));
+    ends->connect = 1.0f;
+    ends->hittable = true;
+    return environment_light_radiance(scene, light, d);
 }
 
 #endif
