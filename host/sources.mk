@@ -31,7 +31,9 @@ libtwinlight_host_la_SOURCES = \
 	host/image_pfm.c \
 	host/image_stb.c \
 	host/integrator.c host/integrator.h \
+	host/bd_fields.c host/bd_fields.h \
 	host/integrator_bdpt.c \
+	host/integrator_ibpt.c \
 	host/integrator_pt.c \
 	host/interrupt.c host/interrupt.h \
 	host/json.c host/json.h \
