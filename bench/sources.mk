@@ -17,7 +17,7 @@ endif
 bench_bench_bvh_CPPFLAGS = $(AM_CPPFLAGS) -I$(srcdir)/tests
 bench_bench_bvh_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) -lm
 CLEANFILES += bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_DIST += bench/bench_bidirectional.sh bench/bench_opencl.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)
@@ -27,3 +27,4 @@ bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) benc
 if HAVE_OPENCL
 	$(srcdir)/bench/bench_opencl.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
 endif
+	$(srcdir)/bench/bench_bidirectional.sh ./twinlight$(EXEEXT) bench/bidirectional.svg $(BENCH_SCENES)
