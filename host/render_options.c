@@ -170,6 +170,22 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
+/* --verify makes no picture and takes no time of its own choosing. */
+static bool verify_alone(const RenderCommand *command, Error *error)
+{
+    const char *option = command->output             ? "output"
+                         : command->png_path         ? "png"
+                         : command->seconds > 0.0    ? "time"
+                         : command->save_every > 0.0 ? "save-every"
+                         : command->stats            ? "stats"
+                         : command->trace            ? "trace"
+                                                     : NULL;
+    if (!command->verify || !option)
+        return true;
+    error_set(error, "--%s does not go with --verify, which renders no picture", option);
+    return error_fix(error, "leave --%s out; --samples=N says how much is compared", option);
+}
+
 /* Which backends, once all options are known. */
 static bool backends_set(RenderCommand *command, const BackendTable *table, const char *backend, Error *error)
 {
@@ -209,5 +225,5 @@ bool render_options_parse(RenderCommand *command, const BackendTable *backends, 
         return error_fix(error, "render one scene at a time; options come as --name=value");
     }
     command->scene = argv[first];
-    return backends_set(command, backends, parse.backend, error);
+    return verify_alone(command, error) && backends_set(command, backends, parse.backend, error);
 }

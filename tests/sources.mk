@@ -20,7 +20,6 @@ check_PROGRAMS += \
 	tests/test_render \
 	tests/test_texture \
 	tests/test_verify
-	tests/test_texture
 if HAVE_OPENCL
 check_PROGRAMS += tests/test_opencl
 endif
