@@ -35,6 +35,7 @@ EXTRA_DIST += \
 	tests/analytic.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
+	tests/cli.sh \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
 	tests/light_fixture.h \
@@ -145,6 +146,7 @@ tests_test_metrics_LDADD = $(TEST_LIBS)
 tests_test_opencl_SOURCES = tests/test_opencl.c \
 	tests/test_opencl_bits.c \
 	tests/test_opencl_devices.c \
+	tests/test_opencl_inspect.c \
 	tests/test_opencl_pipeline.c \
 	tests/test_opencl_program.c \
 	tests/render_fixture.c
@@ -191,6 +193,7 @@ tests_test_verify_LDADD = $(TEST_LIBS)
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_opencl.sh \
-	tests/test_cli.sh
+	tests/test_cli.sh \
+	tests/test_devices.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)
