@@ -197,7 +197,7 @@ bool ocl_device_choose(const char *choice, OclDevice *device, Error *error)
 
 bool ocl_device_index(const char *choice, size_t *index, Error *error)
 {
-    OclDevice device;
+    OclDevice device = {.index = 0};
     if (!ocl_device_choose(choice, &device, error))
         return false;
     *index = device.index;

@@ -117,9 +117,12 @@ bool backend_choices_make(BackendChoices *choices, const BackendTable *table, co
         }
         return choices_distinct(choices, error);
     }
-    const BackendInterface *interface = backend ? table_find(table, backend) : table->backends[0];
-    if (!interface)
-        return unknown_backend(table, backend, error);
+    const BackendInterface *interface = table->backends[0];
+    if (backend) {
+        interface = table_find(table, backend);
+        if (!interface)
+            return unknown_backend(table, backend, error);
+    }
     if (!devices || !interface->spans) /* a device for a backend without is the caller's to refuse */
         return choice_add(choices, interface, "", 0, error);
     return devices_add(choices, interface, devices, error) && choices_distinct(choices, error);
