@@ -10,6 +10,7 @@ check_PROGRAMS += \
 	tests/test_bvh \
 	tests/test_film \
 	tests/test_geometry \
+	tests/test_group \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
@@ -38,6 +39,7 @@ EXTRA_DIST += \
 	tests/cli.sh \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
+	tests/instances.pbrt \
 	tests/light_fixture.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
@@ -101,6 +103,10 @@ tests_test_geometry_SOURCES = tests/test_geometry.c \
 	tests/geometry_fixture.c
 tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
 tests_test_geometry_LDADD = $(TEST_LIBS)
+
+tests_test_group_SOURCES = tests/test_group.c
+tests_test_group_CFLAGS = $(TEST_CFLAGS)
+tests_test_group_LDADD = $(TEST_LIBS)
 
 tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_bad.c \
