@@ -67,7 +67,8 @@ START_TEST(test_state_is_the_same)
     pair_open(setup, backend_ocl(), &pair);
     ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, 20000, &NEVER, &report, &error), "%s", error.message);
     ck_assert_uint_eq(report.items, 20000);
-    ck_assert_uint_eq(report.prefixes, pair.list.count);
+    ck_assert_uint_gt(report.prefixes, 9);
+    ck_assert_uint_le(report.prefixes, pair.list.count);
     pair_close(&pair);
 }
 END_TEST
