@@ -106,7 +106,7 @@ SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, 
         StrategyEnds ends = {0};
         Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
         if (!vec3_is_zero(radiance))
-            sum = vec3_mad(radiance, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), sum);
+            sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
     }
     return sum;
 }
