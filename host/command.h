@@ -28,6 +28,7 @@ typedef struct BackendTable {
  * says why, or is empty when the command's own output has. */
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_pyramid(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error);
 
 #endif

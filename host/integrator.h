@@ -17,6 +17,7 @@ typedef struct Integrator {
 void step_list_destroy(StepList *list);
 
 const Integrator *integrator_pt(void);
+const Integrator *integrator_ibpt(void);
 const Integrator *integrator_bdpt(void);
 
 /* NULL with an error that lists what there is. */

@@ -1,4 +1,5 @@
 /* Bidirectional path tracing: a walk from a light, a walk from the camera, and every connection between them. */
+#include "bd_fields.h"
 #include "bd_state.h"
 #include "integrator.h"
 #include "kernel_list.h"
@@ -9,44 +10,28 @@
 /* Bits of BD_LIGHT_DELTA; also what vertices and pairs are worth storing and making. */
 #define BDPT_DEPTH_LIMIT 31
 
-/* Steps being recorded. */
-typedef struct Recorder {
-    Step *steps;
-    size_t count;
-} Recorder;
-
-static void record(Recorder *recorder, StepKind kind)
-{
-    recorder->steps[recorder->count++] = (Step){.kind = kind};
-}
-
-static void record_kernel(Recorder *recorder, unsigned kernel, bool live_only)
-{
-    recorder->steps[recorder->count++] = (Step){.kind = STEP_KERNEL, .kernel = kernel, .live_only = live_only};
-}
-
 /* `segments` segments of a walk; nothing is drawn at the last vertex. */
 static void record_walk(Recorder *recorder, uint segments)
 {
     size_t end = recorder->count + (size_t)segments * 4 - 2;
     for (uint i = 1; i <= segments; ++i) {
-        record(recorder, STEP_TRACE_CLOSEST);
-        record_kernel(recorder, KERNEL_bd_shade_hits, true);
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_bd_shade_hits, true);
         if (i == segments)
             break;
-        record_kernel(recorder, KERNEL_bd_extend_walks, true);
-        recorder->steps[recorder->count++] = (Step){.kind = STEP_SKIP_IF_IDLE, .target = (unsigned)end};
+        recorder_kernel(recorder, KERNEL_bd_extend_walks, true);
+        recorder_skip(recorder, end);
     }
     assert(recorder->count == end);
 }
 
 static void record_connection(Recorder *recorder, uint t)
 {
-    record_kernel(recorder, KERNEL_bd_connect, false);
-    record(recorder, STEP_TRACE_SHADOW);
-    record_kernel(recorder, KERNEL_bd_add_connections, false);
+    recorder_kernel(recorder, KERNEL_bd_connect, false);
+    recorder_step(recorder, STEP_TRACE_SHADOW);
+    recorder_kernel(recorder, KERNEL_bd_add_connections, false);
     if (t == 1)
-        record(recorder, STEP_SPLAT);
+        recorder_step(recorder, STEP_SPLAT);
 }
 
 /* The pairs in the order that connection_advance (bd_connect.cl) has. */
@@ -59,30 +44,6 @@ static void record_connections(Recorder *recorder, uint max_depth)
             record_connection(recorder, t);
 }
 
-static const StateField BD_FIELDS[] = {
-    {BUFFER_PATHS, BD_PIXEL, 1, false, "pixel"},
-    {BUFFER_PATHS, BD_SAMPLE, 1, false, "sample"},
-    {BUFFER_PATHS, BD_WEIGHT, 1, true, "filter weight"},
-    {BUFFER_PATHS, BD_RADIANCE, 3, true, "radiance"},
-    {BUFFER_PATHS, BD_LENGTHS, 1, false, "numbers of vertices"},
-    {BUFFER_PATHS, BD_LIGHT_DELTA, 1, false, "delta vertices of the light"},
-    {BUFFER_PATHS, BD_CAMERA_DELTA, 1, false, "delta vertices of the camera"},
-    {BUFFER_PATHS, BD_EMITTER, 1, false, "light"},
-    {BUFFER_PATHS, BD_EMITTER_FLAGS, 1, false, "flags of the light"},
-    {BUFFER_PATHS, BD_CONNECT, 1, true, "ratio of the light's densities"},
-    {BUFFER_PATHS, BD_SIDE, 1, false, "side"},
-    {BUFFER_PATHS, BD_DEPTH, 1, false, "depth"},
-    {BUFFER_PATHS, BD_BETA, 3, true, "throughput"},
-    {BUFFER_PATHS, BD_PDF, 1, true, "density of the last direction"},
-    {BUFFER_PATHS, BD_WALK_FLAGS, 1, false, "flags of the walk"},
-    {BUFFER_PATHS, BD_ETA_SCALE, 1, true, "eta^2"},
-    {BUFFER_PATHS, BD_BACK, 1, true, "factor of the way back"},
-    {BUFFER_PATHS, BD_S, 1, false, "s"},
-    {BUFFER_PATHS, BD_T, 1, false, "t"},
-    {BUFFER_PATHS, BD_CONTRIBUTION, 3, true, "contribution of the connection"},
-    {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},
-};
-
 static bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->max_depth;
@@ -91,18 +52,16 @@ static bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     Recorder recorder = {malloc(capacity * sizeof(Step)), 0};
     if (!recorder.steps)
         return error_memory(error, capacity * sizeof(Step), "the list of steps");
-    record_kernel(&recorder, KERNEL_bd_start_light, false);
+    recorder_kernel(&recorder, KERNEL_bd_start_light, false);
     if (max_depth > 1)
         record_walk(&recorder, max_depth - 1);
-    record_kernel(&recorder, KERNEL_bd_start_camera, false);
+    recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
     record_walk(&recorder, max_depth);
     record_connections(&recorder, max_depth);
-    record_kernel(&recorder, KERNEL_bd_splat, false);
+    recorder_kernel(&recorder, KERNEL_bd_splat, false);
     assert(recorder.count <= capacity);
-    *list = (StepList){.steps = recorder.steps,
-                       .count = recorder.count,
-                       .fields = BD_FIELDS,
-                       .field_count = sizeof BD_FIELDS / sizeof BD_FIELDS[0]};
+    *list = (StepList){
+        .steps = recorder.steps, .count = recorder.count, .fields = BD_FIELDS, .field_count = BD_FIELD_COUNT};
     list->words_per_item[BUFFER_PATHS] = BD_HEADER_WORDS;
     list->words_per_item[BUFFER_RAYS] = RAY_WORDS;
     list->words_per_item[BUFFER_HITS] = HIT_WORDS;

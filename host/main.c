@@ -34,6 +34,7 @@ static const Command COMMANDS[] = {
     {"compare", "measure how far an image is from a reference", compare_run},
     {"info", "say what a scene holds", cmd_info},
     {"devices", "list what can be rendered on", cmd_devices},
+    {"pyramid", "show what every bidirectional strategy brings", cmd_pyramid},
 };
 
 #define COMMAND_COUNT (int)(sizeof COMMANDS / sizeof COMMANDS[0])
@@ -86,7 +87,7 @@ static int usage_fail(Error *error, const char *word)
         error_set(error, "unknown %s %s", word[0] == '-' ? "option" : "command", word);
     else
         error_set(error, "no command is given");
-    error_fix(error, "use render, compare, info or devices; see twinlight --help");
+    error_fix(error, "use render, compare, info, devices or pyramid; see twinlight --help");
     return EXIT_USAGE;
 }
 

@@ -11,9 +11,11 @@ libtwinlight_host_la_SOURCES = \
 	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_devices.c \
 	host/cmd_info.c \
+	host/cmd_pyramid.c \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
 	host/color.c host/color.h \
+	host/contact_sheet.c host/contact_sheet.h \
 	host/color_named.c \
 	host/color_tables.h \
 	host/command.h \
@@ -31,7 +33,9 @@ libtwinlight_host_la_SOURCES = \
 	host/image_pfm.c \
 	host/image_stb.c \
 	host/integrator.c host/integrator.h \
+	host/bd_fields.c host/bd_fields.h \
 	host/integrator_bdpt.c \
+	host/integrator_ibpt.c \
 	host/integrator_pt.c \
 	host/interrupt.c host/interrupt.h \
 	host/json.c host/json.h \

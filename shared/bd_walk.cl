@@ -4,14 +4,9 @@
 #define TWINLIGHT_BD_WALK_CL
 
 #include "bd_random.h"
+#include "bd_start.h"
 #include "bd_walk.h"
 #include "bd_weight.h"
-#include "camera.h"
-#include "diagnostics.h"
-#include "item.h"
-#include "material.h"
-#include "pixel_filter.h"
-#include "surface.h"
 
 /* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
 __kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
@@ -24,43 +19,20 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     if (t >= frame->item_count)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    ItemPlace place = item_place(frame, t);
-    state_store(paths, stride, BD_PIXEL, t, place.pixel);
-    state_store(paths, stride, BD_SAMPLE, t, place.sample);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
+    bd_header_begin(frame, paths, rays, shadows, stride, t);
     state_store(paths, stride, BD_LENGTHS, t, 0u);
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
     state_store(paths, stride, BD_S, t, 2u);
     state_store(paths, stride, BD_T, t, 1u);
-    state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
-    walk_end(paths, rays, stride, t);
     if (frame->max_depth < 2u)
         return;
-    Random4 choice = bd_random(frame, paths, t, BD_RANDOM_LIGHT), random = bd_random(frame, paths, t, BD_RANDOM_EMIT);
-    uint light = light_select(&scene, choice.x[0], choice.x[1]);
-    LightEmission emission = {0};
-    if (!light_emit(&scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
-                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
+    float own;
+    if (!walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
+                          &own))
         return;
-    float select = scene.lights[light].select_pdf;
-    uint flags = (emission.infinite != 0u ? EMITTER_INFINITE : 0u) |
-                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
-    uint base = vertex_base(frame, SIDE_LIGHT, 0u);
-    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, emission.infinite != 0u ? emission.w : emission.p);
-    state_store_vec3(vertices, stride, base + VERTEX_NG, t, emission.ng);
-    /* The density of y_0: of a point, or of a direction where the light is at infinity. */
-    float own = select * (emission.infinite != 0u ? emission.pdf_w : emission.pdf_p);
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
-    state_store(paths, stride, BD_EMITTER, t, light);
-    state_store(paths, stride, BD_EMITTER_FLAGS, t, flags);
     state_store(paths, stride, BD_LENGTHS, t, 1u);
-    Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
-    bool on_surface = emission.infinite == 0u && emission.delta_position == 0u;
-    Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta,
-               emission.infinite != 0u ? emission.pdf_p : emission.pdf_w, emission.infinite != 0u ? WALK_PARALLEL : 0u);
 }
 
 /* From: nothing more than the pixel. To: the camera's first ray. */
@@ -73,16 +45,7 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
     if (t >= frame->item_count)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
-    float weight;
-    Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    uint pixel = state_load(paths, stride, BD_PIXEL, t);
-    Vec2 film = vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
-    Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
-                         vec2(random_float(random.x[2]), random_float(random.x[3])));
-    state_store_float(paths, stride, BD_WEIGHT, t, weight);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+    walk_start_camera(&scene, paths, rays, diagnostics, stride, t);
 }
 
 /* What the vertex before knows of the way back to it: see BD_BACK. */

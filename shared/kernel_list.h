@@ -34,6 +34,17 @@
       BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
     X(bd_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
     X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(ib_start_light, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                             \
+    X(ib_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_DIAGNOSTICS)                                                                                              \
+    X(ib_shade_hits, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
+      BUFFER_HITS, BUFFER_VERTICES)                                                                                    \
+    X(ib_connect, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
+      BUFFER_VERTICES)                                                                                                 \
+    X(ib_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
+    X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
     X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
     X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
       BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \

@@ -3,6 +3,7 @@ SHARED_FILES = \
 	shared/bd_connect.cl \
 	shared/bd_connect.h \
 	shared/bd_random.h \
+	shared/bd_start.h \
 	shared/bd_state.h \
 	shared/bd_walk.cl \
 	shared/bd_walk.h \
@@ -27,6 +28,8 @@ SHARED_FILES = \
 	shared/elementary.h \
 	shared/film_splat.h \
 	shared/fresnel.h \
+	shared/ib_weight.h \
+	shared/ibpt.cl \
 	shared/item.h \
 	shared/kernel_list.h \
 	shared/kernels.cl \

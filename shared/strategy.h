@@ -83,9 +83,13 @@ SHARED_FUNCTION float strategy_weight(uint set, uint exponent, uint s, uint t, c
                                       const StrategyEnds *ends)
 {
     MisSum sum = mis_sum_begin(exponent);
-    strategy_sum_camera(&sum, set, s, t, view, ends);
+    DensityView path = *view;
+    /* By whatever lobe the walks went on from the ends, the connection is none of them. */
+    path.camera_delta &= (1u << (t - 1u)) - 1u;
+    path.light_delta &= s > 0u ? (1u << (s - 1u)) - 1u : 0u;
+    strategy_sum_camera(&sum, set, s, t, &path, ends);
     mis_sum_turn(&sum);
-    strategy_sum_light(&sum, set, s, t, view, ends);
+    strategy_sum_light(&sum, set, s, t, &path, ends);
     return mis_sum_weight(&sum, scaled_from(s == 1u ? ends->connect : 1.0f));
 }
 

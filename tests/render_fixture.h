@@ -18,6 +18,7 @@ typedef struct RenderSetup {
     bool record_spans;
     uint64_t seed;
     const Integrator *integrator; /* NULL: path tracing */
+    unsigned strategies; /* 0: the integrator's */
     bool balance, only_strategy, unweighted; /* RenderOptions */
     unsigned strategy[2];
     const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */

@@ -12,6 +12,7 @@ check_PROGRAMS += \
 	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
+	tests/test_ibpt \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
@@ -124,6 +125,11 @@ tests_test_geometry_SOURCES = tests/test_geometry.c \
 	tests/geometry_fixture.c
 tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
 tests_test_geometry_LDADD = $(TEST_LIBS)
+
+tests_test_ibpt_SOURCES = tests/test_ibpt.c \
+	tests/render_fixture.c
+tests_test_ibpt_CFLAGS = $(TEST_CFLAGS)
+tests_test_ibpt_LDADD = $(TEST_LIBS)
 
 tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_bad.c \

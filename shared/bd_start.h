@@ -1,0 +1,71 @@
+/* How both walks of a bidirectional path begin. */
+#ifndef TWINLIGHT_BD_START_H
+#define TWINLIGHT_BD_START_H
+
+#include "bd_random.h"
+#include "bd_walk.h"
+#include "item.h"
+#include "pixel_filter.h"
+
+/* The header of a path that has not begun: no ray, no shadow ray, nothing gathered. */
+SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                     __global uint *restrict rays, __global uint *restrict shadows, uint stride, uint t)
+{
+    ItemPlace place = item_place(frame, t);
+    state_store(paths, stride, BD_PIXEL, t, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
+    walk_end(paths, rays, stride, t);
+}
+
+/* Draws y_0, stored at `base`, and the light's first ray. *own: density of y_0, of a point or of a direction where the
+ * light is at infinity. False when the light sends nothing. */
+SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
+                                      __global uint *restrict rays, __global uint *restrict vertices,
+                                      __global uint *restrict diagnostics, uint stride, uint t, uint base, float *own)
+{
+    __global const FrameParams *frame = scene->frame;
+    Random4 choice = bd_random(frame, paths, t, BD_RANDOM_LIGHT), random = bd_random(frame, paths, t, BD_RANDOM_EMIT);
+    uint light = light_select(scene, choice.x[0], choice.x[1]);
+    LightEmission emission = {0};
+    if (!light_emit(scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
+                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
+        return false;
+    float select = scene->lights[light].select_pdf;
+    bool infinite = emission.infinite != 0u;
+    uint flags = (infinite ? EMITTER_INFINITE : 0u) |
+                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, infinite ? emission.w : emission.p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, t, emission.ng);
+    state_store(paths, stride, BD_EMITTER, t, light);
+    state_store(paths, stride, BD_EMITTER_FLAGS, t, flags);
+    *own = select * (infinite ? emission.pdf_w : emission.pdf_p);
+    Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
+    bool on_surface = !infinite && emission.delta_position == 0u;
+    Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta, infinite ? emission.pdf_p : emission.pdf_w,
+               infinite ? WALK_PARALLEL : 0u);
+    return true;
+}
+
+/* The camera's first ray. */
+SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
+                                       uint t)
+{
+    __global const FrameParams *frame = scene->frame;
+    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
+    float weight;
+    Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
+    uint pixel = state_load(paths, stride, BD_PIXEL, t);
+    Vec2 film = vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    state_store_float(paths, stride, BD_WEIGHT, t, weight);
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+}
+
+#endif
