@@ -8,6 +8,7 @@
 /* Strategies that cannot make all paths of a scene, because of something that has no density. */
 #define SUPPORT_ALL 0u
 #define SUPPORT_NO_HIT 0x1u /* no path meets the light, or hardly ever */
+#define SUPPORT_NO_DRAW 0x4u /* s = 1 draws points of a part of the light alone: of a sphere the near side */
 #define SUPPORT_SUM_ONLY 0x2u /* delta scattering: strategies share no support */
 
 typedef struct BidirectionalScene {
@@ -81,7 +82,6 @@ void groups_compare(const char *name, const PictureGroups *got, const PictureGro
 unsigned bidirectional_effort(void);
 
 TCase *bidirectional_weights_case(void);
-TCase *bidirectional_paths_case(void);
 TCase *bidirectional_strategies_case(void);
 TCase *bidirectional_sums_case(void);
 TCase *bidirectional_film_case(void);

@@ -76,7 +76,9 @@ tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
 	tests/bidirectional_groups.c \
 	tests/bidirectional_scenes.c \
 	tests/render_fixture.c \
-	tests/test_bidirectional_strategies.c
+	tests/test_bidirectional_film.c \
+	tests/test_bidirectional_strategies.c \
+	tests/test_bidirectional_weights.c
 tests_test_bidirectional_CFLAGS = $(TEST_CFLAGS)
 tests_test_bidirectional_LDADD = $(TEST_LIBS)
 

@@ -4,7 +4,10 @@
 int main(void)
 {
     Suite *suite = suite_create("bidirectional");
+    suite_add_tcase(suite, bidirectional_weights_case());
     suite_add_tcase(suite, bidirectional_strategies_case());
+    suite_add_tcase(suite, bidirectional_film_case());
+    suite_add_tcase(suite, bidirectional_hard_case());
     suite_add_tcase(suite, bidirectional_sums_case());
     return test_run(suite);
 }

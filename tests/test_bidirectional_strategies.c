@@ -12,7 +12,7 @@ static void strategy_check(const BidirectionalScene *scene, unsigned s, unsigned
                         .render = {.text = bidirectional_text(scene),
                                    .width = 8,
                                    .height = 8,
-                                   .samples = 24,
+                                   .samples = 80,
                                    .max_depth = (int)(s + t) - 1,
                                    .threads = 1,
                                    .seed = 1000 + 100 * s,
@@ -22,7 +22,7 @@ static void strategy_check(const BidirectionalScene *scene, unsigned s, unsigned
                                    .unweighted = true}};
     snprintf(name, sizeof name, "%s (%u,%u)", scene->name, s, t);
     groups_render(&setup, &got);
-    groups_compare(name, &got, expected, 4, false);
+    groups_compare(name, &got, expected, 2, false);
     groups_destroy(&got);
 }
 
@@ -36,12 +36,13 @@ START_TEST(test_strategies)
                             .render = {.text = bidirectional_text(scene),
                                        .width = 8,
                                        .height = 8,
-                                       .samples = 64,
+                                       .samples = 128,
                                        .max_depth = k,
                                        .threads = 1}};
         groups_render(&setup, &expected);
         for (unsigned s = scene->support & SUPPORT_NO_HIT ? 2 : 0; s <= (unsigned)k; ++s)
-            strategy_check(scene, s, (unsigned)k + 1 - s, &expected);
+            if (s != 1 || (scene->support & SUPPORT_NO_DRAW) == 0)
+                strategy_check(scene, s, (unsigned)k + 1 - s, &expected);
         groups_destroy(&expected);
     }
 }
@@ -55,10 +56,10 @@ START_TEST(test_sum)
     PictureGroups expected;
     GroupSetup setup = {
         .groups = 16,
-        .render = {.text = bidirectional_text(scene), .samples = 12, .max_depth = scene->depth, .threads = 1}};
+        .render = {.text = bidirectional_text(scene), .samples = 24, .max_depth = scene->depth, .threads = 1}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_bdpt();
-    setup.render.samples = 4;
+    setup.render.samples = 8;
     for (int balance = 0; balance < 2; ++balance) {
         PictureGroups got;
         char name[96];
