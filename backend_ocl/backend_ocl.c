@@ -278,6 +278,7 @@ const BackendInterface *backend_ocl(void)
 {
     static const BackendInterface interface = {.name = "opencl",
                                                .devices = ocl_devices_list,
+                                               .device_index = ocl_device_index,
                                                .open = backend_ocl_open,
                                                .close = backend_ocl_close,
                                                .run = backend_ocl_run,

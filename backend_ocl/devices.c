@@ -162,6 +162,22 @@ static bool device_pick(const OclDevice *devices, size_t count, const char *choi
     return fix_with_list(devices, count, error);
 }
 
+/* A platform without a device is a driver that gave up; PoCL does where it cannot keep its own files. */
+static bool no_device(Error *error)
+{
+    cl_platform_id platform;
+    char name[128] = "";
+    if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS) {
+        error_set(error, "there is no OpenCL device");
+        return error_fix(error, "install the driver of the machine's GPU, or PoCL, which computes on the CPU: "
+                                "apt-get install pocl-opencl-icd; or take --backend=cpu");
+    }
+    clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
+    error_set(error, "there is no OpenCL device, though there is a driver (%s)", name);
+    return error_fix(error, "PoCL has none when its cache folder cannot be written: set XDG_CACHE_HOME or "
+                            "POCL_CACHE_DIR to one that can; or take --backend=cpu");
+}
+
 bool ocl_device_choose(const char *choice, OclDevice *device, Error *error)
 {
     OclDevice *all = calloc(OCL_DEVICES_MAX, sizeof *all);
@@ -169,15 +185,21 @@ bool ocl_device_choose(const char *choice, OclDevice *device, Error *error)
         return error_memory(error, OCL_DEVICES_MAX * sizeof *all, "the list of devices");
     size_t picked, count = ocl_devices_find(all, OCL_DEVICES_MAX);
     bool chosen = false;
-    if (count == 0) {
-        error_set(error, "there is no OpenCL device");
-        error_fix(error, "install the driver of the machine's GPU, or PoCL, which computes on the CPU: "
-                         "apt-get install pocl-opencl-icd; or take --backend=cpu");
-    } else {
+    if (count == 0)
+        no_device(error);
+    else
         chosen = device_pick(all, count, choice, &picked, error);
-    }
     if (chosen)
         *device = all[picked];
     free(all);
     return chosen;
+}
+
+bool ocl_device_index(const char *choice, size_t *index, Error *error)
+{
+    OclDevice device = {.index = 0};
+    if (!ocl_device_choose(choice, &device, error))
+        return false;
+    *index = device.index;
+    return true;
 }

@@ -27,4 +27,7 @@ size_t ocl_devices_list(BackendDevice *devices, size_t capacity);
  * first. Otherwise an error that lists the devices. */
 bool ocl_device_choose(const char *choice, OclDevice *device, Error *error);
 
+/* The same, as the interface asks it. */
+bool ocl_device_index(const char *choice, size_t *index, Error *error);
+
 #endif

@@ -1,4 +1,9 @@
-# `make bench`: speed of the program on BENCH_SCENES, one table on standard output. Not part of `make check`.
+# `make bench`: figures of speed, tables on standard output. Not part of `make check`. In order of appearance:
+#   bench_rays       rays/s of the CPU backend against bare Embree, one thread, random meshes
+#   bench_bvh        rays/s of Embree, of the devices' hierarchy walked in C, and of it on OpenCL, on BENCH_SCENES
+#   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
+#   bench_opencl.sh  samples/s of a device with overlap and without, and of the CPU; rays/s inside ray queries of both
+# Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
 EXTRA_PROGRAMS += bench/make_ply
@@ -17,7 +22,7 @@ endif
 bench_bench_bvh_CPPFLAGS = $(AM_CPPFLAGS) -I$(srcdir)/tests
 bench_bench_bvh_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) -lm
 CLEANFILES += bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_DIST += bench/bench_bidirectional.sh bench/bench_opencl.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)
@@ -27,3 +32,4 @@ bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) benc
 if HAVE_OPENCL
 	$(srcdir)/bench/bench_opencl.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
 endif
+	$(srcdir)/bench/bench_bidirectional.sh ./twinlight$(EXEEXT) bench/bidirectional.svg $(BENCH_SCENES)

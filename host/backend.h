@@ -143,6 +143,9 @@ typedef struct BackendInterface {
     const char *name;
     /* Fills up to `capacity` devices and returns how many there are; --device counts them in this order. */
     size_t (*devices)(BackendDevice *devices, size_t capacity);
+    /* Which of `devices` BackendOptions.device means; false with an error when it fits none or several. NULL for
+     * backends without a choice of devices. */
+    bool (*device_index)(const char *device, size_t *index, Error *error);
     /* Builds the acceleration structure and worker threads or queues. NULL on failure. */
     Backend *(*open)(const BackendScene *scene, const BackendOptions *options, Error *error);
     void (*close)(Backend *backend);

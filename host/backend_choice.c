@@ -40,8 +40,10 @@ static bool choice_add(BackendChoices *choices, const BackendInterface *interfac
     }
     BackendChoice *choice = &choices->items[choices->count++];
     choice->interface = interface;
-    if (length >= sizeof choice->device)
-        return error_set(error, "--device: a name of %zu characters", length);
+    if (length >= sizeof choice->device) {
+        error_set(error, "--device: a name of %zu characters", length);
+        return error_fix(error, "write a shorter part of it, or the device's number");
+    }
     memcpy(choice->device, device, length);
     choice->device[length] = '\0';
     if (!strstr(choices->name, interface->name)) {
@@ -81,10 +83,13 @@ static bool all_devices_add(BackendChoices *choices, const BackendInterface *int
         else if (!choice_add(choices, interface, number, (size_t)length, error))
             return false;
     }
+    if (found == 0)
+        log_message(LOG_WARNING, "%s has no device here, so --backend=all goes without", interface->name);
     return true;
 }
 
-/* The same device twice would be two programs on one device. */
+/* The same device twice would be two programs on one device. This sees it in the words; devices_distinct, once drivers
+ * are asked, also where a number and a name mean the same. */
 static bool choices_distinct(const BackendChoices *choices, Error *error)
 {
     for (size_t i = 0; i < choices->count; ++i)
@@ -112,9 +117,12 @@ bool backend_choices_make(BackendChoices *choices, const BackendTable *table, co
         }
         return choices_distinct(choices, error);
     }
-    const BackendInterface *interface = backend ? table_find(table, backend) : table->backends[0];
-    if (!interface)
-        return unknown_backend(table, backend, error);
+    const BackendInterface *interface = table->backends[0];
+    if (backend) {
+        interface = table_find(table, backend);
+        if (!interface)
+            return unknown_backend(table, backend, error);
+    }
     if (!devices || !interface->spans) /* a device for a backend without is the caller's to refuse */
         return choice_add(choices, interface, "", 0, error);
     return devices_add(choices, interface, devices, error) && choices_distinct(choices, error);
@@ -128,10 +136,31 @@ bool backend_choices_have_devices(const BackendChoices *choices)
     return false;
 }
 
+static bool devices_distinct(const BackendChoices *choices, Error *error)
+{
+    size_t indices[BACKEND_GROUP_MAX] = {0};
+    for (size_t i = 0; i < choices->count; ++i) {
+        const BackendChoice *choice = &choices->items[i];
+        if (!choice->interface->device_index || !choice->device[0])
+            continue;
+        if (!choice->interface->device_index(choice->device, &indices[i], error))
+            return false;
+        for (size_t k = 0; k < i; ++k)
+            if (choices->items[k].interface == choice->interface && indices[k] == indices[i]) {
+                error_set(error, "--device: %s and %s are the same device, number %zu", choices->items[k].device,
+                          choice->device, indices[i]);
+                return error_fix(error, "name every device once");
+            }
+    }
+    return true;
+}
+
 bool backend_choices_open(const BackendChoices *choices, const BackendScene *scene, const BackendOptions *options,
                           BackendMember *opened, Error *error)
 {
     BackendMember members[BACKEND_GROUP_MAX] = {{NULL, NULL}};
+    if (choices->count > 1 && !devices_distinct(choices, error))
+        return false;
     for (size_t i = 0; i < choices->count; ++i) {
         BackendOptions own = *options;
         own.device = choices->items[i].device[0] ? choices->items[i].device : NULL;

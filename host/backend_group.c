@@ -102,7 +102,7 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
 {
     Group *group = group_of(backend);
     const GroupRun run = {list, sink, context, stop};
-    uint shares[BACKEND_GROUP_MAX], first = frame->first_item;
+    uint shares[BACKEND_GROUP_MAX] = {0}, first = frame->first_item;
     pthread_t threads[BACKEND_GROUP_MAX];
     bool started[BACKEND_GROUP_MAX] = {false};
     shares_make(group, frame->item_count, shares);

@@ -44,8 +44,8 @@ static const OptionSpec SPECS[] = {
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
     [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
-    [OPTION_DEVICE] = {"device", 0, "INDEX|NAME",
-                       "OpenCL devices, commas between, as twinlight devices counts them (default: 0)"},
+    [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
+                       "OpenCL devices, by number or part of a name as twinlight devices has them (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
@@ -194,6 +194,22 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
+/* --verify makes no picture and takes no time of its own choosing. */
+static bool verify_alone(const RenderCommand *command, Error *error)
+{
+    const char *option = command->output             ? "output"
+                         : command->png_path         ? "png"
+                         : command->seconds > 0.0    ? "time"
+                         : command->save_every > 0.0 ? "save-every"
+                         : command->stats            ? "stats"
+                         : command->trace            ? "trace"
+                                                     : NULL;
+    if (!command->verify || !option)
+        return true;
+    error_set(error, "--%s does not go with --verify, which renders no picture", option);
+    return error_fix(error, "leave --%s out; --samples=N says how much is compared", option);
+}
+
 /* Which backends, once all options are known. */
 static bool backends_set(RenderCommand *command, const BackendTable *table, const char *backend, Error *error)
 {
@@ -237,5 +253,5 @@ bool render_options_parse(RenderCommand *command, const BackendTable *backends, 
         error_set(error, "--unweighted without --strategy would count every path several times");
         return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
     }
-    return backends_set(command, backends, parse.backend, error);
+    return verify_alone(command, error) && backends_set(command, backends, parse.backend, error);
 }

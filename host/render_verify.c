@@ -14,6 +14,10 @@ static bool member_verify(const BackendMember sides[2], const FrameParams *frame
     if (!verify_run(sides, frame, list, items, stop, &report, error))
         return false;
     sides[1].interface->statistics(sides[1].backend, &statistics);
+    if (report.items == 0) {
+        log_message(LOG_WARNING, "stopped before anything of %s was compared", statistics.device);
+        return true;
+    }
     log_message(LOG_INFO,
                 "%s on %s agrees with the CPU: %llu paths, %u words each, the first of them after each of %llu steps%s",
                 sides[1].interface->name, statistics.device, (unsigned long long)report.items, report.words,

@@ -198,15 +198,35 @@ static bool difference_report(const Verifier *verifier, size_t step, const Diffe
 
 /* ---- the blocks -------------------------------------------------------------------------------------------------- */
 
-/* Compares after every step. */
-static bool block_verify_steps(Verifier *verifier, Error *error)
+/* Whether no item has a ray left that is to be traced. */
+static bool block_is_idle(const Verifier *verifier)
+{
+    const BlockState *state = &verifier->state[0];
+    const uint *t_max = state->words + state->offset[BUFFER_RAYS] + (size_t)RAY_T_MAX * BLOCK_ITEMS;
+    for (uint item = 0; item < verifier->frame.item_count; ++item)
+        if (bits_float(t_max[item]) > 0.0f)
+            return false;
+    return true;
+}
+
+/* How many steps to run next: one more, or when all paths have ended, as far as they skip and one more. */
+static size_t steps_next(const Verifier *verifier, size_t steps)
+{
+    const Step *last = &verifier->list->steps[steps - 1];
+    bool idle = last->kind == STEP_SKIP_IF_IDLE && block_is_idle(verifier);
+    return (idle ? last->target : steps) + 1;
+}
+
+/* Compares after every step that anything can happen in. */
+static bool block_verify_steps(Verifier *verifier, const atomic_int *stop, uint64_t *prefixes, Error *error)
 {
     Difference difference;
-    for (size_t steps = 1; steps <= verifier->list->count; ++steps) {
+    for (size_t steps = 1; steps <= verifier->list->count && !*stop; steps = steps_next(verifier, steps)) {
         if (!block_run(verifier, steps, error))
             return false;
         if (block_difference(verifier, &difference))
             return difference_report(verifier, steps - 1, &difference, error);
+        ++*prefixes;
     }
     return true;
 }
@@ -214,12 +234,14 @@ static bool block_verify_steps(Verifier *verifier, Error *error)
 /* Compares after the last step; where that differs, finds the first step that does. */
 static bool block_verify_end(Verifier *verifier, Error *error)
 {
+    static const atomic_int never = 0;
     Difference difference;
+    uint64_t prefixes = 0;
     if (!block_run(verifier, verifier->list->count, error))
         return false;
     if (!block_difference(verifier, &difference))
         return true;
-    if (!block_verify_steps(verifier, error))
+    if (!block_verify_steps(verifier, &never, &prefixes, error))
         return false;
     return error_set(error, "the two backends differ after the last step, but not when run again step by step: one of "
                             "them does not give the same bits twice");
@@ -235,9 +257,9 @@ bool verify_run(const BackendMember sides[2], const FrameParams *frame, const St
         uint64_t left = items - first;
         verifier.frame.first_item = (uint)(frame->first_item + first);
         verifier.frame.item_count = left < BLOCK_ITEMS ? (uint)left : BLOCK_ITEMS;
-        same = first == 0 ? block_verify_steps(&verifier, error) : block_verify_end(&verifier, error);
-        report->prefixes = list->count;
-        report->items += same ? verifier.frame.item_count : 0;
+        same = first == 0 ? block_verify_steps(&verifier, stop, &report->prefixes, error)
+                          : block_verify_end(&verifier, error);
+        report->items += same && (first > 0 || !*stop) ? verifier.frame.item_count : 0;
     }
     verifier_destroy(&verifier);
     return same;

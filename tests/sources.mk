@@ -13,6 +13,7 @@ check_PROGRAMS += \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_ibpt \
+	tests/test_group \
 	tests/test_import \
 	tests/test_light \
 	tests/test_math \
@@ -39,8 +40,10 @@ EXTRA_DIST += \
 	tests/bidirectional.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
+	tests/cli.sh \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
+	tests/instances.pbrt \
 	tests/light_fixture.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
@@ -132,6 +135,9 @@ tests_test_ibpt_SOURCES = tests/test_ibpt.c \
 	tests/render_fixture.c
 tests_test_ibpt_CFLAGS = $(TEST_CFLAGS)
 tests_test_ibpt_LDADD = $(TEST_LIBS)
+tests_test_group_SOURCES = tests/test_group.c
+tests_test_group_CFLAGS = $(TEST_CFLAGS)
+tests_test_group_LDADD = $(TEST_LIBS)
 
 tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_bad.c \
@@ -177,6 +183,7 @@ tests_test_metrics_LDADD = $(TEST_LIBS)
 tests_test_opencl_SOURCES = tests/test_opencl.c \
 	tests/test_opencl_bits.c \
 	tests/test_opencl_devices.c \
+	tests/test_opencl_inspect.c \
 	tests/test_opencl_pipeline.c \
 	tests/test_opencl_program.c \
 	tests/render_fixture.c
@@ -223,6 +230,7 @@ tests_test_verify_LDADD = $(TEST_LIBS)
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_opencl.sh \
-	tests/test_cli.sh
+	tests/test_cli.sh \
+	tests/test_devices.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

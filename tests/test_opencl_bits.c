@@ -47,113 +47,6 @@ static bool device_promises(void)
     return device.info.same_bits;
 }
 
-/* Every material and kind of light that the scenes of the tree leave out, lens and other cameras. */
-#define SPHERE_AT(x, y) "AttributeBegin Translate " #x " " #y " 0 Shape \"sphere\" \"float radius\" 0.45 AttributeEnd\n"
-static const char
-    MATERIALS[] =
-        "LookAt 0 1 -5  0 0 0  0 1 0\n"
-        "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\n"
-        "PixelFilter \"mitchell\"\n"
-        "Camera \"perspective\" \"float fov\" 45 \"float lensradius\" 0.05 \"float focaldistance\" "
-        "5\nWorldBegin\n"
-        "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n"
-        "LightSource \"distant\" \"rgb L\" [ 1 0.9 0.8 ] \"point3 from\" [ 1 2 -1 ] \"point3 to\" [ 0 0 0 ]\n"
-        "LightSource \"spot\" \"rgb I\" [ 9 9 9 ] \"point3 from\" [ 0 3 -2 ] \"point3 to\" [ 0 0 0 ]\n"
-        "Texture \"squares\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ 0.1 0.2 0.3 ] \"rgb tex2\" [ 0.8 "
-        "0.7 0.6 ]\n"
-        "Texture \"bumps\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 0.02\n"
-        "Material \"diffuse\" \"texture reflectance\" \"squares\" \"texture displacement\" "
-        "\"bumps\"\n" SPHERE_AT(-1.5, 0.5) "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.7 ] "
-                                           "\"float uroughness\" 0.3 \"float vroughness\" 0.1\n" SPHERE_AT(-0.5, 0.5) "Material \"dielectric\" \"float eta\" 1.5\n" SPHERE_AT(
-                                               0.5,
-                                               0.5) "Material \"dielectric\" \"float eta\" 1.4 \"float "
-                                                    "roughness\" 0.2\n" SPHERE_AT(
-                                                        1.5,
-                                                        0.5) "Material "
-                                                             "\"thindielectric\""
-                                                             "\n" SPHERE_AT(
-                                                                 -1.5,
-                                                                 -0.5) "Mater"
-                                                                       "ial "
-                                                                       "\"coa"
-                                                                       "teddi"
-                                                                       "ffuse"
-                                                                       "\" "
-                                                                       "\"rgb"
-                                                                       " refl"
-                                                                       "ectan"
-                                                                       "ce\" "
-                                                                       "[ "
-                                                                       "0.2 "
-                                                                       "0.5 "
-                                                                       "0.3 "
-                                                                       "] "
-                                                                       "\"flo"
-                                                                       "at "
-                                                                       "rough"
-                                                                       "ness"
-                                                                       "\" "
-                                                                       "0."
-                                                                       "1"
-                                                                       "\n" SPHERE_AT(
-                                                                           -0.5,
-                                                                           -0.5) "Material "
-                                                                                 "\"diffusetransmissi"
-                                                                                 "on\" \"rgb "
-                                                                                 "reflectance\" [ "
-                                                                                 "0.3 0.3 0.3 ] "
-                                                                                 "\"rgb "
-                                                                                 "transmittance\" [ "
-                                                                                 "0.4 0.3 0.2 "
-                                                                                 "]\n" SPHERE_AT(
-                                                                                     0.5,
-                                                                                     -0.5) "MakeNamedMaterial \"a\" "
-                                                                                           "\"string type\" "
-                                                                                           "\"diffuse\" \"rgb "
-                                                                                           "reflectance\" [ 0.9 0.1 "
-                                                                                           "0.1 ]\n"
-                                                                                           "MakeNamedMaterial \"b\" "
-                                                                                           "\"string type\" "
-                                                                                           "\"conductor\" \"rgb "
-                                                                                           "reflectance\" [ 1 1 1 ] "
-                                                                                           "\"float roughness\" 0\n"
-                                                                                           "Material \"mix\" \"string "
-                                                                                           "materials\" [ \"a\" \"b\" "
-                                                                                           "] \"float amount\" "
-                                                                                           "0.3\n" SPHERE_AT(
-                                                                                               1.5,
-                                                                                               -0.5) "Texture "
-                                                                                                     "\"holes\" "
-                                                                                                     "\"float\" "
-                                                                                                     "\"checkerboard\" "
-                                                                                                     "\"float tex1\" 1 "
-                                                                                                     "\"float tex2\" "
-                                                                                                     "0.4\n"
-                                                                                                     "Material "
-                                                                                                     "\"diffuse\"\n"
-                                                                                                     "Shape "
-                                                                                                     "\"bilinearmesh\" "
-                                                                                                     "\"point3 P\" [ "
-                                                                                                     "-3 -1 -3  3 -1 "
-                                                                                                     "-3  -3 -1 3  3 "
-                                                                                                     "-1 3 ] \"texture "
-                                                                                                     "alpha\" "
-                                                                                                     "\"holes\"\n"
-                                                                                                     "AreaLightSource "
-                                                                                                     "\"diffuse\" "
-                                                                                                     "\"rgb L\" [ 4 4 "
-                                                                                                     "4 ] \"bool "
-                                                                                                     "twosided\" true\n"
-                                                                                                     "Shape "
-                                                                                                     "\"trianglemesh\" "
-                                                                                                     "\"point3 P\" [ "
-                                                                                                     "-1 2 0  1 2 0  0 "
-                                                                                                     "2 1 ]\n"
-                                                                                                     "Shape \"disk\" "
-                                                                                                     "\"float radius\" "
-                                                                                                     "0.2 \"float "
-                                                                                                     "height\" -1\n";
-
 START_TEST(test_bits_of_shapes)
 {
     if (device_promises())
@@ -164,8 +57,9 @@ END_TEST
 START_TEST(test_bits_of_materials)
 {
     if (device_promises())
-        backends_agree("materials",
-                       (RenderSetup){.text = MATERIALS, .samples = 8, .max_depth = 12, .seed = 1ull << 40});
+        backends_agree(
+            "materials",
+            (RenderSetup){.text = OPENCL_MATERIALS_SCENE, .samples = 8, .max_depth = 12, .seed = 1ull << 40});
 }
 END_TEST
 

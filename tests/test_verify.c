@@ -154,6 +154,31 @@ START_TEST(test_field_names)
 }
 END_TEST
 
+/* A list far longer than any path is compared as far as paths go: were it not, this would take days. */
+START_TEST(test_long_list)
+{
+    RenderSetup setup = {.text = SCENE};
+    RenderOptions options = {.max_depth = 65535};
+    Error error = {0};
+    VerifyReport report;
+    Scene scene;
+    StepList list;
+    FrameParams frame;
+    fixture_scene(&setup, &scene);
+    BackendMember sides[2] = {{backend_cpu(), NULL}, {backend_cpu(), NULL}};
+    for (int i = 0; i < 2; ++i)
+        sides[i].backend = fixture_open(&setup, &scene, &error);
+    ck_assert(sides[0].backend && sides[1].backend && render_pt_list(&scene, &options, &list, &frame, &error));
+    ck_assert_msg(verify_run(sides, &frame, &list, 64 * 48, &NEVER, &report, &error), "%s", error.message);
+    ck_assert_uint_eq(report.items, 64 * 48);
+    ck_assert_msg(report.prefixes > 14 && report.prefixes < 7000, "%llu", (unsigned long long)report.prefixes);
+    for (int i = 0; i < 2; ++i)
+        backend_cpu()->close(sides[i].backend);
+    step_list_destroy(&list);
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(test_stop)
 {
     static const atomic_int stopped = 1;
@@ -172,6 +197,7 @@ int main(void)
     tcase_add_test(tcase, test_equal);
     tcase_add_test(tcase, test_difference_named);
     tcase_add_test(tcase, test_field_names);
+    tcase_add_test(tcase, test_long_list);
     tcase_add_test(tcase, test_stop);
     suite_add_tcase(suite, tcase);
     return test_run(suite);

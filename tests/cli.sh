@@ -1,0 +1,72 @@
+# shellcheck shell=sh
+# What the tests of the program from outside share: a folder of their own, counted checks, small renderings. Sourced in
+# the build folder; srcdir is the source folder.
+
+program=$(pwd)/twinlight
+# shellcheck disable=SC2034 # for who sources this
+scene=$(cd "${srcdir:-.}" && pwd)/scenes/cornell.pbrt
+work=$(mktemp -d "${TMPDIR:-/tmp}/twinlight-cli.XXXXXX") || exit 99
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+cd "$work" || exit 99
+checks=0
+failures=0
+
+# result NAME STATUS: counts one check.
+result() {
+    checks=$((checks + 1))
+    if [ "$2" -ne 0 ]; then
+        failures=$((failures + 1))
+        echo "FAILED: $1"
+        sed 's/^/    /' err out 2>/dev/null | head -n 20
+    fi
+}
+
+# expect STATUS TEXT ARGUMENT...: runs the program; it must exit so and say TEXT (on either stream; "" for anything).
+expect() {
+    expected=$1
+    text=$2
+    shift 2
+    "$program" "$@" >out 2>err
+    status=$?
+    [ "$status" -eq "$expected" ]
+    result "twinlight $*: exit status $status, not $expected" $?
+    if [ -n "$text" ]; then
+        cat out err | grep -qF -- "$text"
+        result "twinlight $*: says nothing of \"$text\"" $?
+    fi
+    if [ "$expected" -eq 1 ] || [ "$expected" -eq 2 ]; then
+        grep -q 'error: ' err
+        result "twinlight $*: no error on standard error" $?
+    fi
+}
+
+# A small rendering.
+render() {
+    "$program" render --resolution=16x12 --samples=1 --threads=2 "$@" >out 2>err
+}
+
+file_exists() {
+    [ -s "$1" ]
+    result "file $1 is missing or empty" $?
+}
+
+file_missing() {
+    [ ! -e "$1" ]
+    result "file $1 should not be there" $?
+}
+
+# wait_for FILE: until it is there, 20 s at most.
+wait_for() {
+    tries=0
+    while [ ! -s "$1" ] && [ "$tries" -lt 200 ]; do
+        sleep 0.1
+        tries=$((tries + 1))
+    done
+    file_exists "$1"
+}
+
+# checks_end: says how it went; its status is the script's.
+checks_end() {
+    echo "100% of $checks checks run, failures: $failures"
+    [ "$failures" -eq 0 ]
+}
