@@ -218,17 +218,10 @@ SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float
                                     float t_best, Hit *hit, uint *id)
 {
     __global const uint *tag = (__global const uint *)(quads + BVH_ITEM_TAG);
-    bool found;
-    if (!SCENE_HAS(scene, BVH_FEATURES_CURVED) || tag[1] >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE)
-        found = bvh_triangle_query(quads, query, t_best, hit);
-    else {
-        Primitive primitive = scene->primitives[tag[0]];
-        found = primitive_query_curved(scene, &primitive, query, hit);
-    }
-    if (!found)
-        return false;
     *id = tag[0];
-    return primitive_keeps(scene, query, *id, hit);
+    if (SCENE_HAS(scene, BVH_FEATURES_CURVED) && tag[1] >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
+        return primitive_query_curved(scene, tag[0], query, hit);
+    return bvh_triangle_query(quads, query, t_best, hit) && primitive_keeps(scene, query, tag[0], hit);
 }
 
 /* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done after

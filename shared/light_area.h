@@ -214,14 +214,13 @@ SHARED_FUNCTION AreaPoint sphere_light_sample(const SceneView *scene, const Prim
     return point;
 }
 
-/* Cone sampling only finds the near side of a sphere; the far side shows through the holes of an alpha texture. */
-SHARED_FUNCTION bool sphere_light_hidden(const SceneView *scene, const Primitive *primitive, Vec3 ng, Vec3 wi)
+/* Cone sampling only finds the near side of a sphere; the far side shows through the holes of an alpha texture.
+ * By the place of the point p: its normal may be that of either side. */
+SHARED_FUNCTION bool sphere_light_hidden(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec3 wi)
 {
     if ((primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
         return false;
-    uint flags = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
-    float cosine = vec3_dot(ng, wi);
-    return ((flags & SHAPE_FLIP_NORMAL) != 0u ? -cosine : cosine) > 0.0f;
+    return vec3_dot(vec3_sub(p, scene->quadrics[primitive->a].center), wi) > 0.0f;
 }
 
 /* ---- area lights -------------------------------------------------------------------------------------------------- */
@@ -333,8 +332,8 @@ SHARED_FUNCTION float area_light_pdf_w(const SceneView *scene, uint light, Vec3 
     if (SCENE_HAS(scene, FEATURE_SPHERE) && primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE) {
         float sin2 = sphere_light_sin2(scene->quadrics + primitive.a, ref);
         if (sin2 > 0.0f)
-            return sphere_light_hidden(scene, &primitive, hit->ng, wi) ? 0.0f
-                                                                       : warp_cone_pdf(sphere_light_versine(sin2));
+            return sphere_light_hidden(scene, &primitive, hit->p, wi) ? 0.0f
+                                                                      : warp_cone_pdf(sphere_light_versine(sin2));
     }
     float pdf_a = area_light_pdf_a(scene, light, &primitive, hit);
     return area_light_pdf_from_area(pdf_a, vec3_length_squared(vec3_sub(hit->p, ref)), vec3_dot(hit->ng, wi));

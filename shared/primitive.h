@@ -47,6 +47,9 @@ SHARED_FUNCTION Vec2 patch_uv(const SceneView *scene, const Shape *shape, uint p
                 w00 * corner[0].y + w10 * corner[1].y + w01 * corner[2].y + w11 * corner[3].y);
 }
 
+/* Number of a sphere's far side in ray_hash: its own with this bit. */
+#define PRIMITIVE_FAR_SIDE 0x80000000u
+
 /* A number in [0, 1) that depends on the bits of the ray and on the primitive. */
 SHARED_FUNCTION float ray_hash(const RayQuery *query, uint primitive)
 {
@@ -100,9 +103,10 @@ SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *que
            primitive_alpha_keeps(scene, query, id, &primitive, hit);
 }
 
-/* primitive_query without the alpha texture, for what is no triangle. */
-SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, const Primitive *primitive, const RayQuery *query,
-                                            Hit *hit)
+/* An intersection with what is no triangle, whatever its alpha texture says: the first; of a sphere the first beyond
+ * `after`. */
+SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primitive *primitive, const RayQuery *query,
+                                           float after, Hit *hit)
 {
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     Vec3 p;
@@ -114,7 +118,7 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, const Primit
         return false;
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
     bool sphere = kind == PRIMITIVE_SPHERE;
-    bool found = sphere ? sphere_query(quadric, query, &hit->t, &p) : disk_query(quadric, query, &hit->t, &p);
+    bool found = sphere ? sphere_query(quadric, query, after, &hit->t, &p) : disk_query(quadric, query, &hit->t, &p);
     if (!found)
         return false;
     Vec2 uv = sphere ? sphere_parameters(quadric, p) : disk_parameters(quadric, p);
@@ -123,18 +127,31 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, const Primit
     return true;
 }
 
+/* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it not,
+ * rays from inside would get out where rays from outside find nothing. Both sides ask a hash of their own. */
+SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
+{
+    Primitive primitive = scene->primitives[id];
+    if (!primitive_curved_from(scene, &primitive, query, 0.0f, hit))
+        return false;
+    if (primitive_keeps(scene, query, id, hit))
+        return true;
+    return SCENE_HAS(scene, FEATURE_ALPHA) && SCENE_HAS(scene, FEATURE_SPHERE) &&
+           primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE &&
+           primitive_curved_from(scene, &primitive, query, hit->t, hit) &&
+           primitive_alpha_keeps(scene, query, id ^ PRIMITIVE_FAR_SIDE, &primitive, hit);
+}
+
 /* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, u, v. Depends on nothing
  * but ray and primitive. */
 SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];
-    bool found;
-    if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE)
-        found = triangle_query(scene->positions[primitive.a], scene->positions[primitive.b],
-                               scene->positions[primitive.c], query, &hit->t, &hit->u, &hit->v);
-    else
-        found = primitive_query_curved(scene, &primitive, query, hit);
-    return found && primitive_keeps(scene, query, id, hit);
+    if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
+        return primitive_query_curved(scene, id, query, hit);
+    return triangle_query(scene->positions[primitive.a], scene->positions[primitive.b], scene->positions[primitive.c],
+                          query, &hit->t, &hit->u, &hit->v) &&
+           primitive_keeps(scene, query, id, hit);
 }
 
 /* Whether a comes before b in the order that makes the closest hit unique: t, instance, primitive. */

@@ -53,7 +53,7 @@ SHARED_FUNCTION Scaled scaled_from(float x)
 /* Zero where it underflows, infinity where it overflows. */
 SHARED_FUNCTION float scaled_float(Scaled a)
 {
-    if (a.mantissa == 0.0f || a.exponent < -125)
+    if (a.mantissa == 0.0f || a.exponent < -126)
         return 0.0f;
     if (a.exponent > 127)
         return FLOAT_INFINITY;

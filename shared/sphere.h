@@ -82,8 +82,9 @@ SHARED_FUNCTION bool sphere_roots(Vec3 f, Vec3 d, float r, float *t_near, float 
     return true;
 }
 
-/* The first intersection with 0 < t < t_max, and its point on the sphere in object space. */
-SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuery *query, float *t, Vec3 *p)
+/* The first intersection with after < t < t_max, after >= 0, and its point on the sphere in object space. */
+SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuery *query, float after, float *t,
+                                  Vec3 *p)
 {
     RayQuery inner = *query;
     Vec3 center = vec3_splat(0.0f);
@@ -100,7 +101,7 @@ SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuer
     for (uint i = 0; i < 2u; ++i) {
         float reach = ray_query_reach(&inner, roots[i]) + vec3_max_abs(center) + radius;
         float tolerance = radius * (4.0f * FLOAT_EPSILON * reach + vec3_max_abs(inner.error));
-        if (!(roots[i] > 0.0f && roots[i] < query->t_max && ray_query_clear(&inner, roots[i], root, tolerance)))
+        if (!(roots[i] > after && roots[i] < query->t_max && ray_query_clear(&inner, roots[i], root, tolerance)))
             continue;
         *t = roots[i];
         *p = sphere_project(vec3_mad(f, roots[i], inner.d), radius);

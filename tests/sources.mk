@@ -6,6 +6,7 @@ TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
 if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_analytic \
+	tests/test_bidirectional \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_emit \
@@ -36,6 +37,7 @@ clean-local:
 
 EXTRA_DIST += \
 	tests/analytic.h \
+	tests/bidirectional.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
 	tests/cli.sh \
@@ -71,6 +73,17 @@ tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/test_analytic_textures.c
 tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
 tests_test_analytic_LDADD = $(TEST_LIBS)
+
+tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
+	tests/analytic_fixture.c \
+	tests/bidirectional_groups.c \
+	tests/bidirectional_scenes.c \
+	tests/render_fixture.c \
+	tests/test_bidirectional_film.c \
+	tests/test_bidirectional_strategies.c \
+	tests/test_bidirectional_weights.c
+tests_test_bidirectional_CFLAGS = $(TEST_CFLAGS)
+tests_test_bidirectional_LDADD = $(TEST_LIBS)
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \

@@ -1,0 +1,246 @@
+/* Weights of strategies from densities: against long double, at the ends of float's range, and their sum. */
+#include "bidirectional.h"
+
+#include "strategy.h"
+#include "test_files.h"
+
+#include <string.h>
+
+#define SEGMENTS_MAX 31
+
+/* A path x_0 ... x_k, x_0 on the lens and x_k on a light. */
+typedef struct TestPath {
+    uint k;
+    float camera[SEGMENTS_MAX + 1]; /* density of x_i as made from the camera */
+    float light[SEGMENTS_MAX + 1]; /* and from the light */
+    bool delta[SEGMENTS_MAX + 1];
+    float connect; /* StrategyEnds */
+    bool hittable;
+} TestPath;
+
+static bool strategy_possible(const TestPath *path, uint set, uint s)
+{
+    uint t = path->k + 1 - s;
+    if (!strategy_taken(set, s, path->k))
+        return false;
+    if (s == 0)
+        return path->hittable;
+    return !path->delta[t - 1] && !path->delta[t];
+}
+
+/* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left out
+ * of the buffer: NaN there must not matter. */
+static float kernel_weight(const TestPath *path, uint set, uint exponent, uint s)
+{
+    uint k = path->k, t = k + 1 - s;
+    float words[4 * (SEGMENTS_MAX + 1) * DENSITY_WORDS];
+    for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
+        words[i] = NAN;
+    StrategyEnds ends;
+    memset(&ends, 0xff, sizeof ends); /* NaN */
+    ends.connect = path->connect;
+    ends.hittable = path->hittable;
+    DensityView view = {(const uint *)words, 1, 0, SEGMENTS_MAX + 1, 0, 0};
+    for (uint i = 1; i < t; ++i) {
+        words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OWN] = path->camera[i];
+        if (i + 2 < t)
+            words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OTHER] = path->light[i];
+        view.camera_delta |= path->delta[i] ? 1u << i : 0u;
+    }
+    for (uint i = 0; i < s; ++i) {
+        if (s > 1)
+            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OWN] = path->light[k - i];
+        if (i + 2 < s)
+            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OTHER] = path->camera[k - i];
+        view.light_delta |= path->delta[k - i] ? 1u << i : 0u;
+    }
+    ends.light_z1 = t > 1 ? path->light[t - 1] : NAN;
+    ends.light_z2 = t > 2 ? path->light[t - 2] : NAN;
+    ends.camera_y1 = s > 0 ? path->camera[t] : NAN;
+    ends.camera_y2 = s > 1 ? path->camera[t + 1] : NAN;
+    ends.own_y0 = s == 1 ? path->light[k] : NAN;
+    return strategy_weight(set, exponent, s, t, &view, &ends);
+}
+
+/* By the definition: densities as whole products, in long double, whose exponent has 15 bits. */
+static long double exact_density(const TestPath *path, uint s)
+{
+    long double product = s == 1 ? (long double)path->connect : 1.0L;
+    for (uint i = 1; i <= path->k; ++i)
+        product *= i <= path->k - s ? (long double)path->camera[i] : (long double)path->light[i];
+    return product;
+}
+
+static void path_check(const TestPath *path, uint set, uint exponent)
+{
+    long double sum = 0.0L;
+    double weights = 0.0;
+    bool any = false;
+    for (uint s = 0; s <= path->k; ++s)
+        if (strategy_possible(path, set, s))
+            sum += powl(exact_density(path, s), exponent);
+    for (uint s = 0; s <= path->k; ++s) {
+        if (!strategy_possible(path, set, s))
+            continue;
+        long double expected = powl(exact_density(path, s), exponent) / sum;
+        double weight = (double)kernel_weight(path, set, exponent, s);
+        TEST_NEAR(weight, expected, 1e-5); /* the requirement is 1e-4 */
+        weights += weight;
+        any = true;
+    }
+    if (any)
+        TEST_NEAR(weights, 1.0, 1e-5);
+}
+
+static const uint SETS[] = {STRATEGIES_PT, STRATEGIES_IBPT, STRATEGIES_BDPT};
+
+static void path_draw(TestPath *path, unsigned *state, uint k, double octaves)
+{
+    path->k = k;
+    path->connect = (float)exp2(6.0 * test_random_unit(state) - 3.0);
+    path->hittable = test_random_unit(state) < 0.8;
+    for (uint i = 1; i <= k; ++i) {
+        path->camera[i] = (float)exp2(octaves * (2.0 * test_random_unit(state) - 1.0));
+        path->light[i] = (float)exp2(octaves * (2.0 * test_random_unit(state) - 1.0));
+        path->delta[i] = i < k && test_random_unit(state) < 0.25;
+    }
+    path->delta[0] = false;
+    if (!path->hittable)
+        path->camera[k] = 0.0f;
+}
+
+START_TEST(test_random_paths)
+{
+    static const double OCTAVES[] = {0.5, 3.0, 30.0};
+    unsigned state = 17;
+    TestPath path;
+    for (int i = 0; i < 20000; ++i) {
+        path_draw(&path, &state, 1 + (uint)(i % 20), OCTAVES[i % 3]);
+        path_check(&path, SETS[i / 3 % 3], 1 + (uint)(i & 1));
+    }
+}
+END_TEST
+
+/* Ratios of 2^60 and 2^-60 at every vertex of 20: their products are far outside of float's range, and squared even of
+ * long double's if they were taken over the whole path. */
+START_TEST(test_ratios_of_sixty_octaves)
+{
+    static const int PATTERNS[][2] = {{60, 60}, {-60, -60}, {60, -60}, {-60, 60}};
+    TestPath path = {.k = 20, .connect = 1.0f, .hittable = true};
+    for (int pattern = 0; pattern < 4; ++pattern)
+        for (uint turn = 1; turn <= 20; ++turn) {
+            for (uint i = 1; i <= 20; ++i) {
+                path.camera[i] = 1.3f;
+                path.light[i] = 0.7f * (float)exp2(PATTERNS[pattern][i < turn ? 0 : 1]);
+            }
+            for (uint set = 0; set < 3; ++set)
+                for (uint exponent = 1; exponent <= 2; ++exponent)
+                    path_check(&path, SETS[set], exponent);
+        }
+}
+END_TEST
+
+/* A density that is zero or infinite: weights stay in [0, 1], are numbers, and a strategy without density has none. */
+START_TEST(test_extremes)
+{
+    static const float VALUES[] = {0.0f, 1e-45f, 1e-38f, 1.0f, 3e38f, INFINITY};
+    TestPath path = {.k = 4, .connect = 1.0f, .hittable = true};
+    for (int i = 0; i < 6 * 6 * 6 * 6; ++i) {
+        int digits[4] = {i % 6, i / 6 % 6, i / 36 % 6, i / 216};
+        for (uint j = 1; j <= 4; ++j)
+            path.camera[j] = path.light[j] = 1.0f;
+        path.camera[2] = VALUES[digits[0]];
+        path.light[2] = VALUES[digits[1]];
+        path.camera[3] = VALUES[digits[2]];
+        path.light[3] = VALUES[digits[3]];
+        for (uint s = 0; s <= 4; ++s)
+            for (uint exponent = 1; exponent <= 2; ++exponent) {
+                float weight = kernel_weight(&path, STRATEGIES_BDPT, exponent, s);
+                TEST_TRUE(weight >= 0.0f && weight <= 1.0f);
+            }
+    }
+    for (uint j = 1; j <= 4; ++j)
+        path.camera[j] = path.light[j] = 1.0f;
+    path.light[2] = 0.0f; /* needed by (3,2) and (4,1) */
+    for (uint s = 0; s <= 2; ++s)
+        TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, s), 1.0 / 3.0, 1e-6);
+    path.light[2] = 1.0f;
+    path.camera[2] = INFINITY; /* made for certain by the camera's side */
+    TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, 3), 0.0, 0.0);
+    TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, 4), 0.0, 0.0);
+}
+END_TEST
+
+START_TEST(test_connectable_edges)
+{
+    for (uint delta = 0; delta < 64; delta += 2)
+        for (uint i = 1; i < 6; ++i)
+            TEST_TRUE(edge_connectable(delta, i) == ((delta >> i & 1) == 0 && (i == 1 || (delta >> (i - 1) & 1) == 0)));
+    TEST_TRUE(!edge_connectable(0x80000000u, 31));
+    TEST_TRUE(edge_connectable(0x1fffffffu, 31));
+}
+END_TEST
+
+START_TEST(test_sets)
+{
+    TEST_TRUE(strategy_taken(STRATEGIES_PT, 0, 1) && !strategy_taken(STRATEGIES_BDPT, 1, 1));
+    for (uint k = 2; k < 8; ++k)
+        for (uint s = 0; s <= k; ++s) {
+            TEST_TRUE(strategy_taken(STRATEGIES_PT, s, k) == (s <= 1));
+            TEST_TRUE(strategy_taken(STRATEGIES_IBPT, s, k) == (s <= 1 || s == k));
+            TEST_TRUE(strategy_taken(STRATEGIES_BDPT, s, k));
+        }
+}
+END_TEST
+
+/* ---- numbers with a large exponent ------------------------------------------------------------------------------- */
+
+static long double scaled_exact(Scaled a)
+{
+    return a.mantissa == 0.0f ? 0.0L : ldexpl((long double)a.mantissa, a.exponent);
+}
+
+static void scaled_check(Scaled got, long double expected)
+{
+    TEST_TRUE(got.mantissa == 0.0f ? got.exponent == SCALED_ZERO : got.mantissa >= 1.0f && got.mantissa < 2.0f);
+    TEST_TRUE(fabsl(scaled_exact(got) - expected) <= 2e-7L * expected);
+}
+
+START_TEST(test_scaled)
+{
+    unsigned state = 3;
+    for (int i = 0; i < 100000; ++i) {
+        float a = bits_float((uint)(test_random_unit(&state) * 0x7f7fffff)),
+              b = bits_float((uint)(test_random_unit(&state) * 0x7f7fffff));
+        Scaled x = scaled_from(a), y = scaled_from(b), z = scaled_multiply(scaled_multiply(x, x), scaled_divide(x, y));
+        scaled_check(x, (long double)a);
+        scaled_check(scaled_multiply(x, y), (long double)a * (long double)b);
+        scaled_check(scaled_add(x, y), (long double)a + (long double)b);
+        if (b > 0.0f)
+            scaled_check(z, (long double)a * (long double)a * ((long double)a / (long double)b));
+        if (a >= 1.17549435e-38f)
+            TEST_TRUE(scaled_float(x) == a);
+    }
+    Scaled zero = scaled_zero(), infinite = scaled_infinite(), one = scaled_from(1.0f);
+    TEST_TRUE(scaled_float(zero) == 0.0f && scaled_float(infinite) == INFINITY);
+    TEST_TRUE(scaled_float(scaled_multiply(zero, infinite)) == 0.0f && scaled_float(scaled_divide(zero, zero)) == 0.0f);
+    TEST_TRUE(scaled_float(scaled_divide(infinite, infinite)) == 1.0f &&
+              scaled_float(scaled_divide(one, infinite)) == 0.0f);
+    TEST_TRUE(scaled_is_infinite(scaled_divide(one, zero)) && scaled_is_infinite(scaled_add(one, infinite)));
+    TEST_TRUE(scaled_is_infinite(scaled_multiply(infinite, scaled_from(1e-30f))));
+    TEST_TRUE(scaled_float(scaled_from(NAN)) == 0.0f && scaled_float(scaled_from(-1.0f)) == 0.0f);
+    TEST_TRUE(scaled_float(scaled_add(zero, one)) == 1.0f);
+}
+END_TEST
+
+TCase *bidirectional_weights_case(void)
+{
+    TCase *tcase = tcase_create("weights");
+    tcase_add_test(tcase, test_scaled);
+    tcase_add_test(tcase, test_sets);
+    tcase_add_test(tcase, test_connectable_edges);
+    tcase_add_test(tcase, test_random_paths);
+    tcase_add_test(tcase, test_ratios_of_sixty_octaves);
+    tcase_add_test(tcase, test_extremes);
+    return tcase;
+}
