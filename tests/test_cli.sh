@@ -51,7 +51,7 @@ expect 2 '--device is for devices' render --device=0 "$scene"
 expect 2 '--trace is for devices' render --trace=trace.json --backend=cpu "$scene"
 expect 2 '--batch=0: out of range' render --batch=0 "$scene"
 expect 2 'devices takes no file' devices "$scene"
-expect 2 'use pt' render --integrator=bdpt "$scene"
+expect 2 'use one of: pt' render --integrator=nerf "$scene"
 expect 2 'no scene is given' info
 expect 2 '' compare
 expect 2 '' compare one.exr
