@@ -7,7 +7,7 @@
 #include "diagnostics.h"
 
 /* X(name, number of arguments, the BufferId of each in order) */
-#define KERNEL_LIST(X)                                                                                                 \
+#define KERNEL_LIST_PATHS(X)                                                                                           \
     X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
     X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
     X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
@@ -22,6 +22,12 @@
     X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_DIAGNOSTICS)                                                                                              \
     X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
+    X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
+      BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
+    X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST_BIDIRECTIONAL(X)                                                                                   \
     X(bd_start_light, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                           \
     X(bd_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
@@ -44,11 +50,9 @@
       BUFFER_VERTICES)                                                                                                 \
     X(ib_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
     X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
-      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
-    X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
-    X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
-      BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
-    X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_BIDIRECTIONAL(X)
 
 /* KERNEL_pt_start_paths ...: what Step.kernel holds. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

@@ -1,0 +1,32 @@
+/* Loops over items around the kernels of a list, for the translation units that define them. */
+#ifndef TWINLIGHT_KERNEL_LOOP_H
+#define TWINLIGHT_KERNEL_LOOP_H
+
+#include "backend.h"
+#include "kernel_list.h"
+
+typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
+
+#define KERNEL_DECLARE(name, n, ...) KernelLoop kernel_loop_##name;
+KERNEL_LIST(KERNEL_DECLARE)
+#undef KERNEL_DECLARE
+
+#define ARGUMENTS_3(a, b, c) buffers[a], buffers[b], buffers[c]
+#define ARGUMENTS_4(a, b, c, d) ARGUMENTS_3(a, b, c), buffers[d]
+#define ARGUMENTS_5(a, b, c, d, e) ARGUMENTS_4(a, b, c, d), buffers[e]
+#define ARGUMENTS_6(a, b, c, d, e, f) ARGUMENTS_5(a, b, c, d, e), buffers[f]
+#define ARGUMENTS_7(a, b, c, d, e, f, g) ARGUMENTS_6(a, b, c, d, e, f), buffers[g]
+#define ARGUMENTS_8(a, b, c, d, e, f, g, h) ARGUMENTS_7(a, b, c, d, e, f, g), buffers[h]
+#define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
+#define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
+
+/* One loop a kernel, with the kernel inlined into it, so that the scene's pointers are made once. */
+#define KERNEL_LOOP(name, n, ...)                                                                                      \
+    void kernel_loop_##name(void *const *buffers, const uint *items, uint count)                                       \
+    {                                                                                                                  \
+        for (uint i = 0; i < count; ++i) {                                                                             \
+            platform_item = items ? items[i] : i;                                                                      \
+            name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \
+        }                                                                                                              \
+    }
+#endif
