@@ -32,7 +32,8 @@ static void pair_open(RenderSetup setup, const BackendInterface *device, Pair *p
         pair->sides[i].backend = fixture_open(&setup, &pair->scene, &error);
         ck_assert_msg(pair->sides[i].backend != NULL, "%s", error.message);
     }
-    ck_assert(render_pt_list(&pair->scene, &options, &pair->list, &pair->frame, &error));
+    render_frame(integrator_pt(), &pair->scene, &options, &pair->frame);
+    ck_assert(integrator_pt()->list(&pair->frame, &pair->list, &error));
 }
 
 static void pair_close(Pair *pair)

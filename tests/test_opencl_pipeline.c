@@ -29,8 +29,8 @@ static void attempt_make(RenderSetup setup, const RenderCallbacks *callbacks, co
     if (!attempt->backend)
         return;
     RenderOptions options = {.samples = setup.samples, .max_depth = setup.max_depth, .stop = stop};
-    attempt->done = render_pt(&attempt->scene, backend_ocl(), attempt->backend, &options, false, callbacks,
-                              &attempt->film, &attempt->result, &attempt->error);
+    attempt->done = render_film(integrator_pt(), &attempt->scene, backend_ocl(), attempt->backend, &options, false,
+                                callbacks, &attempt->film, &attempt->result, &attempt->error);
 }
 
 static void attempt_end(Attempt *attempt)

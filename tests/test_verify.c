@@ -168,7 +168,7 @@ START_TEST(test_long_list)
     BackendMember sides[2] = {{backend_cpu(), NULL}, {backend_cpu(), NULL}};
     for (int i = 0; i < 2; ++i)
         sides[i].backend = fixture_open(&setup, &scene, &error);
-    ck_assert(sides[0].backend && sides[1].backend && render_pt_list(&scene, &options, &list, &frame, &error));
+    ck_assert(sides[0].backend && sides[1].backend && integrator_list(&scene, &options, &list, &frame, &error));
     ck_assert_msg(verify_run(sides, &frame, &list, 64 * 48, &NEVER, &report, &error), "%s", error.message);
     ck_assert_uint_eq(report.items, 64 * 48);
     ck_assert_msg(report.prefixes > 14 && report.prefixes < 7000, "%llu", (unsigned long long)report.prefixes);
