@@ -55,7 +55,7 @@ expect 2 'use one of: pt' render --integrator=bpt "$scene"
 expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
 expect 2 '--heuristic is for bidirectional integrators' render --heuristic=balance "$scene"
 expect 2 '--strategy is for bidirectional integrators' render --strategy=1,2 "$scene"
-for strategy in '' 1 1, ,2 1,0 0,1 1,2,3 -1,2 a,b 1.5,2; do
+for strategy in 1 1, ,2 1,0 0,1 1,2,3 -1,2 a,b 1.5,2; do
     expect 2 "--strategy=$strategy: not a strategy" render --integrator=bdpt "--strategy=$strategy" "$scene"
 done
 expect 2 'bdpt has no such strategy' render --integrator=bdpt --strategy=1,1 "$scene"
