@@ -65,6 +65,43 @@ static bool settings_override(RenderJob *job, Error *error)
     return scene_film_set(&job->scene, size[0], size[1], crop, error);
 }
 
+/* Whether --strategy and --heuristic mean something to the integrator. */
+static bool strategy_check(const RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
+    if (option && job->integrator == integrator_pt()) {
+        error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
+        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
+    }
+    unsigned s = command->strategy[0], t = command->strategy[1];
+    if (!command->only_strategy || strategy_taken(job->integrator->strategies, s, s + t - 1))
+        return true;
+    error_set(error, "--strategy=%u,%u: %s has no such strategy", s, t, job->integrator->name);
+    return error_fix(error, "%s",
+                     s + t == 2 ? "lights are seen directly by 0,2 alone" : "use --integrator=bdpt, which has all");
+}
+
+/* What is longer than the integrator can make or the user wants is said, not dropped. */
+static bool depth_check(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    int *depth = &job->scene.settings.max_depth, limit = job->integrator->depth_limit;
+    if (*depth > limit) {
+        log_message(LOG_WARNING, "%s makes paths of up to %d segments; longer ones, up to %d, are left out",
+                    job->integrator->name, limit, *depth);
+        *depth = limit;
+    }
+    unsigned segments = command->strategy[0] + command->strategy[1] - 1;
+    if (!command->only_strategy || segments <= (unsigned)*depth)
+        return true;
+    error_set(error, "--strategy=%u,%u makes paths of %u segments, and the longest have %d", command->strategy[0],
+              command->strategy[1], segments, *depth);
+    if (segments > (unsigned)limit)
+        return error_fix(error, "%s makes no longer ones than %d", job->integrator->name, limit);
+    return error_fix(error, "add --max-depth=%u", segments);
+}
+
 static bool outputs_name(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -263,13 +300,13 @@ static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     job->integrator = integrator_find(command->integrator, error);
-    if (!job->integrator)
+    if (!job->integrator || !strategy_check(job, error))
         return EXIT_USAGE;
     if (command->output && !render_output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;
-    if (!settings_override(job, error))
+    if (!settings_override(job, error) || !depth_check(job, error))
         return EXIT_USAGE;
     if (command->verify)
         return job_verify(job, error);

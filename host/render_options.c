@@ -36,7 +36,8 @@ enum {
 
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
-    [OPTION_INTEGRATOR] = {"integrator", 0, "NAME", "algorithm: pt, path tracing (default)"},
+    [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
+                           "algorithm: pt, path tracing (default), bdpt or ibpt, bidirectional"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},

@@ -42,6 +42,11 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.6 0.5 ] \"texture displacement\" \"bumps\"\n" BD_BALL,
      SUPPORT_ALL, 4, 3},
     {"shading normals", BD_ROOM "$ICOSPHERE", SUPPORT_ALL, 5, 3},
+    /* Both normals far apart all over the floor: without the adjoint's factor (2,1) is a few times too bright. */
+    {"tilted normals",
+     BD_BEGIN BD_LAMP BD_GREY "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ] \"normal N\" "
+                              "[ 0 0.8 -0.6  0 0.8 -0.6  0 0.8 -0.6  0 0.8 -0.6 ]\n" BD_BALL,
+     SUPPORT_ALL, 4, 3},
     {"shading normals, glossy",
      BD_ROOM ROUGH("conductor", "\"rgb reflectance\" [ 0.9 0.8 0.7 ] \"float roughness\" 0.5") "$ICOSPHERE",
      SUPPORT_ALL, 5, 3},

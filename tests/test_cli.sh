@@ -51,7 +51,18 @@ expect 2 '--device is for devices' render --device=0 "$scene"
 expect 2 '--trace is for devices' render --trace=trace.json --backend=cpu "$scene"
 expect 2 '--batch=0: out of range' render --batch=0 "$scene"
 expect 2 'devices takes no file' devices "$scene"
-expect 2 'use one of: pt' render --integrator=nerf "$scene"
+expect 2 'use one of: pt' render --integrator=bpt "$scene"
+expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
+expect 2 '--heuristic is for bidirectional integrators' render --heuristic=balance "$scene"
+expect 2 '--strategy is for bidirectional integrators' render --strategy=1,2 "$scene"
+for strategy in 1 '1,' ',2' 1,0 0,1 1,2,3 -1,2 a,b 1.5,2; do
+    expect 2 "--strategy=$strategy: not a strategy" render --integrator=bdpt "--strategy=$strategy" "$scene"
+done
+expect 2 'bdpt has no such strategy' render --integrator=bdpt --strategy=1,1 "$scene"
+expect 2 'ibpt has no such strategy' render --integrator=ibpt --strategy=2,2 "$scene"
+expect 2 'add --max-depth=7' render --integrator=bdpt --strategy=4,4 --max-depth=5 "$scene"
+expect 2 'no longer ones than 31' render --integrator=bdpt --strategy=20,20 --max-depth=60 "$scene"
+expect 2 '--unweighted without --strategy' render --integrator=bdpt --unweighted "$scene"
 expect 2 'no scene is given' info
 expect 2 '' compare
 expect 2 '' compare one.exr
@@ -117,6 +128,24 @@ result '--seed changes nothing' $?
 [ -z "$(find . -name '*~')" ] # see output_file.c
 result 'a temporary file is left' $?
 
+render --integrator=bdpt --max-depth=40 -o deep.exr "$scene"
+result 'bdpt: exit status' $?
+[ "$(grep -c 'warning: bdpt makes paths of up to 31 segments' err)" -eq 1 ]
+result '--max-depth=40 for bdpt: not one warning' $?
+render --integrator=bdpt --max-depth=31 --quiet -o limit.exr "$scene"
+[ ! -s err ]
+result '--max-depth=31 for bdpt: a warning' $?
+cmp deep.exr limit.exr
+result 'the image beyond the limit of depth is not that at the limit' $?
+render --integrator=bdpt --heuristic=balance --max-depth=3 -o balance.exr "$scene"
+render --integrator=bdpt --heuristic=power --max-depth=3 -o power.exr "$scene"
+! cmp -s balance.exr power.exr
+result '--heuristic changes nothing' $?
+render --integrator=bdpt --strategy=1,2 --max-depth=3 -o weighted.exr "$scene"
+render --integrator=bdpt --strategy=1,2 --unweighted --max-depth=3 -o unweighted.exr "$scene"
+! cmp -s weighted.exr unweighted.exr
+result '--unweighted changes nothing' $?
+
 render --crop=4,2,12,10 -o crop.exr "$scene"
 result '--crop: exit status' $?
 file_exists crop.exr
@@ -177,11 +206,13 @@ elif "$program" devices | grep -A1 '^opencl' | grep -q 'no device'; then
     echo 'skipped: there is no OpenCL device'
 else
     for other in "$scene" "${scene%/*}/showcase.pbrt"; do
-        render --samples=3 -o cpu.exr "$other"
-        opencl --samples=3 -o opencl.exr "$other"
-        result "$other on OpenCL: exit status" $?
-        cmp cpu.exr opencl.exr
-        result "$other: OpenCL's image is not the CPU's" $?
+        for integrator in pt bdpt; do
+            render --integrator=$integrator --samples=3 -o cpu.exr "$other"
+            opencl --integrator=$integrator --samples=3 -o opencl.exr "$other"
+            result "$other on OpenCL by $integrator: exit status" $?
+            cmp cpu.exr opencl.exr
+            result "$other by $integrator: OpenCL's image is not the CPU's" $?
+        done
     done
     expect 1 'there is no OpenCL device of that number' render --backend=opencl --device=99 "$scene"
     expect 1 'no OpenCL device has that in its name' render --backend=opencl --device=nonesuch "$scene"

@@ -63,6 +63,18 @@ START_TEST(test_bits_of_materials)
 }
 END_TEST
 
+START_TEST(test_bits_of_bidirectional_paths)
+{
+    if (device_promises())
+        backends_agree("bidirectional", (RenderSetup){.text = OPENCL_MATERIALS_SCENE,
+                                                      .samples = 4,
+                                                      .max_depth = 6,
+                                                      .seed = 11,
+                                                      .integrator = integrator_bdpt(),
+                                                      .balance = true});
+}
+END_TEST
+
 /* The scenes of the tree are compared in test_cli.sh. */
 static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
                                             "coffee/gray.pbrt"};
@@ -103,6 +115,7 @@ TCase *opencl_bits_tests(void)
     tcase_set_timeout(bits, 120); /* the first time, kernels are built */
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
+    tcase_add_test(bits, test_bits_of_bidirectional_paths);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;
