@@ -175,7 +175,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
 static void worker_clear_state(Worker *worker, const StepList *list)
 {
     for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
-        if (id != BUFFER_DIAGNOSTICS)
+        if (id != BUFFER_DIAGNOSTICS && list->words_per_item[id] > 0)
             memset(worker->buffers[id], 0, (size_t)list->words_per_item[id] * CHUNK_STRIDE * sizeof(uint));
 }
 

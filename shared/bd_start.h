@@ -60,7 +60,8 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *re
     float weight;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     uint pixel = state_load(paths, stride, BD_PIXEL, t);
-    Vec2 film = vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
+    uint row = pixel / frame->width, column = pixel % frame->width;
+    Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));

@@ -41,7 +41,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
     float weight;
     Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    Vec2 film = vec2((float)(pixel % frame->width) + 0.5f + offset.x, (float)(pixel / frame->width) + 0.5f + offset.y);
+    uint row = pixel / frame->width, column = pixel % frame->width;
+    Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
