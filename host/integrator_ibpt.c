@@ -61,7 +61,7 @@ static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
     recorder_kernel(&recorder, KERNEL_ib_start_light, false);
     if (max_depth > 1)
         record_light(&recorder, max_depth - 1);
-    recorder_kernel(&recorder, KERNEL_ib_start_camera, false);
+    recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
     record_camera(&recorder, max_depth);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
     assert(recorder.count <= capacity);

@@ -6,18 +6,6 @@
 #include "bd_connect.h"
 #include "bd_weight.h"
 
-/* walk_back at vertex i of a side, at p, from stored vertices. */
-SHARED_FUNCTION float connect_back(__global const FrameParams *frame, __global const uint *paths,
-                                   __global const uint *vertices, uint stride, uint t, uint side, uint i, Vec3 p)
-{
-    if (side == SIDE_CAMERA && i == 1u)
-        return 0.0f; /* the lens */
-    uint base = vertex_base(frame, side, i - 1u);
-    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
-    return walk_back(p, state_load_vec3(vertices, stride, base + VERTEX_POINT, t),
-                     state_load_vec3(vertices, stride, base + VERTEX_NG, t), flags);
-}
-
 /* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
 __kernel void bd_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                          __global const uint *restrict tables, __global const uint *restrict texels,
@@ -29,9 +17,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         return;
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     uint lengths = state_load(paths, stride, BD_LENGTHS, item);
-    if ((s > 1u && s > (lengths & 0xffffu)) || t > (lengths >> 16) + 1u ||
-        !strategy_taken(frame->strategies, s, s + t - 1u) ||
-        (frame->only_s != NONE && (frame->only_s != s || frame->only_t != t)))
+    if ((s > 1u && s > (lengths & 0xffffu)) || t > (lengths >> 16) + 1u || !strategy_wanted(frame, s, t))
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
@@ -42,11 +28,13 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     float back_y = 0.0f, back_z = 0.0f;
     if (s > 1u) {
         y = vertex_load(&scene, vertices, stride, vertex_base(frame, SIDE_LIGHT, s - 1u), item);
-        back_y = connect_back(frame, paths, vertices, stride, item, SIDE_LIGHT, s - 1u, y.p);
+        back_y = walk_back_stored(paths, vertices, stride, item, SIDE_LIGHT, s - 1u,
+                                  vertex_base(frame, SIDE_LIGHT, s - 2u), y.p);
     }
     if (t > 1u) {
         z = vertex_load(&scene, vertices, stride, vertex_base(frame, SIDE_CAMERA, t - 1u), item);
-        back_z = connect_back(frame, paths, vertices, stride, item, SIDE_CAMERA, t - 1u, z.p);
+        back_z = walk_back_stored(paths, vertices, stride, item, SIDE_CAMERA, t - 1u,
+                                  vertex_base(frame, SIDE_CAMERA, t - 2u), z.p);
     }
     Random4 random = bd_random(frame, paths, item, bd_random_connection(s, t));
     if (t == 1u)
@@ -55,19 +43,13 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         possible = connect_light(&scene, &z, back_z, random, &connection);
     else
         possible = connect_surfaces(&scene, &y, back_y, &z, back_z, &connection);
-    if (!possible || vec3_is_zero(connection.contribution) || !(connection.shadow.t_max > 0.0f) ||
-        !ray_traceable(connection.shadow.o, connection.shadow.d))
+    if (!possible || !connection_traceable(&connection))
         return;
-    if (s >= 2u) {
-        uint flags = state_load(paths, stride, BD_EMITTER_FLAGS, item);
-        connection.ends.hittable = (flags & EMITTER_DELTA) == 0u;
-        connection.ends.connect = state_load_float(paths, stride, BD_CONNECT, item);
-    }
+    if (s >= 2u)
+        connection_light_end(paths, stride, item, &connection.ends);
     DensityView view = bd_density_view(frame, paths, densities, item);
     float weight = bd_weight(frame, s, t, &view, &connection.ends);
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_scale(connection.contribution, weight));
-    state_store(paths, stride, BD_TARGET, item, connection.target);
-    ray_store(shadows, stride, item, connection.shadow);
+    connection_store(paths, shadows, stride, item, &connection, weight);
 }
 
 /* The pairs in the order of the list of steps (integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...
@@ -91,20 +73,7 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
         return;
-    bool camera = state_load(paths, stride, BD_T, item) == 1u, visible = false;
-    if (state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f) {
-        visible = state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u;
-        state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
-    }
-    Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
-    if (camera && visible)
-        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | state_load(paths, stride, BD_TARGET, item),
-                    contribution);
-    else if (camera)
-        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
-    else if (visible)
-        state_store_vec3(paths, stride, BD_RADIANCE, item,
-                         vec3_add(state_load_vec3(paths, stride, BD_RADIANCE, item), contribution));
+    connection_add(paths, shadows, splats, diagnostics, stride, item, state_load(paths, stride, BD_T, item) == 1u);
     connection_advance(paths, stride, item, frame->max_depth);
 }
 

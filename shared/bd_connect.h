@@ -114,6 +114,29 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, f
     return true;
 }
 
+/* Whether there is a contribution and a ray that can tell whether it arrives. */
+SHARED_FUNCTION bool connection_traceable(const Connection *connection)
+{
+    return !vec3_is_zero(connection->contribution) && connection->shadow.t_max > 0.0f &&
+           ray_traceable(connection->shadow.o, connection->shadow.d);
+}
+
+/* What the weight has to know of the stored y_0 (s >= 2). */
+SHARED_FUNCTION void connection_light_end(__global const uint *restrict paths, uint stride, uint item,
+                                          StrategyEnds *ends)
+{
+    ends->hittable = (state_load(paths, stride, BD_EMITTER_FLAGS, item) & EMITTER_DELTA) == 0u;
+    ends->connect = state_load_float(paths, stride, BD_CONNECT, item);
+}
+
+SHARED_FUNCTION void connection_store(__global uint *restrict paths, __global uint *restrict shadows, uint stride,
+                                      uint item, const Connection *connection, float weight)
+{
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_scale(connection->contribution, weight));
+    state_store(paths, stride, BD_TARGET, item, connection->target);
+    ray_store(shadows, stride, item, connection->shadow);
+}
+
 SHARED_FUNCTION void splat_store(__global uint *restrict splats, __global uint *restrict diagnostics, uint stride,
                                  uint item, uint pixel, Vec3 color)
 {
@@ -123,6 +146,32 @@ SHARED_FUNCTION void splat_store(__global uint *restrict splats, __global uint *
     }
     state_store(splats, stride, SPLAT_PIXEL, item, pixel);
     state_store_vec3(splats, stride, SPLAT_COLOR, item, color);
+}
+
+/* Whether a shadow ray was cast and has found nothing; it is cast no more. */
+SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, uint item)
+{
+    bool cast = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
+    if (cast)
+        state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    return cast && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u;
+}
+
+/* A connection whose shadow ray is traced: gathered for the path's pixel, or, from the lens (t = 1), put out for the
+ * film. */
+SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint *restrict shadows,
+                                    __global uint *restrict splats, __global uint *restrict diagnostics, uint stride,
+                                    uint item, bool from_lens)
+{
+    bool visible = shadow_take(shadows, stride, item);
+    Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
+    if (from_lens && visible)
+        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | state_load(paths, stride, BD_TARGET, item),
+                    contribution);
+    else if (from_lens)
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
+    else if (visible)
+        bd_add_radiance(paths, stride, item, contribution);
 }
 
 #endif

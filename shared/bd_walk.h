@@ -84,6 +84,17 @@ SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
     return solid_angle_to_area(vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
 }
 
+/* walk_back at p, vertex i of a side, i >= 1; `before`: base of the vertex before it. Of the lens it is never used. */
+SHARED_FUNCTION float walk_back_stored(__global const uint *restrict paths, __global const uint *restrict vertices,
+                                       uint stride, uint t, uint side, uint i, uint before, Vec3 p)
+{
+    if (side == SIDE_CAMERA && i == 1u)
+        return 1.0f;
+    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
+    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, t),
+                     state_load_vec3(vertices, stride, before + VERTEX_NG, t), flags);
+}
+
 /* Shading normals make a BSDF differ from its adjoint by this factor, which paths from the light carry (Veach 1997,
  * section 5.3.2): wo and wi in world space, their cosines with the shading normal. */
 SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
@@ -114,6 +125,24 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
+/* BD_CONNECT of the stored y_0 for y_1 at p. */
+SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
+                                            __global const uint *vertices, uint stride, uint t, Vec3 p)
+{
+    uint light = state_load(paths, stride, BD_EMITTER, t), base = 0u; /* of y_0 */
+    if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
+        scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
+        return 1.0f;
+    Surface point = {0}; /* spheres ask for no more than this */
+    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
+    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
+    Vec3 d = vec3_sub(point.p, p);
+    float distance2 = vec3_length_squared(d);
+    if (!(distance2 > 0.0f))
+        return 1.0f;
+    return light_connect_ratio(scene, light, p, vec3_scale(d, 1.0f / float_sqrt(distance2)), distance2, &point);
+}
+
 /* Per area, the density with which the walk has made the point it has just met. */
 SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
                                    float distance2, uint side, uint depth, uint flags, float pdf)
@@ -131,6 +160,13 @@ SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *rest
 {
     state_store(paths, stride, BD_DEPTH, t, 0u);
     state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+/* Adds to what the path's pixel gets. */
+SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
+{
+    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, t);
+    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_add(sum, radiance));
 }
 
 /* The first ray of a walk. */
@@ -217,16 +253,100 @@ SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uin
     ray_store(rays, stride, t, step->ray);
 }
 
+/* ---- what a ray has met ------------------------------------------------------------------------------------------- */
+
+typedef struct WalkMeeting {
+    Ray ray;
+    Surface surface; /* unless missed */
+    Vec3 from; /* where the ray left */
+    Vec3 from_ng; /* geometric normal there; the ray's direction for the camera's first */
+    float distance2;
+    float own; /* density with which the walk has made the point; of a miss, of its direction */
+    float back; /* BD_BACK there */
+    uint light; /* that the primitive is; NONE */
+    bool missed;
+} WalkMeeting;
+
+/* From: the ray under way and its hit. `before`: base of the vertex that it left. */
+SHARED_FUNCTION WalkMeeting walk_meet(const SceneView *scene, __global const uint *restrict paths,
+                                      __global const uint *restrict rays, __global const uint *restrict hits,
+                                      __global const uint *restrict vertices, uint t, uint before)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
+    bool first = side == SIDE_CAMERA && depth == 1u;
+    Hit hit = hit_load(hits, stride, t);
+    WalkMeeting meeting;
+    meeting.ray = ray_load(rays, stride, t);
+    meeting.missed = hit.primitive == NONE;
+    meeting.own = state_load_float(paths, stride, BD_PDF, t);
+    meeting.from_ng = first ? meeting.ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
+    meeting.light = NONE;
+    if (meeting.missed)
+        return meeting;
+    meeting.surface = surface_from_hit(scene, &meeting.ray, hit);
+    meeting.from = first || (flags & WALK_PARALLEL) != 0u ? meeting.ray.o
+                                                          : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+    meeting.distance2 = vec3_length_squared(vec3_sub(meeting.surface.p, meeting.from));
+    meeting.own =
+        walk_density(scene->frame, &meeting.ray, &meeting.surface, meeting.distance2, side, depth, flags, meeting.own);
+    meeting.back = walk_back_stored(paths, vertices, stride, t, side, depth, before, meeting.surface.p);
+    uint first_light = scene->shapes[meeting.surface.shape].first_light;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
+        meeting.light = first_light + hit.primitive - scene->shapes[meeting.surface.shape].first_primitive;
+    return meeting;
+}
+
+/* Makes and stores the vertex at `base`; the walk ends when nothing leaves it, and the camera's when it is full. */
+SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                 __global uint *restrict vertices, uint t, uint base, float u_mix, WalkMeeting *meeting)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    Vertex vertex;
+    if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
+        !vertex_make(scene, &meeting->surface, meeting->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
+                     &vertex)) {
+        walk_end(paths, rays, stride, t);
+        return false;
+    }
+    /* Before the vertex may take the place of y_0. */
+    if (side == SIDE_LIGHT && depth == 1u)
+        state_store_float(paths, stride, BD_CONNECT, t,
+                          emitter_connect_ratio(scene, paths, vertices, stride, t, vertex.p));
+    vertex_store(scene, vertices, stride, base, t, &vertex);
+    return true;
+}
+
+/* Draws where the walk goes on from the vertex at `base`; false when it has ended. random: lobe, direction, roulette. */
+SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint t,
+                                uint base, Random4 random, WalkStep *step)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    Vertex vertex = vertex_load(scene, vertices, stride, base, t);
+    if (walk_scatter(scene, &vertex, side, depth, state_load_float(paths, stride, BD_ETA_SCALE, t), random, step)) {
+        if (ray_traceable(step->ray.o, step->ray.d))
+            return true;
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+    }
+    walk_end(paths, rays, stride, t);
+    return false;
+}
+
 /* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */
 
-/* What the light sends back along d (unit) from `surface`, and what the weight needs to know. back: BD_BACK there. */
-SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, uint light, const Surface *surface, Vec3 d, Vec3 from,
-                                  float distance2, float back, StrategyEnds *ends)
+/* What the light met sends back along the ray, and what the weight needs to know. */
+SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkMeeting *meeting, StrategyEnds *ends)
 {
-    Vec3 towards = vec3_negate(d);
+    const Surface *surface = &meeting->surface;
+    uint light = meeting->light;
+    Vec3 towards = vec3_negate(meeting->ray.d);
     ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
-    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * back;
-    ends->connect = light_connect_ratio(scene, light, from, d, distance2, surface);
+    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * meeting->back;
+    ends->connect = light_connect_ratio(scene, light, meeting->from, meeting->ray.d, meeting->distance2, surface);
     ends->hittable = true;
     return light_emitted(scene, light, surface->ng, towards);
 }
