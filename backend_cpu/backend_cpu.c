@@ -98,12 +98,13 @@ static bool worker_reserve(Worker *worker, const StepList *list)
 }
 
 /* What a kernel's BufferIds mean to this worker. */
-static void worker_arguments(Worker *worker, void *arguments[BUFFER_COUNT])
+static void worker_arguments(Worker *worker, const StepList *list, void *arguments[BUFFER_COUNT])
 {
     const BackendScene *scene = &worker->backend->scene;
     for (int id = 0; id < BUFFER_COUNT; ++id)
         arguments[id] = worker->buffers[id];
     arguments[BUFFER_FRAME] = &worker->frame;
+    arguments[BUFFER_PASS] = list->pass_words;
     /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
     arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;
     arguments[BUFFER_TABLES] = (void *)(uintptr_t)scene->tables;
@@ -195,7 +196,9 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     worker->frame.first_item = job->frame->first_item + first;
     worker->frame.item_count = count;
     worker->frame.stride = CHUNK_STRIDE;
-    worker_arguments(worker, arguments);
+    worker->frame.pass_first = 0;
+    worker->frame.pass_stride = job->list->pass_stride;
+    worker_arguments(worker, job->list, arguments);
     if (job->inspect)
         worker_clear_state(worker, job->list);
     for (size_t i = 0; i < job->list->count;)

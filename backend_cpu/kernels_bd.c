@@ -5,5 +5,6 @@
 #include "bd_connect.cl"
 #include "bd_walk.cl"
 #include "ibpt.cl"
+#include "mlt.cl"
 
 KERNEL_LIST_BIDIRECTIONAL(KERNEL_LOOP)

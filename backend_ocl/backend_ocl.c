@@ -4,6 +4,7 @@
 #include "film_adders.h"
 #include "inspect.h"
 #include "log.h"
+#include "pass_data.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -162,6 +163,8 @@ static Batch *batch_prepare(Backend *backend, int slot, const FrameParams *frame
     batch->frame.first_item = frame->first_item + first;
     batch->frame.item_count = count;
     batch->frame.stride = device_memory_stride(count);
+    batch->frame.pass_first = frame->first_item;
+    batch->frame.pass_stride = frame->item_count;
     return batch;
 }
 
@@ -210,7 +213,7 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
         *items_done = 0;
     if (backend->failed)
         return error_set(error, "%s has failed before", backend->device.info.name);
-    if (!device_memory_reserve(&backend->memory, list, error))
+    if (!device_memory_reserve(&backend->memory, list, error) || !pass_data_begin(&backend->memory, frame, list, error))
         return false;
     adders_begin(backend->adders, list->words_per_item[BUFFER_SPLATS] > 0 ? sink : NULL, context);
     bool done = batches_run(backend, frame, list, stop, error);
@@ -220,7 +223,7 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
     }
     for (int slot = 0; slot < BATCH_SLOTS; ++slot)
         adders_wait(backend->adders, slot);
-    done = done && !device_failed(backend, error);
+    done = done && !device_failed(backend, error) && pass_data_end(&backend->memory, frame, list, error);
     backend->failed = !done;
     adders_total(backend->adders, &total);
     if (items_done)
@@ -232,7 +235,8 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
 static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink,
                                 void *context, Error *error)
 {
-    bool done = device_memory_reserve(&backend->memory, list, error);
+    bool done =
+        device_memory_reserve(&backend->memory, list, error) && pass_data_begin(&backend->memory, frame, list, error);
     uint size = backend->memory.batch;
     for (uint first = 0; done && first < frame->item_count; first += size) {
         uint left = frame->item_count - first;
@@ -240,7 +244,7 @@ static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, cons
         done = inspect_batch(&backend->launcher, batch, list, first, sink, context, error);
         batch_drop(batch);
     }
-    return done;
+    return done && pass_data_end(&backend->memory, frame, list, error);
 }
 
 /* ---- what happened ----------------------------------------------------------------------------------------------- */

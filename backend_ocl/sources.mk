@@ -10,6 +10,7 @@ libtwinlight_ocl_la_SOURCES = \
 	backend_ocl/film_adders.c backend_ocl/film_adders.h \
 	backend_ocl/inspect.c backend_ocl/inspect.h \
 	backend_ocl/ocl_status.c backend_ocl/ocl_status.h \
+	backend_ocl/pass_data.c backend_ocl/pass_data.h \
 	backend_ocl/program.c backend_ocl/program.h \
 	backend_ocl/program_cache.c backend_ocl/program_cache.h \
 	backend_ocl/program_source.c backend_ocl/program_source.h \

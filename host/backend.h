@@ -29,6 +29,7 @@ typedef enum BufferId {
     BUFFER_VERTICES, /* bd_state.h: vertices of bidirectional paths */
     BUFFER_DENSITIES, /* and their densities */
     BUFFER_DIAGNOSTICS, /* counters, per thread or device; summed by the host */
+    BUFFER_PASS, /* words of the whole pass's items, from and to the host (StepList) */
     BUFFER_COUNTS, /* live rays, for backends that count with a kernel (count.cl) */
     BUFFER_COUNT
 } BufferId;
@@ -66,6 +67,11 @@ typedef struct StepList {
     const Step *steps;
     size_t count;
     uint words_per_item[BUFFER_COUNT]; /* of the per-item buffers used; 0 otherwise */
+    /* BUFFER_PASS: field f of pass item k at pass_words[f * pass_stride + k], kernels read and write those of their own
+     * item. NULL: none. */
+    uint *pass_words;
+    uint pass_fields;
+    uint pass_stride;
     const StateField *fields; /* of BUFFER_PATHS, which integrators lay out as they like; may be NULL */
     size_t field_count;
 } StepList;

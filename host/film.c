@@ -182,17 +182,32 @@ bool film_merge(Film *film, const Film *from, Error *error)
                 fits = false;
         count_add(&film->saturated, fits ? 0 : 1);
     }
+    film->light_samples += from->light_samples;
     count_add(&film->saturated, from->saturated);
     count_add(&film->not_finite, from->not_finite);
     return true;
+}
+
+void film_clear(Film *film)
+{
+    size_t pixels = film_pixels(film);
+    for (size_t i = 0; i < pixels; ++i)
+        atomic_store_explicit(&film->counts[i], 0u, memory_order_relaxed);
+    for (size_t i = 0; i < 3 * pixels; ++i) {
+        atomic_store_explicit(&film->sums[i], 0, memory_order_relaxed);
+        if (film->light_sums)
+            atomic_store_explicit(&film->light_sums[i], 0, memory_order_relaxed);
+    }
+    film->light_samples = 0;
+    film->saturated = film->not_finite = 0;
 }
 
 void film_resolve(const Film *film, float scale, float *rgb)
 {
     const double unit = ldexp((double)scale, film->quantum_exponent);
     size_t pixels = film_pixels(film);
-    uint64_t samples = 0;
-    for (size_t i = 0; film->light_sums && i < pixels; ++i)
+    uint64_t samples = film->light_samples;
+    for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
         samples += atomic_load_explicit(&film->counts[i], memory_order_relaxed);
     double light_unit = samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
     for (size_t i = 0; i < pixels; ++i) {

@@ -14,6 +14,7 @@ typedef struct Film {
     int quantum_exponent; /* one unit of a sum is 2^quantum_exponent of radiance */
     _Atomic int64_t *sums; /* 3 a pixel of the crop, row by row */
     _Atomic int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
+    uint64_t light_samples; /* paths that they come from; 0: as many as samples of pixels */
     _Atomic uint32_t *counts; /* samples of every pixel of the crop */
     _Atomic uint64_t saturated; /* contributions that did not fit and were clamped */
     _Atomic uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
@@ -41,8 +42,11 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
  * otherwise. */
 bool film_merge(Film *film, const Film *from, Error *error);
 
-/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (samples of all pixels / pixels)); where nothing was sampled
- * the first is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
+/* Empties the film; size and quantum stay. */
+void film_clear(Film *film);
+
+/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the first
+ * is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
 void film_resolve(const Film *film, float scale, float *rgb);
 
 #endif

@@ -5,6 +5,8 @@
 #include "backend.h"
 #include "mis.h"
 
+struct RenderRun;
+
 typedef struct Integrator {
     const char *name; /* of --integrator */
     const char *summary;
@@ -12,6 +14,8 @@ typedef struct Integrator {
     uint strategies; /* STRATEGIES_* */
     /* Records the steps for paths of up to frame->max_depth segments, to be freed by step_list_destroy. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
+    /* Renders on its own terms; NULL: passes of `list` over the samples of all pixels (render.h). */
+    bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 
 void step_list_destroy(StepList *list);
@@ -19,6 +23,7 @@ void step_list_destroy(StepList *list);
 const Integrator *integrator_pt(void);
 const Integrator *integrator_ibpt(void);
 const Integrator *integrator_bdpt(void);
+const Integrator *integrator_mmlt(void);
 
 /* NULL with an error that lists what there is. */
 const Integrator *integrator_find(const char *name, Error *error);

@@ -44,11 +44,11 @@ static void record_connections(Recorder *recorder, uint max_depth)
             record_connection(recorder, t);
 }
 
-static bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
+bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->max_depth;
     /* Two walks, their beginnings and the splat, and four steps a pair. */
-    size_t capacity = 8 * (size_t)max_depth + 8 + 2 * (size_t)max_depth * (max_depth + 1);
+    size_t capacity = 8 * (size_t)max_depth + 9 + 2 * (size_t)max_depth * (max_depth + 1);
     Recorder recorder = {malloc(capacity * sizeof(Step)), 0};
     if (!recorder.steps)
         return error_memory(error, capacity * sizeof(Step), "the list of steps");
@@ -58,6 +58,8 @@ static bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
     record_walk(&recorder, max_depth);
     record_connections(&recorder, max_depth);
+    if (frame->pool)
+        recorder_kernel(&recorder, KERNEL_pool_end, false);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
     assert(recorder.count <= capacity);
     *list = (StepList){

@@ -1,5 +1,7 @@
 #include "render.h"
 
+#include "render_run.h"
+
 #include "diagnostics.h"
 #include "log.h"
 #include "state.h"
@@ -13,6 +15,9 @@
 /* Paths of the pilot that sets the film's quantum, and the sample number it uses: one that no image reaches. */
 #define PILOT_ITEMS 4096u
 #define PILOT_SAMPLE 0xffff0000u
+
+/* The first segments of a bidirectional walk always survive Russian roulette. */
+#define ROULETTE_DEPTH 3
 
 /* A pass is sized to take about this long, so that saving, stopping and progress are prompt. */
 #define PASS_SECONDS 0.25
@@ -108,43 +113,36 @@ static void film_sink(void *context, const uint *splats, uint count, uint stride
     film_add_splats(context, splats, count, stride);
 }
 
+/* The loop of integrators whose items are samples of pixels. */
 typedef struct PassLoop {
-    const BackendInterface *interface;
-    Backend *backend;
-    const RenderOptions *options;
-    const RenderCallbacks *callbacks;
+    RenderRun *run;
     StepList list;
-    FrameParams frame;
-    Film *film;
-    uint64_t crop_pixels;
     uint64_t next, total; /* items; without a limit as many as there are sample numbers */
-    uint64_t done;
-    double start, last_save;
 } PassLoop;
 
-static void progress_report(PassLoop *loop, double elapsed)
+void render_run_report(const RenderRun *run, double fraction)
 {
-    if (!loop->callbacks || !loop->callbacks->progress)
+    if (!run->callbacks || !run->callbacks->progress)
         return;
     BackendStatistics statistics;
-    loop->interface->statistics(loop->backend, &statistics);
-    double by_samples = loop->options->samples > 0 ? (double)loop->done / (double)loop->total : 0.0;
-    double by_time = loop->options->seconds > 0.0 ? elapsed / loop->options->seconds : 0.0;
+    run->interface->statistics(run->backend, &statistics);
+    double elapsed = timing_now() - run->start;
+    double by_time = run->options->seconds > 0.0 ? elapsed / run->options->seconds : 0.0;
     RenderProgress progress = {.elapsed = elapsed,
-                               .fraction = fmin(1.0, fmax(by_samples, by_time)),
-                               .samples = loop->done,
+                               .fraction = fmin(1.0, fmax(fraction, by_time)),
+                               .samples = run->done,
                                .rays = statistics.closest_rays + statistics.shadow_rays};
-    loop->callbacks->progress(loop->callbacks->context, &progress);
+    run->callbacks->progress(run->callbacks->context, &progress);
 }
 
-static bool save_if_due(PassLoop *loop, double now, Error *error)
+bool render_run_save_if_due(RenderRun *run, Error *error)
 {
-    if (!loop->callbacks || !loop->callbacks->save || loop->options->save_every <= 0.0 ||
-        now - loop->last_save < loop->options->save_every)
+    if (!run->callbacks || !run->callbacks->save || run->options->save_every <= 0.0 ||
+        timing_now() - run->last_save < run->options->save_every)
         return true;
-    if (!loop->callbacks->save(loop->callbacks->context, loop->film, error))
+    if (!run->callbacks->save(run->callbacks->context, run->film, error))
         return false;
-    loop->last_save = timing_now();
+    run->last_save = timing_now();
     return true;
 }
 
@@ -153,61 +151,73 @@ static bool save_if_due(PassLoop *loop, double now, Error *error)
 static bool pass_run(PassLoop *loop, uint items, Error *error)
 {
     static const atomic_int never = 0;
-    bool first = loop->next < loop->crop_pixels;
+    RenderRun *run = loop->run;
+    bool first = loop->next < run->crop_pixels;
     uint64_t delivered = 0;
-    loop->frame.sample_index = loop->options->first_sample + (uint)(loop->next / loop->crop_pixels);
-    loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
-    loop->frame.item_count = items;
-    if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
-                              first || !loop->options->stop ? &never : loop->options->stop, &delivered, error)) {
-        loop->done += delivered; /* they are in the film */
+    run->frame.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
+    run->frame.first_item = (uint)(loop->next % run->crop_pixels);
+    run->frame.item_count = items;
+    if (!run->interface->run(run->backend, &run->frame, &loop->list, film_sink, run->film,
+                             first || !run->options->stop ? &never : run->options->stop, &delivered, error)) {
+        run->done += delivered; /* they are in the film */
         return false;
     }
     loop->next += items;
-    loop->done += delivered;
+    run->done += delivered;
     return true;
 }
 
 /* How many items the next pass takes, given the speed so far. */
 static uint pass_items(const PassLoop *loop, double elapsed)
 {
-    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)loop->done / elapsed : PASS_ITEMS_MIN;
+    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)loop->run->done / elapsed : PASS_ITEMS_MIN;
     uint items = wanted < PASS_ITEMS_MIN ? PASS_ITEMS_MIN : wanted > PASS_ITEMS_MAX ? PASS_ITEMS_MAX : (uint)wanted;
     uint64_t left = loop->total - loop->next;
     return left < items ? (uint)left : items;
 }
 
-static bool passes_run(PassLoop *loop, bool *stopped, Error *error)
+static bool passes_run(PassLoop *loop, Error *error)
 {
-    const RenderOptions *options = loop->options;
-    loop->start = loop->last_save = timing_now();
+    RenderRun *run = loop->run;
+    const RenderOptions *options = run->options;
+    run->start = run->last_save = timing_now();
     while (loop->next < loop->total) {
-        double elapsed = timing_now() - loop->start;
-        bool whole = loop->next >= loop->crop_pixels;
-        if (whole && options->stop && *options->stop) {
-            *stopped = true;
+        double elapsed = timing_now() - run->start;
+        bool whole = loop->next >= run->crop_pixels;
+        if (whole && options->stop && *options->stop)
             break;
-        }
         if (whole && options->seconds > 0.0 && elapsed >= options->seconds)
             break;
         if (!pass_run(loop, pass_items(loop, elapsed), error))
             return false;
-        progress_report(loop, timing_now() - loop->start);
-        if (!save_if_due(loop, timing_now(), error))
+        render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
+        if (!render_run_save_if_due(run, error))
             return false;
     }
-    *stopped = *stopped || (options->stop && *options->stop);
     return true;
 }
 
-static void result_fill(const PassLoop *loop, RenderResult *result)
+static bool samples_render(const Integrator *integrator, RenderRun *run, Error *error)
+{
+    const RenderOptions *options = run->options;
+    PassLoop loop = {.run = run};
+    loop.total = run->crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
+    if (!integrator->list(&run->frame, &loop.list, error))
+        return false;
+    bool done = passes_run(&loop, error);
+    step_list_destroy(&loop.list);
+    return done;
+}
+
+static void result_fill(const RenderRun *run, RenderResult *result)
 {
     uint64_t counters[DIAGNOSTIC_COUNT] = {0};
-    result->samples = loop->done;
-    result->samples_per_pixel = (double)loop->done / (double)loop->crop_pixels;
-    result->seconds = timing_now() - loop->start;
-    loop->interface->statistics(loop->backend, &result->backend);
-    loop->interface->diagnostics(loop->backend, counters);
+    result->samples = run->done;
+    result->samples_per_pixel = (double)run->done / (double)run->crop_pixels;
+    result->seconds = timing_now() - run->start;
+    run->interface->statistics(run->backend, &result->backend);
+    run->interface->diagnostics(run->backend, counters);
+    result->stopped = run->options->stop && *run->options->stop;
     result->diagnostic_count = 0;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
@@ -230,20 +240,22 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->sample_index = options->first_sample;
     frame->first_item = 0;
     frame->pixel_stride = 1;
+    frame->min_depth = 1;
+    frame->roulette_depth = ROULETTE_DEPTH;
 }
 
 /* Sets the quantum from what path tracing sees, whatever the integrator: films of all can be merged. */
-static bool film_prepare(const PassLoop *loop, Error *error)
+static bool film_prepare(const RenderRun *run, Error *error)
 {
     StepList list;
-    FrameParams frame = loop->frame;
+    FrameParams frame = run->frame;
     double mean = 0.0;
     frame.strategies = integrator_pt()->strategies;
     if (!integrator_pt()->list(&frame, &list, error))
         return false;
-    bool done = pilot_run(loop->interface, loop->backend, frame, &list, &mean, error);
+    bool done = pilot_run(run->interface, run->backend, frame, &list, &mean, error);
     step_list_destroy(&list);
-    film_quantum_set(loop->film, mean);
+    film_quantum_set(run->film, mean);
     return done;
 }
 
@@ -251,18 +263,17 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
                  const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
                  RenderResult *result, Error *error)
 {
-    PassLoop loop = {
+    RenderRun run = {
         .interface = interface, .backend = backend, .options = options, .callbacks = callbacks, .film = film};
-    loop.crop_pixels = film_pixels(film);
-    loop.total = loop.crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
+    run.crop_pixels = film_pixels(film);
     memset(result, 0, sizeof *result);
-    render_frame(integrator, scene, options, &loop.frame);
+    render_frame(integrator, scene, options, &run.frame);
     bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
-    if ((from_light && !film_light_reserve(film, error)) || !integrator->list(&loop.frame, &loop.list, error))
+    if (from_light && !film_light_reserve(film, error))
         return false;
-    loop.start = timing_now();
-    bool done = (keep_quantum || film_prepare(&loop, error)) && passes_run(&loop, &result->stopped, error);
-    result_fill(&loop, result);
-    step_list_destroy(&loop.list);
+    run.start = run.last_save = timing_now();
+    bool done = (keep_quantum || film_prepare(&run, error)) &&
+                (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
+    result_fill(&run, result);
     return done;
 }

@@ -8,6 +8,19 @@
 
 #define DIAGNOSTIC_NAMES_MAX 16
 
+/* How chains are run (integrator_mmlt.c). Zeros: the defaults. */
+typedef struct ChainOptions {
+    unsigned chains; /* at a time */
+    unsigned steps; /* of a chain between two pools */
+    unsigned pool; /* samples of a pool */
+    bool
+        paper; /* one pool, and large steps within the chains, as Frolov 2018; else a new pool and new chains every time */
+    double large_step; /* probability, of `paper` */
+    unsigned mutations; /* bit MUTATION_* */
+    bool unsorted; /* chains in the order of their pool, not by depth and strategy */
+    bool ungrouped; /* every chain its own kind of mutation */
+} ChainOptions;
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */
@@ -19,6 +32,7 @@ typedef struct RenderOptions {
     bool only_strategy; /* show one strategy alone: */
     unsigned strategy[2]; /* s, t */
     bool unweighted; /* its weights taken for 1 */
+    ChainOptions chains;
     double save_every; /* seconds between calls of `save`; 0: never */
     const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */
 } RenderOptions;

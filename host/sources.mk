@@ -12,6 +12,8 @@ libtwinlight_host_la_SOURCES = \
 	host/cmd_devices.c \
 	host/cmd_info.c \
 	host/cmd_pyramid.c \
+	host/chain_list.c host/chain_list.h \
+	host/chain_seeds.c host/chain_seeds.h \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
 	host/color.c host/color.h \
@@ -36,6 +38,7 @@ libtwinlight_host_la_SOURCES = \
 	host/bd_fields.c host/bd_fields.h \
 	host/integrator_bdpt.c \
 	host/integrator_ibpt.c \
+	host/integrator_mmlt.c \
 	host/integrator_pt.c \
 	host/interrupt.c host/interrupt.h \
 	host/json.c host/json.h \
@@ -71,6 +74,7 @@ libtwinlight_host_la_SOURCES = \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
 	host/render.c host/render.h \
+	host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
 	host/render_verify.c host/render_verify.h \

@@ -5,6 +5,7 @@
 
 #include "bd_connect.h"
 #include "bd_weight.h"
+#include "pool.h"
 
 /* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
 __kernel void bd_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
@@ -36,9 +37,10 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         back_z = walk_back_stored(paths, vertices, stride, item, SIDE_CAMERA, t - 1u,
                                   vertex_base(frame, SIDE_CAMERA, t - 2u), z.p);
     }
-    Random4 random = bd_random(frame, paths, item, bd_random_connection(s, t));
+    Random4 random = bd_random_connection(frame, paths, item, s, t);
     if (t == 1u)
-        possible = connect_camera(&scene, &y, back_y, random, &connection);
+        possible = connect_camera(&scene, &y, back_y, random, &connection) &&
+                   (connection_aim(&scene, random, &connection) || frame->pool != 0u);
     else if (s == 1u)
         possible = connect_light(&scene, &z, back_z, random, &connection);
     else
@@ -73,7 +75,11 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
         return;
-    connection_add(paths, shadows, splats, diagnostics, stride, item, state_load(paths, stride, BD_T, item) == 1u);
+    uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
+    bool visible = shadow_take(shadows, stride, item);
+    connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
+    if (frame->pool != 0u && visible)
+        candidate_offer(frame, paths, item, s, t, state_load_vec3(paths, stride, BD_CONTRIBUTION, item));
     connection_advance(paths, stride, item, frame->max_depth);
 }
 
@@ -86,7 +92,7 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global cons
         return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
-    splat_store(splats, diagnostics, stride, item, state_load(paths, stride, BD_PIXEL, item), radiance);
+    splat_store(splats, diagnostics, stride, item, state_load(paths, stride, BD_SPLAT, item), radiance);
 }
 
 #endif

@@ -14,7 +14,9 @@
 typedef struct Connection {
     Vec3 contribution; /* unweighted */
     Ray shadow;
-    uint target; /* pixel; NONE: the path's own */
+    Vec2 film; /* t = 1: where the film sees y */
+    uint target; /* t = 1: pixel of the splat */
+    float target_weight; /* of the pixel filter */
     StrategyEnds ends;
 } Connection;
 
@@ -29,21 +31,17 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
     return value;
 }
 
-/* t = 1: y = y_{s-1}, s >= 2, seen from a point on the lens. random: lens, pixel. */
+/* t = 1: y = y_{s-1}, s >= 2, seen from a point on the lens. random: lens. */
 SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, float back, Random4 random,
                                     Connection *connection)
 {
     CameraConnection camera;
-    float weight;
     if ((y->bsdf.flags & BSDF_SMOOTH) != 0u ||
         !camera_connect(scene->frame, y->p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera))
         return false;
-    connection->target =
-        film_splat_pixel(scene, camera.film, vec2(random_float(random.x[2]), random_float(random.x[3])), &weight);
-    if (connection->target == NONE)
-        return false;
+    connection->film = camera.film;
     BsdfValue f = vertex_eval_light(scene, y, camera.wi);
-    connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), weight * camera.pdf);
+    connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
     connection->shadow = ray_between(y->p, y->ng, camera.p, vec3_splat(0.0f));
     connection->ends.camera_y1 = camera.pdf * float_abs(vec3_dot(camera.wi, y->ng));
     connection->ends.camera_y2 = f.pdf_rev_w * back;
@@ -114,6 +112,15 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, f
     return true;
 }
 
+/* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */
+SHARED_FUNCTION bool connection_aim(const SceneView *scene, Random4 random, Connection *connection)
+{
+    connection->target =
+        film_splat_pixel(scene, connection->film, vec2(random_float(random.x[2]), random_float(random.x[3])),
+                         &connection->target_weight);
+    return connection->target != NONE;
+}
+
 /* Whether there is a contribution and a ray that can tell whether it arrives. */
 SHARED_FUNCTION bool connection_traceable(const Connection *connection)
 {
@@ -134,6 +141,7 @@ SHARED_FUNCTION void connection_store(__global uint *restrict paths, __global ui
 {
     state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_scale(connection->contribution, weight));
     state_store(paths, stride, BD_TARGET, item, connection->target);
+    state_store_float(paths, stride, BD_TARGET_WEIGHT, item, connection->target_weight);
     ray_store(shadows, stride, item, connection->shadow);
 }
 
@@ -159,15 +167,15 @@ SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, u
 
 /* A connection whose shadow ray is traced: gathered for the path's pixel, or, from the lens (t = 1), put out for the
  * film. */
-SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint *restrict shadows,
-                                    __global uint *restrict splats, __global uint *restrict diagnostics, uint stride,
-                                    uint item, bool from_lens)
+SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint *restrict splats,
+                                    __global uint *restrict diagnostics, uint stride, uint item, bool from_lens,
+                                    bool visible)
 {
-    bool visible = shadow_take(shadows, stride, item);
     Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
-    if (from_lens && visible)
-        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | state_load(paths, stride, BD_TARGET, item),
-                    contribution);
+    uint target = state_load(paths, stride, BD_TARGET, item);
+    if (from_lens && visible && target != NONE)
+        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | target,
+                    vec3_scale(contribution, state_load_float(paths, stride, BD_TARGET_WEIGHT, item)));
     else if (from_lens)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else if (visible)

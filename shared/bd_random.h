@@ -9,20 +9,34 @@
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
 #define BD_RANDOM_LIGHT 1u /* x, y: which light */
 #define BD_RANDOM_EMIT 2u /* point and direction on it */
+#define BD_RANDOM_PIXEL 3u /* of a pool's sample */
 /* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix materials. */
 #define BD_RANDOM_VERTICES 4u
 #define BD_RANDOM_SCATTER 0u
 #define BD_RANDOM_MIX 1u
-/* One block for every connection: s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
+/* One block for every connection. */
 #define BD_RANDOM_CONNECTIONS 0x1000u
 
-#define PATH_STREAM_BD 1u
+/* One for every connection of a pool: which sample becomes the candidate (pool.h); s * 64 + t. */
+#define BD_RANDOM_CANDIDATES 0x2000u
+
+SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint t, uint block,
+                                     uint stream)
+{
+    uint stride = frame->stride;
+    return random_four(state_load(paths, stride, BD_PIXEL, t), state_load(paths, stride, BD_SAMPLE, t), block, stream,
+                       frame->seed_low, frame->seed_high);
+}
 
 SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
 {
-    uint stride = frame->stride;
-    return random_four(state_load(paths, stride, BD_PIXEL, t), state_load(paths, stride, BD_SAMPLE, t), block,
-                       PATH_STREAM_BD, frame->seed_low, frame->seed_high);
+    return bd_random_of(frame, paths, t, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
+}
+
+/* What bd_random gives a pool's sample whose place the item has. */
+SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
+{
+    return bd_random_of(frame, paths, t, block, PATH_STREAM_POOL);
 }
 
 /* Block of vertex i of a side. */
@@ -31,9 +45,27 @@ SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
     return BD_RANDOM_VERTICES + (2u * i + side) * 2u + what;
 }
 
-SHARED_FUNCTION uint bd_random_connection(uint s, uint t)
+/* Numbers of the connection (s, t). s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
+SHARED_FUNCTION Random4 bd_random_connection(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                             uint s, uint t)
 {
-    return BD_RANDOM_CONNECTIONS + s * 64u + t;
+    Random4 random = bd_random(frame, paths, item, BD_RANDOM_CONNECTIONS + s * 64u + t);
+    if (frame->pool == 0u)
+        return random;
+    /* A chain has one light and one point of the lens for whatever it is connected with. */
+    if (t == 1u) {
+        Random4 camera = bd_random(frame, paths, item, BD_RANDOM_CAMERA);
+        random.x[0] = camera.x[2];
+        random.x[1] = camera.x[3];
+    } else if (s == 1u) {
+        Random4 choice = bd_random(frame, paths, item, BD_RANDOM_LIGHT);
+        Random4 emit = bd_random(frame, paths, item, BD_RANDOM_EMIT);
+        random.x[0] = choice.x[0];
+        random.x[1] = choice.x[1];
+        random.x[2] = emit.x[0];
+        random.x[3] = emit.x[1];
+    }
+    return random;
 }
 
 #endif

@@ -14,20 +14,22 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     ItemPlace place = item_place(frame, t);
     state_store(paths, stride, BD_PIXEL, t, place.pixel);
     state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    state_store(paths, stride, BD_SPLAT, t, place.pixel);
     state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    state_store_float(paths, stride, BD_CANDIDATE_SUM, t, 0.0f);
+    state_store(paths, stride, BD_CANDIDATE, t, 0u);
     state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
     walk_end(paths, rays, stride, t);
 }
 
-/* Draws y_0, stored at `base`, and the light's first ray. *own: density of y_0, of a point or of a direction where the
+/* Draws y_0, stored at `base`, and the light's first ray. choice: which light (x, y); random: point, direction. *own: density of y_0, of a point or of a direction where the
  * light is at infinity. False when the light sends nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global uint *restrict vertices,
-                                      __global uint *restrict diagnostics, uint stride, uint t, uint base, float *own)
+                                      __global uint *restrict diagnostics, uint stride, uint t, uint base,
+                                      Random4 choice, Random4 random, float *own)
 {
-    __global const FrameParams *frame = scene->frame;
-    Random4 choice = bd_random(frame, paths, t, BD_RANDOM_LIGHT), random = bd_random(frame, paths, t, BD_RANDOM_EMIT);
     uint light = light_select(scene, choice.x[0], choice.x[1]);
     LightEmission emission = {0};
     if (!light_emit(scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
@@ -50,7 +52,7 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *res
     return true;
 }
 
-/* The camera's first ray. */
+/* The camera's first ray of a sample of its pixel. */
 SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
                                        uint t)
@@ -67,6 +69,45 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *re
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     state_store_float(paths, stride, BD_WEIGHT, t, weight);
     walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+}
+
+/* The film positions that a pixel filter of the crop window covers are width x height pixels from (x, y) on. */
+typedef struct FilmReach {
+    float x, y, width, height;
+} FilmReach;
+
+SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
+{
+    float more_x = frame->filter.radius_x - 0.5f, more_y = frame->filter.radius_y - 0.5f;
+    FilmReach reach;
+    reach.x = (float)frame->crop_x0 - more_x;
+    reach.y = (float)frame->crop_y0 - more_y;
+    reach.width = (float)(frame->crop_x1 - frame->crop_x0) + 2.0f * more_x;
+    reach.height = (float)(frame->crop_y1 - frame->crop_y0) + 2.0f * more_y;
+    return reach;
+}
+
+/* The film position of two random numbers, uniform over the reach. */
+SHARED_FUNCTION Vec2 film_position(__global const FrameParams *frame, uint x, uint y)
+{
+    FilmReach reach = film_reach(frame);
+    return vec2(reach.x + reach.width * random_float(x), reach.y + reach.height * random_float(y));
+}
+
+/* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that of
+ * splats that are divided by samples per pixel, as those of the light's paths are. */
+SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
+                                     __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
+                                     uint t, Random4 random)
+{
+    __global const FrameParams *frame = scene->frame;
+    FilmReach reach = film_reach(frame);
+    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->width,
+                         (float)frame->height, vec2(random_float(random.x[2]), random_float(random.x[3])));
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(reach.width * reach.height / pixels),
+               1.0f, WALK_DELTA);
 }
 
 #endif

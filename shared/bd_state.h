@@ -38,7 +38,12 @@
 #define BD_T 22u
 #define BD_CONTRIBUTION 23u /* if nothing lies between, 3 */
 #define BD_TARGET 26u /* pixel it goes to; NONE: the path's own */
-#define BD_HEADER_WORDS 27u
+#define BD_TARGET_WEIGHT 27u /* of the pixel filter, there */
+#define BD_SPLAT 28u /* SPLAT_PIXEL of what is gathered */
+/* Of a pool (pool.h) */
+#define BD_CANDIDATE_SUM 29u
+#define BD_CANDIDATE 30u
+#define BD_HEADER_WORDS 31u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can meet it */

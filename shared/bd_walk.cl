@@ -7,6 +7,7 @@
 #include "bd_start.h"
 #include "bd_walk.h"
 #include "bd_weight.h"
+#include "pool.h"
 
 /* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
 __kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
@@ -29,6 +30,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
         return;
     float own;
     if (!walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
+                          bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT),
                           &own))
         return;
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
@@ -45,7 +47,10 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
     if (t >= frame->item_count)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    walk_start_camera(&scene, paths, rays, diagnostics, stride, t);
+    if (frame->pool != 0u)
+        pool_start_camera(&scene, paths, rays, diagnostics, t);
+    else
+        walk_start_camera(&scene, paths, rays, diagnostics, stride, t);
 }
 
 /* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
@@ -59,6 +64,15 @@ SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, 
             sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
     }
     return sum;
+}
+
+/* s = 0: what is sent by lights that the walk has met after `depth` segments. */
+SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
+                                Vec3 contribution)
+{
+    bd_add_radiance(paths, frame->stride, t, contribution);
+    if (frame->pool != 0u)
+        candidate_offer(frame, paths, t, 0u, depth + 1u, contribution);
 }
 
 /* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
@@ -84,7 +98,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     if (meeting.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT)) {
             Vec3 sum = walk_environment(&scene, view, meeting.ray.d, meeting.from_ng, depth);
-            bd_add_radiance(paths, stride, t, vec3_mul(beta, sum));
+            bd_add_met(frame, paths, t, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, t);
         return;
@@ -94,12 +108,12 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(&scene, &meeting, &ends);
         if (!vec3_is_zero(radiance))
-            bd_add_radiance(paths, stride, t,
-                            vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
+            bd_add_met(frame, paths, t, depth,
+                       vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
-    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth), random_float(random.x[0]),
-                     &meeting))
+    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
+                     vertex_base(frame, side, depth), random_float(random.x[0]), &meeting))
         return;
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);

@@ -15,9 +15,6 @@
 #include "strategy.h"
 #include "surface.h"
 
-/* The first vertices of a walk always survive Russian roulette. */
-#define BD_ROULETTE_FIRST_DEPTH 3u
-
 /* First field of vertex i of a side: y_0, y_1 ... behind each other, then z_1, z_2 ... */
 SHARED_FUNCTION uint vertex_base(__global const FrameParams *frame, uint side, uint i)
 {
@@ -125,11 +122,11 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
-/* BD_CONNECT of the stored y_0 for y_1 at p. */
+/* BD_CONNECT of y_0, stored at `base`, for y_1 at p. */
 SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
-                                            __global const uint *vertices, uint stride, uint t, Vec3 p)
+                                            __global const uint *vertices, uint stride, uint t, uint base, Vec3 p)
 {
-    uint light = state_load(paths, stride, BD_EMITTER, t), base = 0u; /* of y_0 */
+    uint light = state_load(paths, stride, BD_EMITTER, t);
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return 1.0f;
@@ -217,6 +214,7 @@ typedef struct WalkStep {
 SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth, float eta_scale,
                                   Random4 random, WalkStep *step)
 {
+    bool roulette = depth >= scene->frame->roulette_depth;
     BsdfSample sample;
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     if (!bsdf_sample(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]),
@@ -228,7 +226,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
         step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
                                                            vertex->wo.z, sample.wi.z));
     step->eta_scale = side == SIDE_CAMERA ? eta_scale * sample.eta * sample.eta : eta_scale;
-    float survival = depth >= BD_ROULETTE_FIRST_DEPTH ? vec3_max_component(step->beta) * step->eta_scale : 1.0f;
+    float survival = roulette ? vec3_max_component(step->beta) * step->eta_scale : 1.0f;
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
         return false;
     if (survival < 1.0f)
@@ -298,9 +296,10 @@ SHARED_FUNCTION WalkMeeting walk_meet(const SceneView *scene, __global const uin
     return meeting;
 }
 
-/* Makes and stores the vertex at `base`; the walk ends when nothing leaves it, and the camera's when it is full. */
+/* Makes and stores the vertex at `base`, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is full. */
 SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                 __global uint *restrict vertices, uint t, uint base, float u_mix, WalkMeeting *meeting)
+                                 __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
+                                 WalkMeeting *meeting)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
@@ -314,7 +313,7 @@ SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict
     /* Before the vertex may take the place of y_0. */
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, t,
-                          emitter_connect_ratio(scene, paths, vertices, stride, t, vertex.p));
+                          emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex.p));
     vertex_store(scene, vertices, stride, base, t, &vertex);
     return true;
 }

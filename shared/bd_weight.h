@@ -9,10 +9,13 @@ SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, _
                                             __global const uint *densities, uint t)
 {
     DensityView view;
-    view.words = densities;
+    view.light = densities;
+    view.camera = densities + (size_t)frame->max_depth * DENSITY_WORDS * frame->stride;
     view.stride = frame->stride;
     view.t = t;
-    view.camera_first = frame->max_depth;
+    view.compact = false;
+    view.light_end = 0u;
+    view.camera_end = 0u;
     view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, t);
     view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, t);
     return view;
@@ -21,7 +24,7 @@ SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, _
 /* Whether anything is to be made by the strategy (s, t). */
 SHARED_FUNCTION bool strategy_wanted(__global const FrameParams *frame, uint s, uint t)
 {
-    return strategy_taken(frame->strategies, s, s + t - 1u) &&
+    return s + t > frame->min_depth && strategy_taken(frame->strategies, s, s + t - 1u) &&
            (frame->only_s == NONE || (frame->only_s == s && frame->only_t == t));
 }
 

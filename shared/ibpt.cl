@@ -23,7 +23,9 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
     SceneView scene = scene_view(frame, geometry, tables, texels);
     float own;
     bd_header_begin(frame, paths, rays, shadows, stride, t);
-    if (frame->max_depth >= 2u && walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, 0u, &own))
+    if (frame->max_depth >= 2u &&
+        walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, 0u,
+                         bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, t, own);
 }
 
@@ -79,7 +81,7 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
         ib_add_met(frame, paths, t, depth, radiance, &ends);
     }
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
-    walk_vertex(&scene, paths, rays, vertices, t, 0u, random_float(random.x[0]), &meeting);
+    walk_vertex(&scene, paths, rays, vertices, t, 0u, 0u, random_float(random.x[0]), &meeting);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -98,11 +100,12 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Vertex vertex = vertex_load(&scene, vertices, stride, 0u, item);
-    Random4 random = bd_random(frame, paths, item, bd_random_connection(s, t));
+    Random4 random = bd_random_connection(frame, paths, item, s, t);
     float back = state_load_float(paths, stride, BD_BACK, item);
     Connection connection = {0};
     connection.target = NONE;
-    bool possible = side == SIDE_LIGHT ? connect_camera(&scene, &vertex, back, random, &connection)
+    bool possible = side == SIDE_LIGHT ? connect_camera(&scene, &vertex, back, random, &connection) &&
+                                             connection_aim(&scene, random, &connection)
                                        : connect_light(&scene, &vertex, back, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
@@ -123,8 +126,9 @@ __kernel void ib_add_connections(__global const FrameParams *restrict frame, __g
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
         return;
-    connection_add(paths, shadows, splats, diagnostics, stride, item,
-                   state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT);
+    bool visible = shadow_take(shadows, stride, item);
+    connection_add(paths, splats, diagnostics, stride, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
+                   visible);
 }
 
 /* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette. */

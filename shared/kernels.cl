@@ -6,6 +6,7 @@
 #include "bd_walk.cl"
 #include "count.cl"
 #include "ibpt.cl"
+#include "mlt.cl"
 #include "pt.cl"
 #include "trace.cl"
 #include "walk.cl"

@@ -295,7 +295,12 @@ typedef struct SceneLayout {
     uint materials, texture_ops, images, lights, light_alias, infinite_lights, distributions2d, lookup;
 } SceneLayout;
 
+/* Which integrator a random number is for (rng.h, counter word 3). */
 #define PATH_STREAM_PT 0u
+#define PATH_STREAM_BD 1u
+#define PATH_STREAM_POOL 2u /* samples from which chains begin */
+#define PATH_STREAM_CHAIN 3u /* mutations */
+#define PATH_STREAM_MUTATION 4u /* which kind of them */
 
 typedef struct FrameParams {
     SceneLayout layout;
@@ -307,15 +312,24 @@ typedef struct FrameParams {
     uint width, height; /* of the whole film, pixels */
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
     uint max_depth; /* path segments, >= 1 */
+    uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
+    uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
+    uint pool; /* 1: bidirectional samples are a pool for chains (pool.h) */
     uint strategies; /* STRATEGIES_* (mis.h) of bidirectional integrators */
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
     uint unweighted; /* 1: weights are taken for 1 */
+    uint mutations; /* bit MUTATION_*: small steps that chains make (chain.h) */
+    uint group_mutations; /* 1: at a step all chains make the same kind */
+    uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
+    float large_step; /* probability of a large step */
+    float brightness; /* what a chain's step carries to the film: mean luminance of a pool's sample */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
     uint item_count;
     uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
+    uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k at f * pass_stride + k - pass_first */
     uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;

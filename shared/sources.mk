@@ -20,6 +20,7 @@ SHARED_FILES = \
 	shared/bsdf_thin_dielectric.h \
 	shared/bvh_traverse.h \
 	shared/camera.h \
+	shared/chain.h \
 	shared/coat.h \
 	shared/count.cl \
 	shared/diagnostics.h \
@@ -41,11 +42,14 @@ SHARED_FILES = \
 	shared/material.h \
 	shared/microfacet.h \
 	shared/mis.h \
+	shared/mlt.cl \
+	shared/mutation.h \
 	shared/path_random.h \
 	shared/path_state.h \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/pool.h \
 	shared/primitive.h \
 	shared/pt.cl \
 	shared/ray.h \

@@ -18,22 +18,34 @@ typedef struct StrategyEnds {
     bool hittable; /* paths can meet the light */
 } StrategyEnds;
 
-/* Where the densities of an item are. */
+/* Where the densities of an item are: those of y_0 ... and z_1 ..., each word at stride. Stored in full, a vertex has
+ * DENSITY_WORDS words. Compact, it has one: only the ratio of both densities counts, but for the last two vertices of a
+ * side, whose density as the other side makes them is the connection's to know. */
 typedef struct DensityView {
-    __global const uint *words;
+    __global const uint *light, *camera;
     uint stride, t;
-    uint camera_first; /* index of z_1; y_i is i */
     uint light_delta, camera_delta; /* bit i: the vertex scattered by a delta lobe */
+    bool compact;
+    uint light_end, camera_end; /* compact: y and z of this index on have their own density, those before the ratio */
 } DensityView;
 
-SHARED_FUNCTION uint density_field(const DensityView *view, uint side, uint i)
+/* Density of vertex i as its side makes it and as the other side does, both known but for a factor that they share. */
+SHARED_FUNCTION float density_own(const DensityView *view, uint side, uint i)
 {
-    return (side == SIDE_LIGHT ? i : view->camera_first + i - 1u) * DENSITY_WORDS;
+    __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
+    uint index = side == SIDE_LIGHT ? i : i - 1u;
+    if (!view->compact)
+        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->t);
+    uint end = side == SIDE_LIGHT ? view->light_end : view->camera_end;
+    return i >= end ? state_load_float(words, view->stride, index, view->t) : 1.0f;
 }
 
-SHARED_FUNCTION float density_load(const DensityView *view, uint side, uint i, uint which)
+SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
 {
-    return state_load_float(view->words, view->stride, density_field(view, side, i) + which, view->t);
+    __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
+    uint index = side == SIDE_LIGHT ? i : i - 1u;
+    return state_load_float(words, view->stride, view->compact ? index : index * DENSITY_WORDS + DENSITY_OTHER,
+                            view->t);
 }
 
 /* Whether an edge between vertex i and vertex i - 1 (0: the side's end, which is never a delta) can be a connection. */
@@ -50,10 +62,8 @@ SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, uint set, uint s, uint t, 
     uint k = s + t - 1u;
     Scaled one = scaled_from(1.0f), connect = scaled_from(ends->connect);
     for (uint i = t - 1u; i >= 1u; --i) {
-        float light = i == t - 1u   ? ends->light_z1
-                      : i == t - 2u ? ends->light_z2
-                                    : density_load(view, SIDE_CAMERA, i, DENSITY_OTHER);
-        mis_sum_step(sum, light, density_load(view, SIDE_CAMERA, i, DENSITY_OWN));
+        float light = i == t - 1u ? ends->light_z1 : i == t - 2u ? ends->light_z2 : density_other(view, SIDE_CAMERA, i);
+        mis_sum_step(sum, light, density_own(view, SIDE_CAMERA, i));
         uint other = k - i + 1u;
         if (strategy_taken(set, other, k) && edge_connectable(view->camera_delta, i))
             mis_sum_take(sum, other == 1u ? connect : one);
@@ -69,8 +79,8 @@ SHARED_FUNCTION void strategy_sum_light(MisSum *sum, uint set, uint s, uint t, c
     for (uint i = s; i-- > 0u;) {
         float camera = i == s - 1u   ? ends->camera_y1
                        : i + 2u == s ? ends->camera_y2
-                                     : density_load(view, SIDE_LIGHT, i, DENSITY_OTHER);
-        float light = s == 1u ? ends->own_y0 : density_load(view, SIDE_LIGHT, i, DENSITY_OWN);
+                                     : density_other(view, SIDE_LIGHT, i);
+        float light = s == 1u ? ends->own_y0 : density_own(view, SIDE_LIGHT, i);
         mis_sum_step(sum, camera, light);
         bool possible = i > 0u ? edge_connectable(view->light_delta, i) : ends->hittable;
         if (strategy_taken(set, i, k) && possible)

@@ -1,0 +1,44 @@
+#include "pass_data.h"
+
+#include "ocl_status.h"
+
+/* Fields lie pass_stride apart on the host and item_count apart on the device. */
+typedef struct Region {
+    size_t device[3], host[3], size[3];
+    size_t device_row, host_row;
+} Region;
+
+static Region region_of(const FrameParams *frame, const StepList *list)
+{
+    return (Region){.host = {frame->first_item * sizeof(uint), 0, 0},
+                    .size = {frame->item_count * sizeof(uint), list->pass_fields, 1},
+                    .device_row = frame->item_count * sizeof(uint),
+                    .host_row = list->pass_stride * sizeof(uint)};
+}
+
+bool pass_data_begin(DeviceMemory *memory, const FrameParams *frame, const StepList *list, Error *error)
+{
+    if (!list->pass_words || frame->item_count == 0)
+        return true;
+    cl_int status;
+    Region region = region_of(frame, list);
+    cl_mem *buffer = &memory->state[BUFFER_PASS];
+    *buffer = clCreateBuffer(memory->context, CL_MEM_READ_WRITE, region.size[0] * region.size[1], NULL, &status);
+    if (status == CL_SUCCESS)
+        status = clEnqueueWriteBufferRect(memory->queue, *buffer, CL_TRUE, region.device, region.host, region.size,
+                                          region.device_row, 0, region.host_row, 0, list->pass_words, 0, NULL, NULL);
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's words", status);
+}
+
+bool pass_data_end(DeviceMemory *memory, const FrameParams *frame, const StepList *list, Error *error)
+{
+    cl_mem *buffer = &memory->state[BUFFER_PASS];
+    if (!list->pass_words || !*buffer)
+        return true;
+    Region region = region_of(frame, list);
+    cl_int status = clEnqueueReadBufferRect(memory->queue, *buffer, CL_TRUE, region.device, region.host, region.size,
+                                            region.device_row, 0, region.host_row, 0, list->pass_words, 0, NULL, NULL);
+    clReleaseMemObject(*buffer);
+    *buffer = NULL;
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's words back", status);
+}

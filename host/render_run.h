@@ -1,0 +1,25 @@
+/* A rendering under way, for integrators that have a loop of their own. */
+#ifndef TWINLIGHT_RENDER_RUN_H
+#define TWINLIGHT_RENDER_RUN_H
+
+#include "render.h"
+
+typedef struct RenderRun {
+    const BackendInterface *interface;
+    Backend *backend;
+    const RenderOptions *options;
+    const RenderCallbacks *callbacks; /* may be NULL */
+    FrameParams frame; /* render_frame */
+    Film *film;
+    uint64_t crop_pixels;
+    uint64_t done; /* samples in the film */
+    double start, last_save;
+} RenderRun;
+
+/* Calls `progress`. fraction: of the samples wanted; 0 where their number is not limited. */
+void render_run_report(const RenderRun *run, double fraction);
+
+/* Calls `save` when it is due; false when that fails. */
+bool render_run_save_if_due(RenderRun *run, Error *error);
+
+#endif

@@ -1,0 +1,247 @@
+/* A Markov chain over the random numbers of one path (Hachisuka, Kaplanyan and Dachsbacher, "Multiplexed Metropolis
+ * Light Transport", 2014): its coordinates, how they are mutated, and what else it keeps. One word a field, behind the
+ * walk under way (bd_state.h).
+ *
+ * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
+ * balance holds exactly and a coordinate that is left alone keeps its bits. A proposal is not stored: its coordinates
+ * are a function of the current ones and of (seed, chain, step), and are made again when it is accepted. */
+#ifndef TWINLIGHT_CHAIN_H
+#define TWINLIGHT_CHAIN_H
+
+#include "bd_random.h"
+#include "item.h"
+#include "pool.h"
+#include "scene_view.h"
+
+/* ---- state ------------------------------------------------------------------------------------------------------- */
+
+#define CHAIN_KEY BD_HEADER_WORDS /* chain_key of the current path; 0: the chain never began */
+#define CHAIN_PROPOSED_KEY (BD_HEADER_WORDS + 1u)
+#define CHAIN_STEP (BD_HEADER_WORDS + 2u) /* number of the proposal, for its random numbers */
+#define CHAIN_MUTATION (BD_HEADER_WORDS + 3u) /* of the proposal: MUTATION_* */
+#define CHAIN_CHANGED (BD_HEADER_WORDS + 4u) /* halves that the proposal has of its own: HALF_* */
+#define CHAIN_REACHED (BD_HEADER_WORDS + 5u) /* halves of the proposal whose last vertex is there */
+#define CHAIN_BANKS (BD_HEADER_WORDS + 6u) /* HALF_*: the current path's is in bank 1 */
+#define CHAIN_LUMINANCE (BD_HEADER_WORDS + 7u) /* f of the current path */
+#define CHAIN_COLOR (BD_HEADER_WORDS + 8u) /* its contribution over f, 3 */
+#define CHAIN_FILM (BD_HEADER_WORDS + 11u) /* where the film sees it, 2 */
+#define CHAIN_PENDING (BD_HEADER_WORDS + 13u) /* expected visits of the current path that the film has not got yet */
+#define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 14u) /* 2 */
+#define CHAIN_TALLY (BD_HEADER_WORDS + 16u) /* proposals | accepted << 16 of each kind of mutation, 4 */
+/* What the connection has to know of a half of the path, twice for each side: chain_half. */
+#define CHAIN_HALVES (BD_HEADER_WORDS + 20u)
+#define CHAIN_NUMBERS (CHAIN_HALVES + 4u * CHAIN_HALF_WORDS)
+
+#define CHAIN_HALF_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
+#define CHAIN_HALF_BACK 1u /* BD_BACK of the last vertex */
+#define CHAIN_HALF_EMITTER_FLAGS 2u
+#define CHAIN_HALF_CONNECT 3u
+#define CHAIN_HALF_WORDS 4u
+
+#define HALF_LIGHT 0x1u
+#define HALF_CAMERA 0x2u
+#define HALF_BOTH (HALF_LIGHT | HALF_CAMERA)
+
+/* Fields of half `side` (SIDE_*) in bank 0 or 1. */
+SHARED_FUNCTION uint chain_half(uint side, uint bank)
+{
+    return CHAIN_HALVES + (2u * side + bank) * CHAIN_HALF_WORDS;
+}
+
+/* The bank of a half of the proposal: the one that the current path does not have where the half is its own. */
+SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint t, uint side)
+{
+    uint banks = state_load(paths, stride, CHAIN_BANKS, t) ^ state_load(paths, stride, CHAIN_CHANGED, t);
+    return banks >> side & 1u;
+}
+
+/* BUFFER_VERTICES: the last vertex of either side, twice. A walk's vertices take each other's place. */
+#define CHAIN_VERTEX_WORDS (4u * VERTEX_WORDS)
+
+SHARED_FUNCTION uint chain_vertex_base(uint side, uint bank)
+{
+    return (2u * side + bank) * VERTEX_WORDS;
+}
+
+/* BUFFER_DENSITIES: one word a vertex as in strategy.h, compact, d of them, twice. */
+SHARED_FUNCTION uint chain_density(__global const FrameParams *frame, uint side, uint bank, uint s, uint i)
+{
+    return bank * frame->max_depth + (side == SIDE_LIGHT ? i : s + i - 1u);
+}
+
+SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame, __global const uint *paths,
+                                               __global const uint *densities, uint t, uint s, uint camera)
+{
+    uint stride = frame->stride;
+    uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    DensityView view;
+    view.light = densities + (size_t)chain_density(frame, SIDE_LIGHT, light_bank, s, 0u) * stride;
+    view.camera = densities + (size_t)chain_density(frame, SIDE_CAMERA, camera_bank, s, 1u) * stride;
+    view.stride = stride;
+    view.t = t;
+    view.light_delta = state_load(paths, stride, chain_half(SIDE_LIGHT, light_bank) + CHAIN_HALF_DELTA, t);
+    view.camera_delta = state_load(paths, stride, chain_half(SIDE_CAMERA, camera_bank) + CHAIN_HALF_DELTA, t);
+    view.compact = true;
+    view.light_end = s >= 2u ? s - 2u : 0u;
+    view.camera_end = camera >= 3u ? camera - 2u : 1u;
+    return view;
+}
+
+/* ---- BUFFER_PASS of chains --------------------------------------------------------------------------------------- */
+
+#define CHAIN_PASS_KEY 0u /* where to begin; after the pass, where it ended */
+#define CHAIN_PASS_ITEM 1u /* the pool's sample; NONE: the coordinates are given */
+#define CHAIN_PASS_LUMINANCE 2u /* after the pass */
+#define CHAIN_PASS_TALLY 3u /* after the pass, 4 */
+#define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
+#define CHAIN_PASS_NUMBERS 8u /* the coordinates, where the pass keeps them */
+
+/* ---- coordinates ------------------------------------------------------------------------------------------------- */
+
+#define NUMBER_CAMERA 0u /* film, lens: 4 */
+#define NUMBER_EMIT 4u /* point and direction on the light: 4 */
+#define NUMBER_SELECT 8u /* which light: 2 */
+#define NUMBER_VERTICES 10u /* then those of every vertex between the ends */
+
+/* Lobe and direction; where the scene mixes materials, also which. */
+SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
+{
+    return (frame->features & FEATURE_MIX) != 0u ? 4u : 3u;
+}
+
+/* d - 1 vertices lie between the ends of a path: y_1, y_2 ... and then, from the light to the camera, ... z_2, z_1. */
+SHARED_FUNCTION uint chain_slot(uint side, uint d, uint i)
+{
+    return side == SIDE_LIGHT ? i - 1u : d - 1u - i;
+}
+
+/* Whether the half owns the coordinate slot: of a path with s vertices from the light. */
+SHARED_FUNCTION uint chain_slot_half(uint s, uint slot)
+{
+    return slot + 1u < s ? HALF_LIGHT : HALF_CAMERA;
+}
+
+/* ---- mutations --------------------------------------------------------------------------------------------------- */
+
+#define MUTATION_ALL 0u /* small steps of all coordinates */
+#define MUTATION_LIGHT 1u /* of the light's half */
+#define MUTATION_CAMERA 2u /* of the camera's half */
+#define MUTATION_LARGE 3u /* everything new, s too */
+#define MUTATION_COUNT 4u
+#define MUTATION_REPLAY 4u /* no mutation: the current path is made again */
+
+/* Blocks of random numbers of one step, 256 of them. */
+#define CHAIN_BLOCK_CAMERA 0u
+#define CHAIN_BLOCK_EMIT 1u
+#define CHAIN_BLOCK_SELECT 2u /* which light; the new s of a large step */
+#define CHAIN_BLOCK_DECIDE 3u /* whether to accept; pixel of the splat */
+#define CHAIN_BLOCK_VERTICES 4u
+
+SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, uint step, uint block)
+{
+    return random_four(frame->first_item + t, step << 8 | block, frame->sample_index, PATH_STREAM_CHAIN,
+                       frame->seed_low, frame->seed_high);
+}
+
+/* A small step from the random word `bits`: its size is within [2^-10, 2^-6) of the whole range, one of four octaves, and
+ * uniform within it; either sign alike (after Kelemen et al., 2002, whose sizes are exponential in the same range). */
+SHARED_FUNCTION uint mutation_offset(uint bits)
+{
+    uint size = (0x00800000u | bits >> 9) << (bits >> 1 & 3u) >> 1;
+    return (bits & 1u) != 0u ? size : 0u - size;
+}
+
+/* Four coordinates from `first` on as the proposal has them. `part`: whose they are. */
+SHARED_FUNCTION Random4 chain_proposed(__global const FrameParams *frame, __global const uint *paths, uint t,
+                                       uint first, uint count, uint part, uint block)
+{
+    uint stride = frame->stride, mutation = state_load(paths, stride, CHAIN_MUTATION, t);
+    Random4 numbers;
+    for (uint i = 0u; i < 4u; ++i)
+        numbers.x[i] = i < count ? state_load(paths, stride, CHAIN_NUMBERS + first + i, t) : 0u;
+    if (mutation == MUTATION_REPLAY || (state_load(paths, stride, CHAIN_CHANGED, t) & part) == 0u)
+        return numbers;
+    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), block);
+    bool large = mutation == MUTATION_LARGE;
+    for (uint i = 0u; i < 4u; ++i)
+        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i]);
+    return numbers;
+}
+
+SHARED_FUNCTION Random4 chain_camera(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_proposed(frame, paths, t, NUMBER_CAMERA, 4u, HALF_CAMERA, CHAIN_BLOCK_CAMERA);
+}
+
+SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_proposed(frame, paths, t, NUMBER_EMIT, 4u, HALF_LIGHT, CHAIN_BLOCK_EMIT);
+}
+
+SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_proposed(frame, paths, t, NUMBER_SELECT, 2u, HALF_LIGHT, CHAIN_BLOCK_SELECT);
+}
+
+/* x: lobe, direction, direction, mix. */
+SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global const uint *paths, uint t, uint side,
+                                     uint i)
+{
+    uint key = state_load(paths, frame->stride, CHAIN_PROPOSED_KEY, t), count = chain_vertex_numbers(frame);
+    uint slot = chain_slot(side, chain_key_depth(key), i);
+    return chain_proposed(frame, paths, t, NUMBER_VERTICES + slot * count, count,
+                          side == SIDE_LIGHT ? HALF_LIGHT : HALF_CAMERA, CHAIN_BLOCK_VERTICES + slot);
+}
+
+SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint t, uint first, uint count,
+                                         Random4 numbers)
+{
+    for (uint i = 0u; i < count; ++i)
+        state_store(paths, stride, CHAIN_NUMBERS + first + i, t, numbers.x[i]);
+}
+
+/* The proposal's coordinates become the chain's. */
+SHARED_FUNCTION void chain_take_numbers(__global const FrameParams *frame, __global uint *paths, uint t)
+{
+    uint stride = frame->stride, changed = state_load(paths, stride, CHAIN_CHANGED, t);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), count = chain_vertex_numbers(frame);
+    uint d = chain_key_depth(key), s = chain_key_s(key);
+    if ((changed & HALF_CAMERA) != 0u)
+        chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, chain_camera(frame, paths, t));
+    if ((changed & HALF_LIGHT) != 0u) {
+        chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, chain_emit(frame, paths, t));
+        chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, chain_select(frame, paths, t));
+    }
+    for (uint slot = 0u; slot + 1u < d; ++slot) {
+        uint part = chain_slot_half(s, slot);
+        uint first = NUMBER_VERTICES + slot * count;
+        if ((changed & part) != 0u)
+            chain_store_numbers(paths, stride, t, first, count,
+                                chain_proposed(frame, paths, t, first, count, part, CHAIN_BLOCK_VERTICES + slot));
+    }
+}
+
+/* ---- how a chain begins ------------------------------------------------------------------------------------------ */
+
+/* The coordinates that the pool's sample had for the path it kept. */
+SHARED_FUNCTION void chain_numbers_of_pool(__global const FrameParams *frame, __global uint *paths, uint t, uint key,
+                                           uint item)
+{
+    uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
+    ItemPlace place = item_place_of(frame, item);
+    state_store(paths, stride, BD_PIXEL, t, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, pool_random(frame, paths, t, BD_RANDOM_CAMERA));
+    chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, pool_random(frame, paths, t, BD_RANDOM_EMIT));
+    chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, pool_random(frame, paths, t, BD_RANDOM_LIGHT));
+    for (uint slot = 0u; slot + 1u < d; ++slot) {
+        uint side = slot + 1u < s ? SIDE_LIGHT : SIDE_CAMERA;
+        uint i = side == SIDE_LIGHT ? slot + 1u : d - 1u - slot;
+        Random4 numbers = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_SCATTER));
+        if (count > 3u)
+            numbers.x[3] = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[0];
+        chain_store_numbers(paths, stride, t, NUMBER_VERTICES + slot * count, count, numbers);
+    }
+}
+
+#endif

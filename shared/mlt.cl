@@ -1,0 +1,326 @@
+/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and, between
+ * large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
+ * mlt_begin; then per proposal mlt_propose, the light's walk, mlt_start_camera, the camera's walk, mlt_connect, (shadow
+ * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_shade_hits, mlt_extend_walks.
+ * The first proposal of a pass is the current path itself, so that its vertices are there. */
+#ifndef TWINLIGHT_MLT_CL
+#define TWINLIGHT_MLT_CL
+
+#include "bd_connect.h"
+#include "bd_start.h"
+#include "bd_weight.h"
+#include "chain.h"
+#include "mutation.h"
+
+SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint t)
+{
+    return state_load(pass, frame->pass_stride, field, frame->first_item + t - frame->pass_first);
+}
+
+SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint *pass, uint field, uint t, uint value)
+{
+    state_store(pass, frame->pass_stride, field, frame->first_item + t - frame->pass_first, value);
+}
+
+/* From: a pool's gathered candidates. To: what the sample is worth, and the path kept. */
+__kernel void pool_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
+                       __global uint *restrict pass)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    pass_store(frame, pass, POOL_WEIGHT, t, state_load(paths, stride, BD_CANDIDATE_SUM, t));
+    pass_store(frame, pass, POOL_KEY, t, state_load(paths, stride, BD_CANDIDATE, t));
+}
+
+/* From: where each chain begins. To: its coordinates. */
+__kernel void mlt_begin(__global const FrameParams *restrict frame, __global const uint *restrict pass,
+                        __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint key = pass_load(frame, pass, CHAIN_PASS_KEY, t), item = pass_load(frame, pass, CHAIN_PASS_ITEM, t);
+    uint words = NUMBER_VERTICES + (chain_key_depth(key) - 1u) * chain_vertex_numbers(frame);
+    state_store(paths, stride, CHAIN_KEY, t, key);
+    state_store(paths, stride, CHAIN_STEP, t, pass_load(frame, pass, CHAIN_PASS_STEP, t));
+    state_store(paths, stride, CHAIN_BANKS, t, 0u);
+    state_store_float(paths, stride, CHAIN_LUMINANCE, t, 0.0f);
+    state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
+    for (uint i = 0u; i < MUTATION_COUNT; ++i)
+        state_store(paths, stride, CHAIN_TALLY + i, t, 0u);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    walk_end(paths, rays, stride, t);
+    state_store(paths, stride, CHAIN_MUTATION, t, MUTATION_REPLAY);
+    if (item != NONE)
+        chain_numbers_of_pool(frame, paths, t, key, item);
+    else
+        for (uint i = 0u; i < words; ++i)
+            state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
+}
+
+/* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
+__kernel void mlt_propose(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                          __global const uint *restrict tables, __global const uint *restrict texels,
+                          __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict vertices,
+                          __global uint *restrict densities, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    chain_propose(frame, paths, t);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, vec3_splat(0.0f));
+    state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
+    state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
+    walk_end(paths, rays, stride, t);
+    uint kept = HALF_BOTH & ~state_load(paths, stride, CHAIN_CHANGED, t);
+    state_store(paths, stride, CHAIN_REACHED, t, s < 2u ? kept | HALF_LIGHT : kept);
+    if ((kept & HALF_LIGHT) != 0u || s < 2u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
+    float own;
+    if (walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, chain_vertex_base(SIDE_LIGHT, bank),
+                         chain_select(frame, paths, t), chain_emit(frame, paths, t), &own))
+        state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), t, own);
+}
+
+/* From: the light's walk done. To: the camera's first ray, where its half is new and the light's is there. */
+__kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                               __global const uint *restrict tables, __global const uint *restrict texels,
+                               __global uint *restrict paths, __global uint *restrict rays,
+                               __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), reached = state_load(paths, stride, CHAIN_REACHED, t);
+    walk_end(paths, rays, stride, t);
+    if (reached != HALF_LIGHT)
+        return;
+    if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
+        state_store(paths, stride, CHAIN_REACHED, t, HALF_BOTH);
+        return;
+    }
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    walk_start_film(&scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
+}
+
+/* The last vertex of a side is there: what the connection needs of the walk. */
+SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride, uint t, uint side, uint bank)
+{
+    uint part = chain_half(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    uint flag = side == SIDE_LIGHT ? HALF_LIGHT : HALF_CAMERA;
+    state_store(paths, stride, part + CHAIN_HALF_DELTA, t, state_load(paths, stride, mask, t));
+    state_store(paths, stride, part + CHAIN_HALF_BACK, t, state_load(paths, stride, BD_BACK, t));
+    if (side == SIDE_LIGHT) {
+        state_store(paths, stride, part + CHAIN_HALF_EMITTER_FLAGS, t, state_load(paths, stride, BD_EMITTER_FLAGS, t));
+        state_store(paths, stride, part + CHAIN_HALF_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
+    }
+    state_store(paths, stride, CHAIN_REACHED, t, state_load(paths, stride, CHAIN_REACHED, t) | flag);
+}
+
+/* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
+SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *restrict paths,
+                                      __global const uint *restrict densities, uint t, uint d,
+                                      const WalkMeeting *meeting)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    state_store(paths, stride, chain_half(SIDE_CAMERA, bank) + CHAIN_HALF_DELTA, t,
+                state_load(paths, stride, BD_CAMERA_DELTA, t));
+    DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
+    Vec3 radiance = vec3_splat(0.0f);
+    if (meeting->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
+        radiance = walk_environment(scene, view, meeting->ray.d, meeting->from_ng, d);
+    } else if (!meeting->missed && meeting->light != NONE) {
+        StrategyEnds ends = {0};
+        radiance = emission_met(scene, meeting, &ends);
+        if (!vec3_is_zero(radiance))
+            radiance = vec3_scale(radiance, bd_weight(frame, 0u, d + 1u, &view, &ends));
+    }
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, vec3_mul(state_load_vec3(paths, stride, BD_BETA, t), radiance));
+}
+
+/* From: closest hits. To: the vertex with its density; s = 0: at the last one what the light sends. A walk ends with its
+ * last vertex, or where nothing can be made of it. */
+__kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global const uint *restrict hits, __global uint *restrict vertices,
+                             __global uint *restrict densities)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), d = chain_key_depth(key), s = chain_key_s(key);
+    uint bank = chain_bank(paths, stride, t, side), base = chain_vertex_base(side, bank);
+    uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
+    WalkMeeting meeting = walk_meet(&scene, paths, rays, hits, vertices, t, base);
+    state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, meeting.own);
+    if (s == 0u && depth == d)
+        chain_meet_light(&scene, paths, densities, t, d, &meeting);
+    if (meeting.missed || (s == 0u && depth == d)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    state_store_float(paths, stride, BD_BACK, t, meeting.back);
+    float u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
+    if (!walk_vertex(&scene, paths, rays, vertices, t, base, base, u_mix, &meeting) || depth < last)
+        return;
+    chain_half_store(paths, stride, t, side, bank);
+    walk_end(paths, rays, stride, t);
+}
+
+/* From: the vertex. To: the ratio of densities of the one before it; the next ray, or the walk's end by absorption. */
+__kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                               __global const uint *restrict tables, __global const uint *restrict texels,
+                               __global uint *restrict paths, __global uint *restrict rays,
+                               __global const uint *restrict vertices, __global uint *restrict densities,
+                               __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    if (depth == 0u)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    uint s = chain_key_s(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)), bank = chain_bank(paths, stride, t, side);
+    WalkStep step;
+    if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
+                    chain_vertex(frame, paths, t, side, depth), &step))
+        return;
+    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    if (step.delta != 0u)
+        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+    if (side == SIDE_LIGHT || depth > 1u) {
+        uint before = chain_density(frame, side, bank, s, depth - 1u);
+        float other = step.reverse * state_load_float(paths, stride, BD_BACK, t);
+        state_store_float(densities, stride, before, t, other / state_load_float(densities, stride, before, t));
+    }
+    walk_step_store(paths, rays, stride, t, depth, &step);
+}
+
+/* The connection of the two last vertices. */
+SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
+                                   __global const uint *restrict vertices, uint t, uint s, uint camera,
+                                   Connection *connection)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride;
+    uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    uint light_half = chain_half(SIDE_LIGHT, light_bank), camera_half = chain_half(SIDE_CAMERA, camera_bank);
+    Vertex y = {0}, z = {0};
+    float back_y = 0.0f, back_z = 0.0f;
+    if (s > 1u) {
+        y = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_LIGHT, light_bank), t);
+        back_y = state_load_float(paths, stride, light_half + CHAIN_HALF_BACK, t);
+    }
+    if (camera > 1u) {
+        z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), t);
+        back_z = state_load_float(paths, stride, camera_half + CHAIN_HALF_BACK, t);
+    }
+    bool possible;
+    if (camera == 1u) {
+        Random4 lens = chain_camera(frame, paths, t);
+        lens.x[0] = lens.x[2];
+        lens.x[1] = lens.x[3];
+        possible = connect_camera(scene, &y, back_y, lens, connection);
+    } else if (s == 1u) {
+        Random4 random = chain_select(frame, paths, t), emit = chain_emit(frame, paths, t);
+        random.x[2] = emit.x[0];
+        random.x[3] = emit.x[1];
+        possible = connect_light(scene, &z, back_z, random, connection);
+    } else {
+        possible = connect_surfaces(scene, &y, back_y, &z, back_z, connection);
+    }
+    if (s >= 2u) {
+        uint flags = state_load(paths, stride, light_half + CHAIN_HALF_EMITTER_FLAGS, t);
+        connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;
+        connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_HALF_CONNECT, t);
+    }
+    return possible && connection_traceable(connection);
+}
+
+/* From: both halves. To: their connection, weighted, and its shadow ray. */
+__kernel void mlt_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                          __global const uint *restrict tables, __global const uint *restrict texels,
+                          __global uint *restrict paths, __global uint *restrict shadows,
+                          __global const uint *restrict vertices, __global const uint *restrict densities)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
+    uint camera = chain_key_depth(key) + 1u - s;
+    if (camera > 1u) {
+        Random4 film = chain_camera(frame, paths, t);
+        Vec2 position = film_position(frame, film.x[0], film.x[1]);
+        state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, position.x);
+        state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, position.y);
+    }
+    if (s == 0u || state_load(paths, stride, CHAIN_REACHED, t) != HALF_BOTH)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    Connection connection = {0};
+    connection.target = NONE;
+    connection.ends.connect = 1.0f;
+    if (!chain_connect(&scene, paths, vertices, t, s, camera, &connection))
+        return;
+    if (camera == 1u) {
+        state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, connection.film.x);
+        state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, connection.film.y);
+    }
+    DensityView view = chain_density_view(frame, paths, densities, t, s, camera);
+    connection_store(paths, shadows, stride, t, &connection, bd_weight(frame, s, camera, &view, &connection.ends));
+}
+
+/* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
+__kernel void mlt_accept(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                         __global const uint *restrict tables, __global const uint *restrict texels,
+                         __global uint *restrict paths, __global uint *restrict shadows, __global uint *restrict splats,
+                         __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    bool cast = state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f;
+    bool visible = shadow_take(shadows, stride, t);
+    Vec3 color = state_load_vec3(paths, stride, BD_CONTRIBUTION, t);
+    if (cast && !visible)
+        color = vec3_splat(0.0f);
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    chain_decide(&scene, paths, splats, diagnostics, t, color);
+}
+
+/* From: the chains. To: what the film has not got of them, and where they ended. */
+__kernel void mlt_end(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                      __global const uint *restrict tables, __global const uint *restrict texels,
+                      __global uint *restrict paths, __global uint *restrict splats, __global uint *restrict pass,
+                      __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    SceneView scene = scene_view(frame, geometry, tables, texels);
+    chain_splat_current(&scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t));
+    pass_store(frame, pass, CHAIN_PASS_KEY, t, state_load(paths, stride, CHAIN_KEY, t));
+    pass_store(frame, pass, CHAIN_PASS_LUMINANCE, t, state_load(paths, stride, CHAIN_LUMINANCE, t));
+    pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));
+    for (uint i = 0u; i < MUTATION_COUNT; ++i)
+        pass_store(frame, pass, CHAIN_PASS_TALLY + i, t, state_load(paths, stride, CHAIN_TALLY + i, t));
+    if (frame->keep_chains == 0u)
+        return;
+    uint d = chain_key_depth(state_load(paths, stride, CHAIN_KEY, t));
+    uint words = NUMBER_VERTICES + (d - 1u) * chain_vertex_numbers(frame);
+    for (uint i = 0u; i < words; ++i)
+        pass_store(frame, pass, CHAIN_PASS_NUMBERS + i, t, state_load(paths, stride, CHAIN_NUMBERS + i, t));
+}
+
+#endif

@@ -1,0 +1,157 @@
+/* What a chain proposes, and whether it takes it: Metropolis's rule with expected values, every proposal and every
+ * current path weighted by how probable it is to be visited (Veach 1997, section 11.3.2). */
+#ifndef TWINLIGHT_MUTATION_H
+#define TWINLIGHT_MUTATION_H
+
+#include "bd_connect.h"
+#include "chain.h"
+
+/* The kind of mutation at `step`: the same for all chains where they are grouped, so that kernels of a half that does not
+ * change have nothing to do. */
+SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, uint t, uint step)
+{
+    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
+    Random4 random =
+        random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
+    if (random_float(random.x[0]) < frame->large_step)
+        return MUTATION_LARGE;
+    uint kinds = 0u, set = frame->mutations;
+    for (uint kind = 0u; kind < MUTATION_LARGE; ++kind)
+        kinds += set >> kind & 1u;
+    if (kinds == 0u)
+        return MUTATION_ALL;
+    /* The chosen one counts down the set. */
+    uint rest = (uint)((ulong)random.x[1] * kinds >> 32), kind = 0u;
+    for (;; ++kind)
+        if ((set >> kind & 1u) != 0u && rest-- == 0u)
+            return kind;
+}
+
+/* Which halves the mutation changes. A half without coordinates cannot change: then all do. */
+SHARED_FUNCTION uint mutation_halves(uint mutation, uint d, uint s)
+{
+    bool light = s > 0u, camera = s < d;
+    if (mutation == MUTATION_LIGHT && light && camera)
+        return HALF_LIGHT;
+    if (mutation == MUTATION_CAMERA && light && camera)
+        return HALF_CAMERA;
+    return HALF_BOTH;
+}
+
+/* Chooses what is proposed next. The first proposal of a pass is the current path. */
+SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths, uint t)
+{
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
+    uint step = state_load(paths, stride, CHAIN_STEP, t);
+    bool first = state_load_float(paths, stride, CHAIN_LUMINANCE, t) == 0.0f;
+    uint mutation = MUTATION_REPLAY, changed = HALF_BOTH;
+    if (!first) {
+        state_store(paths, stride, CHAIN_STEP, t, ++step);
+        mutation = mutation_choose(frame, t, step);
+        changed = mutation_halves(mutation, d, chain_key_s(key));
+    }
+    if (mutation == MUTATION_LARGE) {
+        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_SELECT).x[2];
+        key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
+    }
+    state_store(paths, stride, CHAIN_MUTATION, t, mutation);
+    state_store(paths, stride, CHAIN_CHANGED, t, changed);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
+}
+
+/* ---- splats ------------------------------------------------------------------------------------------------------ */
+
+/* A path at `film` whose contribution over f is `color` is visited `visits` times. */
+SHARED_FUNCTION void chain_splat(const SceneView *scene, __global const uint *restrict paths,
+                                 __global uint *restrict splats, __global uint *restrict diagnostics, uint t, Vec2 film,
+                                 Vec3 color, float visits)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, pixel = NONE;
+    float weight = 0.0f;
+    if (visits > 0.0f) {
+        Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
+        pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
+    }
+    if (pixel == NONE)
+        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+    else
+        splat_store(splats, diagnostics, stride, t, SPLAT_FROM_LIGHT | pixel,
+                    vec3_scale(color, visits * (weight * frame->brightness)));
+}
+
+SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint t)
+{
+    return vec2(state_load_float(paths, stride, field, t), state_load_float(paths, stride, field + 1u, t));
+}
+
+SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const uint *restrict paths,
+                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint t,
+                                         float visits)
+{
+    uint stride = scene->frame->stride;
+    chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_FILM, t),
+                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits);
+}
+
+/* ---- the rule ---------------------------------------------------------------------------------------------------- */
+
+/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin with. */
+SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
+                                Vec3 color, float visits)
+{
+    uint stride = frame->stride;
+    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
+    if (state_load(paths, stride, CHAIN_MUTATION, t) != MUTATION_REPLAY)
+        chain_take_numbers(frame, paths, t);
+    state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
+    state_store(paths, stride, CHAIN_BANKS, t,
+                state_load(paths, stride, CHAIN_BANKS, t) ^ state_load(paths, stride, CHAIN_CHANGED, t));
+    state_store_float(paths, stride, CHAIN_LUMINANCE, t, f);
+    state_store_vec3(paths, stride, CHAIN_COLOR, t, vec3_scale(color, 1.0f / f));
+    state_store_float(paths, stride, CHAIN_FILM, t, film.x);
+    state_store_float(paths, stride, CHAIN_FILM + 1u, t, film.y);
+    state_store_float(paths, stride, CHAIN_PENDING, t, visits);
+}
+
+/* The proposal has the contribution `color`: takes it with probability a = min(1, f' / f). What the film gets is
+ * expected: a of the proposal, 1 - a of the current path, the latter kept until the chain leaves it. So there is one
+ * splat a step: of what the chain leaves, or of what it does not take. */
+SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
+                                  __global uint *restrict diagnostics, uint t, Vec3 color)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, mutation = state_load(paths, stride, CHAIN_MUTATION, t);
+    float f = rgb_luminance(color), current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
+    if (!float_finite(f)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        f = 0.0f;
+    }
+    f = float_max(f, 0.0f);
+    if (mutation == MUTATION_REPLAY) {
+        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        if (f > 0.0f)
+            chain_take(frame, paths, t, f, color, 0.0f);
+        else
+            diagnostic_count(diagnostics, DIAGNOSTIC_LOST_CHAIN);
+        return;
+    }
+    float ratio = f / current, accept = float_min(ratio, 1.0f),
+          pending = state_load_float(paths, stride, CHAIN_PENDING, t);
+    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
+    bool taken = f > 0.0f && random_float(random.x[0]) < accept;
+    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, t);
+    state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
+    if (taken) {
+        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept));
+        chain_take(frame, paths, t, f, color, accept);
+    } else {
+        if (f > 0.0f)
+            color = vec3_scale(color, 1.0f / f);
+        chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color,
+                    accept);
+        state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
+    }
+}
+
+#endif
