@@ -5,6 +5,5 @@
 #include "bd_connect.cl"
 #include "bd_walk.cl"
 #include "ibpt.cl"
-#include "mlt.cl"
 
 KERNEL_LIST_BIDIRECTIONAL(KERNEL_LOOP)

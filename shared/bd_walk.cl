@@ -53,19 +53,6 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
         walk_start_camera(&scene, paths, rays, diagnostics, stride, t);
 }
 
-/* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
-SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
-{
-    Vec3 sum = vec3_splat(0.0f);
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
-        StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
-        if (!vec3_is_zero(radiance))
-            sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
-    }
-    return sum;
-}
-
 /* s = 0: what is sent by lights that the walk has met after `depth` segments. */
 SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 contribution)

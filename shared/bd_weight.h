@@ -40,4 +40,17 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
     return strategy_weight(frame->strategies, frame->mis_exponent, s, t, view, ends);
 }
 
+/* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
+{
+    Vec3 sum = vec3_splat(0.0f);
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        StrategyEnds ends = {0};
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
+        if (!vec3_is_zero(radiance))
+            sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
+    }
+    return sum;
+}
+
 #endif

@@ -48,7 +48,9 @@
       BUFFER_VERTICES)                                                                                                 \
     X(ib_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
     X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
-      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
     X(mlt_begin, 5, BUFFER_FRAME, BUFFER_PASS, BUFFER_PATHS, BUFFER_RAYS, BUFFER_SHADOWS)                              \
     X(mlt_propose, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
@@ -66,7 +68,7 @@
     X(mlt_end, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SPLATS,            \
       BUFFER_PASS, BUFFER_DIAGNOSTICS)
 
-#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_BIDIRECTIONAL(X)
+#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths ...: what Step.kernel holds. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

@@ -170,7 +170,9 @@ __kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __globa
         return;
     }
     state_store_float(paths, stride, BD_BACK, t, meeting.back);
-    float u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
+    float u_mix = 0.5f;
+    if (SCENE_HAS(&scene, FEATURE_MIX))
+        u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
     if (!walk_vertex(&scene, paths, rays, vertices, t, base, base, u_mix, &meeting) || depth < last)
         return;
     chain_half_store(paths, stride, t, side, bank);

@@ -33,6 +33,7 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
     RenderOptions options = {.samples = setup->samples * bidirectional_effort(),
                              .max_depth = depth,
                              .seed = seed,
+                             .chains = setup->chains,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},

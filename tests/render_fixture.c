@@ -62,6 +62,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
                              .strategies = setup->strategies,
+                             .chains = setup->chains,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},

@@ -21,6 +21,7 @@ typedef struct RenderSetup {
     unsigned strategies; /* 0: the integrator's */
     bool balance, only_strategy, unweighted; /* RenderOptions */
     unsigned strategy[2];
+    ChainOptions chains;
     const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */
 } RenderSetup;
 

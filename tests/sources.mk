@@ -13,6 +13,7 @@ check_PROGRAMS += \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_ibpt \
+	tests/test_mmlt \
 	tests/test_group \
 	tests/test_import \
 	tests/test_light \
@@ -135,6 +136,15 @@ tests_test_ibpt_SOURCES = tests/test_ibpt.c \
 	tests/render_fixture.c
 tests_test_ibpt_CFLAGS = $(TEST_CFLAGS)
 tests_test_ibpt_LDADD = $(TEST_LIBS)
+
+tests_test_mmlt_SOURCES = tests/test_mmlt.c \
+	tests/analytic_fixture.c \
+	tests/bidirectional_groups.c \
+	tests/bidirectional_scenes.c \
+	tests/render_fixture.c
+tests_test_mmlt_CFLAGS = $(TEST_CFLAGS)
+tests_test_mmlt_LDADD = $(TEST_LIBS)
+
 tests_test_group_SOURCES = tests/test_group.c
 tests_test_group_CFLAGS = $(TEST_CFLAGS)
 tests_test_group_LDADD = $(TEST_LIBS)
