@@ -37,7 +37,7 @@ typedef struct Pilot {
     uint count;
 } Pilot;
 
-static void pilot_sink(void *context, const uint *splats, uint count, uint stride)
+static void pilot_splats(void *context, const uint *splats, uint count, uint stride)
 {
     Pilot *pilot = context;
     pthread_mutex_lock(&pilot->mutex);
@@ -90,7 +90,8 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
     frame.item_count = PILOT_ITEMS;
     frame.sample_index = PILOT_SAMPLE;
     frame.pixel_stride = stride_coprime(frame.width * frame.height);
-    bool done = interface->run(backend, &frame, list, pilot_sink, pilot, &never, NULL, error);
+    const SplatSink sink = {.splats = pilot_splats, .context = pilot};
+    bool done = interface->run(backend, &frame, list, &sink, &never, NULL, error);
     double sum = 0.0;
     qsort(pilot->samples, pilot->count, sizeof pilot->samples[0], pilot_compare);
     for (uint i = 0; i < pilot->count; ++i)
@@ -103,9 +104,14 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
 
 /* ---- the passes ------------------------------------------------------------------------------------------------- */
 
-static void film_sink(void *context, const uint *splats, uint count, uint stride)
+static void film_splats(void *context, const uint *splats, uint count, uint stride)
 {
     film_add_splats(context, splats, count, stride);
+}
+
+static void film_sums(void *context, ulong *words)
+{
+    film_add_sums(context, words);
 }
 
 typedef struct PassLoop {
@@ -158,7 +164,9 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     loop->frame.sample_index = loop->options->first_sample + (uint)(loop->next / loop->crop_pixels);
     loop->frame.first_item = (uint)(loop->next % loop->crop_pixels);
     loop->frame.item_count = items;
-    if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, film_sink, loop->film,
+    loop->frame.film_exponent = loop->film->quantum_exponent;
+    const SplatSink sink = {film_splats, film_sums, film_sum_words(loop->film), loop->film};
+    if (!loop->interface->run(loop->backend, &loop->frame, &loop->list, &sink,
                               first || !loop->options->stop ? &never : loop->options->stop, &delivered, error)) {
         loop->done += delivered; /* they are in the film */
         return false;
