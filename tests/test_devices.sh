@@ -183,6 +183,13 @@ TWINLIGHT_KERNELS=$work/nowhere expect 1 'nowhere/kernels.cl' render --verify "$
 # PoCL keeps files of its own there, and has no device when it cannot.
 touch file
 XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --backend=opencl "$scene"
+# Root may write anywhere.
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir sealed
+    chmod a-w sealed
+    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to one' render --backend=opencl \
+        "$scene"
+fi
 POCL_CACHE_DIR=$work/pocl
 export POCL_CACHE_DIR
 XDG_CACHE_HOME=$work/file expect 0 'cannot be kept in' render --backend=opencl --resolution=8x6 --samples=1 \
