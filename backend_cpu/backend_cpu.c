@@ -47,7 +47,7 @@ typedef struct Worker {
 typedef struct Job {
     const FrameParams *frame;
     const StepList *list;
-    SplatSink sink; /* NULL: `inspect` is called */
+    const SplatSink *sink; /* NULL: `inspect` is called */
     StateSink inspect;
     void *context;
     const atomic_int *stop;
@@ -167,7 +167,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
         break;
     case STEP_SPLAT:
         if (!job->inspect)
-            job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+            job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
         break;
     }
     return i + 1;
@@ -206,7 +206,7 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     if (job->inspect)
         worker_show_state(worker, job, first, count);
     else if (job->list->words_per_item[BUFFER_SPLATS] > 0)
-        job->sink(job->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+        job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
     worker_sum_diagnostics(worker);
     atomic_fetch_add_explicit(&worker->backend->items_done, count, memory_order_relaxed);
 }
@@ -272,10 +272,10 @@ static bool job_run(Backend *backend, const Job *job, Error *error)
     return true;
 }
 
-static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
-                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
+static bool backend_cpu_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
+                            const atomic_int *stop, uint64_t *items_done, Error *error)
 {
-    const Job job = {.frame = frame, .list = list, .sink = sink, .context = context, .stop = stop};
+    const Job job = {.frame = frame, .list = list, .sink = sink, .stop = stop};
     bool done = job_run(backend, &job, error);
     if (items_done)
         *items_done = atomic_load(&backend->items_done);

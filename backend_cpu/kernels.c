@@ -8,6 +8,7 @@
 #include "kernel_loop.h"
 
 #include "count.cl"
+#include "film_add.cl"
 #include "pt.cl"
 #include "trace.cl"
 #include "walk.cl"

@@ -1,6 +1,7 @@
 #include "backend_ocl.h"
 
 #include "bvh.h"
+#include "device_film.h"
 #include "film_adders.h"
 #include "inspect.h"
 #include "log.h"
@@ -28,6 +29,7 @@ struct Backend {
     FilmAdders *adders;
     int adder_count;
     Batch batches[BATCH_SLOTS];
+    bool film_on_device; /* where a sink takes sums */
     int slots; /* batches under way at a time: BATCH_SLOTS, or 1 without overlap */
     uint64_t next_batch;
     double build_seconds;
@@ -101,8 +103,10 @@ static bool scene_build(Backend *backend, const BackendScene *scene, const Backe
 
 static bool backend_build(Backend *backend, const BackendScene *scene, const BackendOptions *options, Error *error)
 {
-    if (!ocl_device_choose(options->device, &backend->device, error))
+    if (!ocl_device_choose(options->device, &backend->device, error) ||
+        (options->film_on_device && !device_film_check(&backend->device, error)))
         return false;
+    backend->film_on_device = options->film_on_device;
     promise_warn(&backend->device);
     backend->adder_count = adder_count(options);
     backend->slots = environment_is("TWINLIGHT_OVERLAP", "0") ? 1 : BATCH_SLOTS;
@@ -205,8 +209,29 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
     return true;
 }
 
-static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink,
-                            void *context, const atomic_int *stop, uint64_t *items_done, Error *error)
+/* Runs all batches and waits until nothing is under way. */
+static bool pass_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
+                     const atomic_int *stop, Error *error)
+{
+    Launcher *launcher = &backend->launcher;
+    bool splats = list->words_per_item[BUFFER_SPLATS] > 0;
+    launcher->adds = splats && backend->film_on_device && sink->sums;
+    adders_begin(backend->adders, splats && !launcher->adds ? sink : NULL);
+    bool done = (!launcher->adds || device_film_begin(&backend->memory, sink->sum_words, error)) &&
+                batches_run(backend, frame, list, stop, error);
+    if (!done) { /* a batch that was launched in part writes to the host until the queues are empty */
+        clFinish(backend->compute);
+        clFinish(backend->copy);
+    }
+    for (int slot = 0; slot < BATCH_SLOTS; ++slot)
+        adders_wait(backend->adders, slot);
+    return done && !device_failed(backend, error) &&
+           (!launcher->adds ||
+            device_film_end(&backend->memory, sink, &backend->timeline, backend->next_batch - 1, error));
+}
+
+static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
+                            const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     AddersTotal total;
     if (items_done)
@@ -215,19 +240,13 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
         return error_set(error, "%s has failed before", backend->device.info.name);
     if (!device_memory_reserve(&backend->memory, list, error) || !pass_data_begin(&backend->memory, frame, list, error))
         return false;
-    adders_begin(backend->adders, list->words_per_item[BUFFER_SPLATS] > 0 ? sink : NULL, context);
-    bool done = batches_run(backend, frame, list, stop, error);
-    if (!done) { /* a batch that was launched in part writes to the host until the queues are empty */
-        clFinish(backend->compute);
-        clFinish(backend->copy);
-    }
-    for (int slot = 0; slot < BATCH_SLOTS; ++slot)
-        adders_wait(backend->adders, slot);
-    done = done && !device_failed(backend, error) && pass_data_end(&backend->memory, frame, list, error);
+    bool done =
+        pass_run(backend, frame, list, sink, stop, error) && pass_data_end(&backend->memory, frame, list, error);
     backend->failed = !done;
     adders_total(backend->adders, &total);
-    if (items_done)
+    if (items_done && (done || !backend->launcher.adds))
         *items_done = total.items;
+    backend->launcher.adds = false; /* for `inspect` */
     return done;
 }
 

@@ -69,6 +69,8 @@ static cl_mem argument(const Launch *launch, BufferId id)
         return launch->batch->memory->frame;
     if (id == BUFFER_SPLATS)
         return launch->batch->memory->splats;
+    if (id == BUFFER_FILM)
+        return memory->film;
     return id <= BUFFER_BVH ? memory->scene[id] : memory->state[id];
 }
 
@@ -146,6 +148,11 @@ static bool trace_shadow(Launch *launch)
            kernel_enqueue(launch, KERNEL_trace_shadow, items, true);
 }
 
+static bool splats_add(Launch *launch)
+{
+    return kernel_enqueue(launch, KERNEL_film_add, launch->batch->frame.item_count, false);
+}
+
 /* Puts the splats behind those put aside before. */
 static bool splats_put_aside(Launch *launch)
 {
@@ -193,7 +200,7 @@ static bool steps_enqueue(Launch *launch)
             done = trace_shadow(launch);
             break;
         case STEP_SPLAT:
-            done = splats_put_aside(launch);
+            done = launch->launcher->adds ? splats_add(launch) : splats_put_aside(launch);
             break;
         case STEP_SKIP_IF_IDLE:
             done = turn_was_idle(launch, &idle);
@@ -233,8 +240,9 @@ static bool results_read(Launch *launch)
     Batch *batch = launch->batch;
     BatchResults *results = batch->memory->results;
     cl_event computed = NULL;
-    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint) *
-                   batch->splat_sections;
+    size_t bytes = launcher->adds ? 0
+                                  : (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] *
+                                        sizeof(uint) * batch->splat_sections;
     bool done = check(launch,
                       clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_DIAGNOSTICS], CL_FALSE, 0,
                                           sizeof results->diagnostics, results->diagnostics, 0, NULL, NULL),
@@ -244,6 +252,7 @@ static bool results_read(Launch *launch)
                                           sizeof results->counts, results->counts, 0, NULL, &computed),
                       "reading counters") &&
                 check(launch, clFlush(launcher->compute), "starting commands");
+    batch->copied_name = "copy splats";
     if (done && bytes > 0)
         done = check(launch,
                      clEnqueueReadBuffer(launcher->copy, batch->memory->splats, CL_FALSE, 0, bytes, batch->memory->host,
@@ -252,6 +261,7 @@ static bool results_read(Launch *launch)
                check(launch, clFlush(launcher->copy), "starting copies");
     else if (done) {
         batch->copied = computed;
+        batch->copied_name = "read counters";
         return true;
     }
     if (computed)
@@ -263,7 +273,8 @@ bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, Error 
 {
     Launch launch = {.launcher = launcher, .batch = batch, .list = list, .error = error};
     batch->splat_sections = 1;
-    bool done = batch_begin(&launch) && steps_enqueue(&launch) && results_read(&launch);
+    bool done = batch_begin(&launch) && steps_enqueue(&launch) && (!launcher->adds || splats_add(&launch)) &&
+                results_read(&launch);
     counted_release(&launch);
     if (done)
         first_check_adapt(&launch);
@@ -286,7 +297,7 @@ uint64_t batch_finish(Batch *batch, Timeline *timeline)
         nanoseconds += event->traces ? taken : 0;
     }
     if (timeline->records)
-        timeline_add_event(timeline, batch->copied, "copy splats", SPAN_COPY, batch->number);
+        timeline_add_event(timeline, batch->copied, batch->copied_name, SPAN_COPY, batch->number);
     events_release(batch);
     return nanoseconds;
 }

@@ -20,7 +20,8 @@ typedef struct Batch {
     uint splat_sections; /* of frame.stride items in memory->host: at the end, and before it at every STEP_SPLAT */
     BatchEvent *events;
     size_t event_count, event_capacity;
-    cl_event copied; /* its splats are in memory->host */
+    cl_event copied; /* its results are in memory->results, and its splats in memory->host */
+    const char *copied_name;
 } Batch;
 
 /* What launches share. */
@@ -29,6 +30,7 @@ typedef struct Launcher {
     cl_command_queue compute, copy;
     OclProgram program;
     DeviceMemory *memory;
+    bool adds; /* splats go to memory->film instead of to the host */
     bool records; /* keep the events of every command, not of rays alone */
     size_t group; /* work-items of a work-group */
     uint first_check; /* the turn of the loop at which a batch is first asked whether it has ended early */

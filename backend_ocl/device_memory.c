@@ -118,7 +118,7 @@ static uint64_t item_bytes_largest(const uint *words_per_item)
 static uint batch_limit(const DeviceMemory *memory, const uint *words_per_item)
 {
     const BackendDevice *info = &memory->device->info;
-    double left = MEMORY_PART * (double)info->memory - (double)memory->scene_bytes;
+    double left = MEMORY_PART * (double)info->memory - (double)(memory->scene_bytes + memory->film_bytes);
     double by_memory = left / (double)item_bytes(words_per_item);
     double by_buffer = (double)info->allocation_limit / (double)item_bytes_largest(words_per_item);
     double items = (by_memory < by_buffer ? by_memory : by_buffer) - STRIDE_STEP - STRIDE_OFFSET;
@@ -216,7 +216,7 @@ static void state_release(DeviceMemory *memory)
     }
     if (memory->queue)
         clFinish(memory->queue);
-    memory->bytes = memory->scene_bytes;
+    memory->bytes = memory->scene_bytes + memory->film_bytes;
     memory->batch = 0;
 }
 
@@ -264,9 +264,35 @@ bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *er
     return state_make(memory, batch, error);
 }
 
+/* ---- the film ---------------------------------------------------------------------------------------------------- */
+
+bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error)
+{
+    const BackendDevice *info = &memory->device->info;
+    if (bytes <= memory->film_bytes)
+        return true;
+    buffer_release(&memory->film);
+    memory->bytes -= memory->film_bytes;
+    memory->film_bytes = 0;
+    double left = MEMORY_PART * (double)info->memory - (double)memory->bytes;
+    if (bytes > info->allocation_limit || (double)bytes > left) {
+        char size[32], room[32], single[32];
+        error_set(error, "%s: the sums of the film take %s; the device has room for %s, and %s in a single buffer",
+                  info->name, size_text(bytes, size, sizeof size),
+                  size_text(left > 0.0 ? (uint64_t)left : 0, room, sizeof room),
+                  size_text(info->allocation_limit, single, sizeof single));
+        return error_fix(error, "use --film=host, or a smaller --resolution or --batch");
+    }
+    if (!buffer_make(memory, &memory->film, CL_MEM_READ_WRITE, bytes, error))
+        return false;
+    memory->film_bytes = bytes;
+    return true;
+}
+
 void device_memory_destroy(DeviceMemory *memory)
 {
     state_release(memory);
+    buffer_release(&memory->film);
     for (int id = 0; id <= BUFFER_BVH; ++id)
         buffer_release(&memory->scene[id]);
     memset(memory, 0, sizeof *memory);

@@ -34,10 +34,11 @@ typedef struct DeviceMemory {
     cl_mem scene[BUFFER_BVH + 1]; /* geometry, tables, texels, bvh */
     cl_mem state[BUFFER_COUNT]; /* per-item buffers but splats; diagnostics; counts */
     BatchMemory batches[BATCH_SLOTS];
+    cl_mem film; /* its sums, when the device adds (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* that the state was made for */
     uint batch; /* items of a batch; 0 until state is made */
     uint batch_wanted; /* --batch, 0: chosen here */
-    size_t scene_bytes, bytes;
+    size_t scene_bytes, film_bytes, bytes;
 } DeviceMemory;
 
 /* Words between two fields of a batch of `count` items: whole groups, and an offset that keeps the fields of an item off
@@ -50,6 +51,9 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
 
 /* Makes state for this list, unless what is there is enough. No command may be under way. */
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
+
+/* Makes room for a film of so many bytes, unless there is enough. No command may be under way. */
+bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error);
 
 void device_memory_destroy(DeviceMemory *memory);
 

@@ -31,8 +31,7 @@ struct FilmAdders {
     pthread_cond_t work; /* for the threads */
     pthread_cond_t freed; /* for who launches */
     Slot slots[BATCH_SLOTS];
-    SplatSink sink;
-    void *context;
+    const SplatSink *sink; /* NULL: there is nothing to add */
     AddersTotal total;
     Timeline *timeline;
     bool quit;
@@ -75,6 +74,11 @@ static void slot_await(FilmAdders *adders, Slot *slot)
         return;
     }
     batch_account(adders, slot->batch, nanoseconds);
+    if (!adders->sink) {
+        adders->total.items += slot->batch->frame.item_count;
+        slot_free(adders, slot);
+        return;
+    }
     slot->next = slot->added = 0;
     slot->state = SLOT_COPIED;
     pthread_cond_broadcast(&adders->work);
@@ -88,9 +92,10 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
     slot->next += count;
     pthread_mutex_unlock(&adders->mutex);
     uint64_t begin = timeline_now();
-    for (uint section = 0; adders->sink && section < batch->splat_sections; ++section)
-        adders->sink(adders->context, batch->memory->host + (size_t)section * SPLAT_WORDS * batch->frame.stride + first,
-                     count, batch->frame.stride);
+    for (uint section = 0; section < batch->splat_sections; ++section)
+        adders->sink->splats(adders->sink->context,
+                             batch->memory->host + (size_t)section * SPLAT_WORDS * batch->frame.stride + first, count,
+                             batch->frame.stride);
     timeline_add(adders->timeline, (BackendSpan){.name = "add to film",
                                                  .track = SPAN_FILM,
                                                  .lane = lane,
@@ -186,11 +191,10 @@ void adders_destroy(FilmAdders *adders)
     free(adders);
 }
 
-void adders_begin(FilmAdders *adders, SplatSink sink, void *context)
+void adders_begin(FilmAdders *adders, const SplatSink *sink)
 {
     pthread_mutex_lock(&adders->mutex);
     adders->sink = sink;
-    adders->context = context;
     adders->total.items = 0;
     pthread_mutex_unlock(&adders->mutex);
 }

@@ -19,8 +19,8 @@ typedef struct AddersTotal {
 FilmAdders *adders_create(int threads, Timeline *timeline, Error *error);
 void adders_destroy(FilmAdders *adders);
 
-/* The batches that follow go to this sink (NULL: their splats go nowhere). */
-void adders_begin(FilmAdders *adders, SplatSink sink, void *context);
+/* The splats of the batches that follow go to this sink, which is borrowed (NULL: they are not on the host). */
+void adders_begin(FilmAdders *adders, const SplatSink *sink);
 
 /* Waits until slot `slot` (< BATCH_SLOTS) is free. */
 void adders_wait(FilmAdders *adders, int slot);

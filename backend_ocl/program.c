@@ -71,8 +71,12 @@ static bool build_fail(const OclProgram *program, const char *folder, cl_int sta
     const char *line = log_first_error(log, &length);
     error_set(error, "%s does not build the kernels of %s: %.*s", program->device->info.name, folder,
               length > 400 ? 400 : length, line);
+    bool has_reason = strstr(log, "error:") != NULL;
     log_show(program, log);
     free(log);
+    if (!has_reason)
+        return error_fix(error, "the driver gives no reason; PoCL must be able to write in its cache folder: set "
+                                "POCL_CACHE_DIR to one that it can, choose another device, or --backend=cpu");
     return error_fix(error, "the sources must be those of this version of Twinlight (TWINLIGHT_KERNELS names another "
                             "folder); otherwise choose another device, or --backend=cpu");
 }

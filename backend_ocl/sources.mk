@@ -5,6 +5,7 @@ endif
 libtwinlight_ocl_la_SOURCES = \
 	backend_ocl/backend_ocl.c backend_ocl/backend_ocl.h \
 	backend_ocl/batch.c backend_ocl/batch.h \
+	backend_ocl/device_film.c backend_ocl/device_film.h \
 	backend_ocl/device_memory.c backend_ocl/device_memory.h \
 	backend_ocl/devices.c backend_ocl/devices.h \
 	backend_ocl/film_adders.c backend_ocl/film_adders.h \

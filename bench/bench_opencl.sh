@@ -1,7 +1,9 @@
 #!/bin/sh
 # The OpenCL backend against the CPU's, one table on standard output (tab separated): samples/s with and without overlap
-# of computing, copying and adding to the film, samples/s of the CPU, and rays per second inside ray queries of both,
-# where the CPU's time is that of all threads divided by their number. Every figure is the median of RUNS runs.
+# of computing, copying and adding to the film, samples/s when the device adds to the film itself (--film=device),
+# samples/s of the CPU, and rays per second inside ray queries of both, where the CPU's time is that of all threads
+# divided by their number. Every figure is the median of RUNS runs; the ways take turns, so that what else the machine
+# does meets all of them.
 # usage: bench_opencl.sh TWINLIGHT [SCENE...]; DEVICE: the device (default 0)
 set -eu
 
@@ -23,15 +25,13 @@ median() {
     sort -g | awk '{ v[NR] = $1 } END { print (NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2) }'
 }
 
-# runs NAME SCENE OPTION...: renders RUNS times, statistics in $folder/NAME.N.json
-runs() {
-    runs_name=$1
-    runs_scene=$2
+# run NAME SCENE OPTION...: renders once, statistics in $folder/NAME.$run.json
+run() {
+    run_name=$1
+    run_scene=$2
     shift 2
-    for run in $(seq "$RUNS"); do
-        "$twinlight" render --quiet --integrator=pt --max-depth="$DEPTH" --time="${SECONDS_EACH}s" --seed="$run" \
-            --no-png -o "$folder/out.exr" --stats="$folder/$runs_name.$run.json" "$@" "$runs_scene" 2>/dev/null
-    done
+    "$twinlight" render --quiet --integrator=pt --max-depth="$DEPTH" --time="${SECONDS_EACH}s" --seed="$run" \
+        --no-png -o "$folder/out.exr" --stats="$folder/$run_name.$run.json" "$@" "$run_scene" 2>/dev/null
 }
 
 # figure NAME: the median of samples/s
@@ -49,21 +49,36 @@ rays() {
 }
 
 threads=$(nproc)
+# All that the driver says of itself; of several devices, that of the one which is measured.
+driver=$("$twinlight" devices --json | awk -F'": ' -v device="$DEVICE" '
+    /^  "/ { opencl = /"opencl"/ }
+    /"index"/ { found = $2 + 0 "" == device }
+    /"name"/ { found = found || index(tolower($2), tolower(device)) }
+    /"version"/ && opencl && found { gsub(/^"|",$/, "", $2); print $2; exit }')
 printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
+printf '# compiler\t%s\n' "$("${CC:-cc}" --version | head -n 1)"
 printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$threads"
-printf 'scene\tdevice\topencl samples/s\twithout overlap\tcpu samples/s\topencl/cpu\topencl rays/s\tcpu rays/s\n'
+printf '# driver\t%s\n' "$driver"
+printf 'scene\tdevice\topencl samples/s\twithout overlap\tfilm on device\tcpu samples/s\topencl/cpu\topencl rays/s\t'
+printf 'cpu rays/s\n'
 for scene in "$@"; do
     name=$(basename "$(dirname "$scene")")/$(basename "$scene")
     # The kernels are built before anything is timed.
     "$twinlight" render --quiet --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
-    runs opencl "$scene" --backend=opencl --device="$DEVICE"
-    TWINLIGHT_OVERLAP=0
-    export TWINLIGHT_OVERLAP
-    runs turns "$scene" --backend=opencl --device="$DEVICE"
-    unset TWINLIGHT_OVERLAP
-    runs cpu "$scene" --backend=cpu
+    for run in $(seq "$RUNS"); do
+        run opencl "$scene" --backend=opencl --device="$DEVICE"
+        TWINLIGHT_OVERLAP=0
+        export TWINLIGHT_OVERLAP
+        run turns "$scene" --backend=opencl --device="$DEVICE"
+        unset TWINLIGHT_OVERLAP
+        # A device without 64-bit atomics cannot.
+        run film "$scene" --backend=opencl --device="$DEVICE" --film=device || rm -f "$folder"/film.*.json
+        run cpu "$scene" --backend=cpu
+    done
     device=$(sed -n 's/.*"device": "\(.*\)",/\1/p' "$folder/opencl.1.json")
     ratio=$(echo "$(figure opencl) $(figure cpu)" | awk '{ printf "%.2f", $1 / $2 }')
-    printf '%s\t%s\t%.0f\t%.0f\t%.0f\t%s\t%.0f\t%.0f\n' "$name" "$device" "$(figure opencl)" "$(figure turns)" \
-        "$(figure cpu)" "$ratio" "$(rays opencl 1)" "$(rays cpu "$threads")"
+    film=-
+    [ ! -f "$folder/film.1.json" ] || film=$(figure film | awk '{ printf "%.0f", $1 }')
+    printf '%s\t%s\t%.0f\t%.0f\t%s\t%.0f\t%s\t%.0f\t%.0f\n' "$name" "$device" "$(figure opencl)" \
+        "$(figure turns)" "$film" "$(figure cpu)" "$ratio" "$(rays opencl 1)" "$(rays cpu "$threads")"
 done

@@ -2,7 +2,7 @@
 #   bench_rays       rays/s of the CPU backend against bare Embree, one thread, random meshes
 #   bench_bvh        rays/s of Embree, of the devices' hierarchy walked in C, and of it on OpenCL, on BENCH_SCENES
 #   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
-#   bench_opencl.sh  samples/s of a device with overlap and without, and of the CPU; rays/s inside ray queries of both
+#   bench_opencl.sh  samples/s of a device with overlap, without, with its own film, and of the CPU; rays/s of both
 # Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 

@@ -31,6 +31,7 @@ typedef enum BufferId {
     BUFFER_DIAGNOSTICS, /* counters, per thread or device; summed by the host */
     BUFFER_PASS, /* words of the whole pass's items, from and to the host (StepList) */
     BUFFER_COUNTS, /* live rays, for backends that count with a kernel (count.cl) */
+    BUFFER_FILM, /* the film's sums, for backends that add with a kernel (film_sum.h) */
     BUFFER_COUNT
 } BufferId;
 
@@ -94,6 +95,7 @@ typedef struct BackendOptions {
     int threads; /* 0: one per processor */
     const char *device; /* a number or a part of a name, for backends with a choice of devices; NULL: the first */
     uint batch; /* items a device takes through the list at a time; 0: the backend chooses */
+    bool film_on_device; /* a device adds splats to sums of its own, where the sink takes such */
     bool record_spans; /* keep what ran when, for `spans` */
 } BackendOptions;
 
@@ -134,9 +136,16 @@ typedef struct BackendStatistics {
     char device[256]; /* in words */
 } BackendStatistics;
 
-/* Receives one finished chunk's splat buffer: `count` items at `stride`, fields of state.h. Called from many
- * threads at once. */
-typedef void (*SplatSink)(void *context, const uint *splats, uint count, uint stride);
+/* Where splats go. Functions are called from many threads at once. */
+typedef struct SplatSink {
+    /* Receives one finished chunk's splat buffer: `count` items at `stride`, fields of state.h. */
+    void (*splats)(void *context, const uint *splats, uint count, uint stride);
+    /* Receives instead what a device has summed up by itself (BackendOptions.film_on_device): `sum_words` words as
+     * film_sum.h lays them out for the pass's crop and film_exponent. NULL: sums are of no use. */
+    void (*sums)(void *context, ulong *words);
+    size_t sum_words;
+    void *context;
+} SplatSink;
 
 /* Receives the words of one per-item buffer: `count` items at `stride`, the first of them item `first` of the pass.
  * Called from many threads at once. */
@@ -158,7 +167,7 @@ typedef struct BackendInterface {
     /* Runs the list over the pass that `frame` describes and returns when every splat has reached the sink. When
      * *stop becomes non-zero no new chunk is begun; the items done are still delivered. `items_done` (may be NULL)
      * gets how many items were delivered, also when the run fails. */
-    bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+    bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                 const atomic_int *stop, uint64_t *items_done, Error *error);
     /* Runs the list, or its beginning, like `run`, on buffers that are zero before, and hands every per-item buffer of
      * the list to the sink instead of the splats alone: for finding where two backends part (verify.h). */

@@ -33,8 +33,7 @@ typedef struct GroupMember {
 /* What the members share of one call of run. */
 typedef struct GroupRun {
     const StepList *list;
-    SplatSink sink;
-    void *context;
+    const SplatSink *sink;
     const atomic_int *stop;
 } GroupRun;
 
@@ -57,7 +56,7 @@ static void *member_run(void *argument)
     const GroupRun *run = member->run;
     double begin = timing_now();
     member->done = member->member.interface->run(member->member.backend, &member->frame, run->list, run->sink,
-                                                 run->context, run->stop, &member->delivered, &member->error);
+                                                 run->stop, &member->delivered, &member->error);
     member->seconds = timing_now() - begin;
     return NULL;
 }
@@ -97,11 +96,11 @@ static void member_learn(GroupMember *member)
 
 /* The first member runs on this thread, the others on one each. A member whose thread cannot be started runs here
  * too, after the first. */
-static bool group_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+static bool group_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                       const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     Group *group = group_of(backend);
-    const GroupRun run = {list, sink, context, stop};
+    const GroupRun run = {list, sink, stop};
     uint shares[BACKEND_GROUP_MAX] = {0}, first = frame->first_item;
     pthread_t threads[BACKEND_GROUP_MAX];
     bool started[BACKEND_GROUP_MAX] = {false};

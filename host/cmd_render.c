@@ -129,9 +129,12 @@ static bool scene_load(RenderJob *job, Error *error)
 static bool backend_build(RenderJob *job, Error *error)
 {
     const BackendScene view = scene_backend_view(&job->scene);
-    const BackendOptions options = {
-        .threads = job->command->threads, .batch = job->command->batch, .record_spans = job->command->trace != NULL};
-    return backend_choices_open(&job->command->backends, &view, &options, &job->backend, error);
+    const RenderCommand *command = job->command;
+    const BackendOptions options = {.threads = command->threads,
+                                    .batch = command->batch,
+                                    .film_on_device = command->film && strcmp(command->film, "device") == 0,
+                                    .record_spans = command->trace != NULL};
+    return backend_choices_open(&command->backends, &view, &options, &job->backend, error);
 }
 
 /* ---- rendering -------------------------------------------------------------------------------------------------- */

@@ -1,8 +1,7 @@
 #include "film.h"
 
-#include "state.h"
+#include "film_sum.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,13 +9,6 @@
 /* Octaves between the scene's mean radiance and one unit of a sum. */
 #define QUANTUM_OCTAVES 26
 #define QUANTUM_EXPONENT_DEFAULT (-30)
-
-/* A contribution larger than this many units is clamped: with 26 octaves that is four million times the mean. Of the
- * largest ones 2^14 fit into a sum. */
-#define CONTRIBUTION_MAX 281474976710656.0 /* 2^48 */
-
-/* A sum beyond this is reported as saturated, long before it could wrap. */
-#define SUM_MAX ((int64_t)1 << 62)
 
 size_t film_pixels(const Film *film)
 {
@@ -57,9 +49,9 @@ bool film_light_reserve(Film *film, Error *error)
 
 void film_destroy(Film *film)
 {
-    free((void *)film->sums);
-    free((void *)film->light_sums);
-    free((void *)film->counts);
+    free(film->sums);
+    free(film->light_sums);
+    free(film->counts);
     *film = (Film){0};
 }
 
@@ -73,79 +65,66 @@ void film_quantum_set(Film *film, double mean)
     film->quantum_exponent = exponent - 1 - QUANTUM_OCTAVES;
 }
 
-static void count_add(_Atomic uint64_t *counter, uint64_t n)
+/* Whoever only reads may have one, too. */
+static FilmView film_view(const Film *film)
 {
-    if (n)
-        atomic_fetch_add_explicit(counter, n, memory_order_relaxed);
-}
-
-/* The nearest whole number of units, halves away from zero. `value` has 24 significant bits and `scale` is a power of
- * two, so the product is exact; the sum with 1/2 is, too, where it decides. The same on every machine. */
-static int64_t film_quantize(float value, double scale, bool *clamped)
-{
-    double units = fabs((double)value) * scale;
-    *clamped = units > CONTRIBUTION_MAX;
-    int64_t whole = (int64_t)floor((*clamped ? CONTRIBUTION_MAX : units) + 0.5);
-    return value < 0.0f ? -whole : whole;
-}
-
-/* Adds to one sum. The addition is modulo 2^64, so even a wrapped sum does not depend on order. Returns false when the
- * sum has left +-SUM_MAX. */
-static bool sum_add(_Atomic int64_t *sum, int64_t value)
-{
-    int64_t before = atomic_fetch_add_explicit(sum, value, memory_order_relaxed);
-    int64_t after = (int64_t)((uint64_t)before + (uint64_t)value);
-    return after < SUM_MAX && after > -SUM_MAX;
-}
-
-/* Where in `counts` film pixel number `pixel` is kept; false outside the crop. */
-static bool film_slot(const Film *film, uint pixel, size_t *slot)
-{
-    if (pixel == NONE)
-        return false;
-    int64_t x = pixel % (uint)film->width, y = pixel / (uint)film->width;
-    if (x < film->crop[0] || x >= film->crop[2] || y < film->crop[1] || y >= film->crop[3])
-        return false;
-    *slot = (size_t)((y - film->crop[1]) * (film->crop[2] - film->crop[0]) + x - film->crop[0]);
-    return true;
-}
-
-/* Adds a contribution to three sums; false when it was clamped or a sum is full. */
-static bool sums_add(_Atomic int64_t *sums, Vec3 color, double scale)
-{
-    const float values[3] = {color.x, color.y, color.z};
-    bool fits = true;
-    for (size_t c = 0; c < 3; ++c) {
-        bool clamped;
-        int64_t units = film_quantize(values[c], scale, &clamped);
-        if (units != 0 && !sum_add(&sums[c], units))
-            fits = false;
-        fits = fits && !clamped;
-    }
-    return fits;
+    return (FilmView){.width = (uint)film->width,
+                      .x0 = (uint)film->crop[0],
+                      .y0 = (uint)film->crop[1],
+                      .x1 = (uint)film->crop[2],
+                      .y1 = (uint)film->crop[3],
+                      .exponent = film->quantum_exponent,
+                      .sums = (ulong *)film->sums,
+                      .light_sums = (ulong *)film->light_sums,
+                      .counts = film->counts,
+                      .saturated = (ulong *)&film->saturated,
+                      .not_finite = (ulong *)&film->not_finite};
 }
 
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 {
-    const double scale = ldexp(1.0, -film->quantum_exponent);
-    uint64_t saturated = 0, not_finite = 0;
-    for (uint t = 0; t < count; ++t) {
-        size_t slot;
-        uint pixel = state_load(splats, stride, SPLAT_PIXEL, t);
-        bool from_light = pixel != NONE && (pixel & SPLAT_FROM_LIGHT) != 0;
-        if (!film_slot(film, from_light ? pixel & ~SPLAT_FROM_LIGHT : pixel, &slot))
-            continue;
-        assert(!from_light || film->light_sums);
-        Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
-        if (!from_light)
-            atomic_fetch_add_explicit(&film->counts[slot], 1u, memory_order_relaxed);
-        if (!vec3_finite(color))
-            ++not_finite;
-        else if (!sums_add((from_light ? film->light_sums : film->sums) + 3 * slot, color, scale))
-            ++saturated;
+    const FilmView view = film_view(film);
+    for (uint t = 0; t < count; ++t)
+        film_splat_add(&view, splats, stride, t);
+}
+
+/* ---- sums from elsewhere ----------------------------------------------------------------------------------------- */
+
+/* False when the sum is full. Most sums of a short pass are zero, and looking is faster than adding. */
+static bool word_add(ulong *sum, ulong units)
+{
+    return units == 0 || film_sum_add(sum, units);
+}
+
+/* Adds pixels [0, pixels) of another film. A sum that is full is reported once a pixel. */
+static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
+{
+    for (size_t i = 0; i < pixels; ++i) {
+        bool fits = true;
+        for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
+            fits = word_add(film->sums + c, from->sums[c]) && fits;
+            fits = (!film->light_sums || word_add(film->light_sums + c, from->light_sums[c])) && fits;
+        }
+        if (from->counts[i] > 0)
+            atomic_count_add(film->counts + i, from->counts[i]);
+        if (!fits)
+            atomic_sum_add(film->saturated, 1u);
     }
-    count_add(&film->saturated, saturated);
-    count_add(&film->not_finite, not_finite);
+    atomic_sum_add(film->saturated, *from->saturated);
+    atomic_sum_add(film->not_finite, *from->not_finite);
+}
+
+size_t film_sum_words(const Film *film)
+{
+    return film_words((uint)film_pixels(film), film->light_sums != NULL);
+}
+
+void film_add_sums(Film *film, ulong *words)
+{
+    const FilmView view = film_view(film);
+    FilmView from = view;
+    film_view_words(&from, words, (uint)film_pixels(film));
+    view_add(&view, &from, film_pixels(film));
 }
 
 static bool film_merge_check(const Film *film, const Film *from, Error *error)
@@ -172,34 +151,20 @@ bool film_merge(Film *film, const Film *from, Error *error)
 {
     if (!film_merge_check(film, from, error))
         return false;
-    size_t pixels = film_pixels(film);
-    for (size_t i = 0; i < pixels; ++i) {
-        atomic_fetch_add_explicit(&film->counts[i], from->counts[i], memory_order_relaxed);
-        bool fits = true;
-        for (size_t c = 0; c < 3; ++c)
-            if (!sum_add(&film->sums[3 * i + c], from->sums[3 * i + c]) ||
-                (film->light_sums && !sum_add(&film->light_sums[3 * i + c], from->light_sums[3 * i + c])))
-                fits = false;
-        count_add(&film->saturated, fits ? 0 : 1);
-    }
+    const FilmView view = film_view(film), from_view = film_view(from);
+    view_add(&view, &from_view, film_pixels(film));
     film->light_samples += from->light_samples;
-    count_add(&film->saturated, from->saturated);
-    count_add(&film->not_finite, from->not_finite);
     return true;
 }
 
 void film_clear(Film *film)
 {
     size_t pixels = film_pixels(film);
-    for (size_t i = 0; i < pixels; ++i)
-        atomic_store_explicit(&film->counts[i], 0u, memory_order_relaxed);
-    for (size_t i = 0; i < 3 * pixels; ++i) {
-        atomic_store_explicit(&film->sums[i], 0, memory_order_relaxed);
-        if (film->light_sums)
-            atomic_store_explicit(&film->light_sums[i], 0, memory_order_relaxed);
-    }
-    film->light_samples = 0;
-    film->saturated = film->not_finite = 0;
+    memset(film->sums, 0, 3 * pixels * sizeof *film->sums);
+    memset(film->counts, 0, pixels * sizeof *film->counts);
+    if (film->light_sums)
+        memset(film->light_sums, 0, 3 * pixels * sizeof *film->light_sums);
+    film->light_samples = film->saturated = film->not_finite = 0;
 }
 
 void film_resolve(const Film *film, float scale, float *rgb)
@@ -208,15 +173,15 @@ void film_resolve(const Film *film, float scale, float *rgb)
     size_t pixels = film_pixels(film);
     uint64_t samples = film->light_samples;
     for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
-        samples += atomic_load_explicit(&film->counts[i], memory_order_relaxed);
+        samples += film->counts[i];
     double light_unit = samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
     for (size_t i = 0; i < pixels; ++i) {
-        uint32_t count = atomic_load_explicit(&film->counts[i], memory_order_relaxed);
+        uint32_t count = film->counts[i];
         for (size_t c = 0; c < 3; ++c) {
-            int64_t sum = atomic_load_explicit(&film->sums[3 * i + c], memory_order_relaxed);
+            int64_t sum = film->sums[3 * i + c];
             double value = count ? (double)sum * unit / count : 0.0;
             if (film->light_sums)
-                value += (double)atomic_load_explicit(&film->light_sums[3 * i + c], memory_order_relaxed) * light_unit;
+                value += (double)film->light_sums[3 * i + c] * light_unit;
             rgb[3 * i + c] = (float)value;
         }
     }

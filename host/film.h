@@ -6,18 +6,17 @@
 #include "error.h"
 #include "platform.h"
 
-#include <stdatomic.h>
-
 typedef struct Film {
     int width, height; /* of the whole film, pixels */
     int crop[4]; /* x0 y0 x1 y1: the part that is kept */
     int quantum_exponent; /* one unit of a sum is 2^quantum_exponent of radiance */
-    _Atomic int64_t *sums; /* 3 a pixel of the crop, row by row */
-    _Atomic int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
+    /* Added to by many threads at once (film_sum.h), read when they have come to rest. */
+    int64_t *sums; /* 3 a pixel of the crop, row by row */
+    int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
     uint64_t light_samples; /* paths that they come from; 0: as many as samples of pixels */
-    _Atomic uint32_t *counts; /* samples of every pixel of the crop */
-    _Atomic uint64_t saturated; /* contributions that did not fit and were clamped */
-    _Atomic uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
+    uint32_t *counts; /* samples of every pixel of the crop */
+    uint64_t saturated; /* contributions that did not fit and were clamped */
+    uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
 } Film;
 
 /* All sums zero. The quantum is 2^-30 until film_quantum_set. */
@@ -37,6 +36,10 @@ void film_quantum_set(Film *film, double mean);
 /* Adds `count` items of a splat buffer (state.h: SPLAT_PIXEL, SPLAT_COLOR at field * stride + item) and one sample to
  * each pixel named; splats from the light are not samples of their pixel. Pixels outside the crop and NONE are skipped. Any number of threads may call it at once. */
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
+
+/* Words of 64 bits that a device keeps for this film (film_sum.h), and adding what has come together there to it. */
+size_t film_sum_words(const Film *film);
+void film_add_sums(Film *film, ulong *words);
 
 /* Adds the sums and counts of `from`, a film of the same size, crop and quantum; fails, naming the difference,
  * otherwise. */

@@ -52,11 +52,6 @@ typedef struct Mmlt {
     double brightness;
 } Mmlt;
 
-static void film_sink(void *context, const uint *splats, uint count, uint stride)
-{
-    film_add_splats(context, splats, count, stride);
-}
-
 static void no_sink(void *context, const uint *splats, uint count, uint stride)
 {
     (void)context, (void)splats, (void)count, (void)stride;
@@ -68,13 +63,15 @@ static bool direct_run(Mmlt *mmlt, uint64_t target, const atomic_int *stop, Erro
 {
     RenderRun *run = mmlt->run;
     FrameParams *frame = &mmlt->direct_frame;
+    const SplatSink sink = render_run_sink(run->film);
+    frame->film_exponent = run->film->quantum_exponent;
     while (mmlt->direct_done < target && !*stop) {
         uint64_t left = target - mmlt->direct_done, delivered = 0;
         uint items = left < 1u << 24 ? (uint)left : 1u << 24;
         frame->sample_index = run->options->first_sample + (uint)(mmlt->direct_done / run->crop_pixels);
         frame->first_item = (uint)(mmlt->direct_done % run->crop_pixels);
         frame->item_count = items;
-        if (!run->interface->run(run->backend, frame, &mmlt->direct, film_sink, run->film, stop, &delivered, error))
+        if (!run->interface->run(run->backend, frame, &mmlt->direct, &sink, stop, &delivered, error))
             return false;
         mmlt->direct_done += items;
     }
@@ -112,7 +109,8 @@ static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole
     frame.pool = 1;
     frame.sample_index = mmlt->next_sample;
     frame.item_count = count;
-    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, no_sink, NULL, stop, &delivered, error);
+    const SplatSink sink = {no_sink, NULL, 0, NULL};
+    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, stop, &delivered, error);
     *whole = delivered == count;
     return done;
 }
@@ -146,13 +144,14 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
         return true; /* a dark pool: what the chains would have shown is dark, too, on average */
     mmlt->chains.pass_words = mmlt->chain_words;
     mmlt->chains.pass_stride = count;
+    frame.film_exponent = mmlt->film.quantum_exponent;
     frame.brightness = (float)mmlt->brightness;
     frame.sample_index = mmlt->next_sample;
     frame.roulette_depth = NONE;
     frame.item_count = count;
     film_clear(&mmlt->film);
-    bool done =
-        run->interface->run(run->backend, &frame, &mmlt->chains, film_sink, &mmlt->film, stop, &delivered, error);
+    const SplatSink sink = render_run_sink(&mmlt->film);
+    bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
     *whole = delivered == count;
     return done;
 }

@@ -42,7 +42,7 @@ typedef struct Pilot {
     uint count;
 } Pilot;
 
-static void pilot_sink(void *context, const uint *splats, uint count, uint stride)
+static void pilot_splats(void *context, const uint *splats, uint count, uint stride)
 {
     Pilot *pilot = context;
     pthread_mutex_lock(&pilot->mutex);
@@ -95,7 +95,8 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
     frame.item_count = PILOT_ITEMS;
     frame.sample_index = PILOT_SAMPLE;
     frame.pixel_stride = stride_coprime(frame.width * frame.height);
-    bool done = interface->run(backend, &frame, list, pilot_sink, pilot, &never, NULL, error);
+    const SplatSink sink = {.splats = pilot_splats, .context = pilot};
+    bool done = interface->run(backend, &frame, list, &sink, &never, NULL, error);
     double sum = 0.0;
     qsort(pilot->samples, pilot->count, sizeof pilot->samples[0], pilot_compare);
     for (uint i = 0; i < pilot->count; ++i)
@@ -108,9 +109,19 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
 
 /* ---- the passes ------------------------------------------------------------------------------------------------- */
 
-static void film_sink(void *context, const uint *splats, uint count, uint stride)
+static void film_splats(void *context, const uint *splats, uint count, uint stride)
 {
     film_add_splats(context, splats, count, stride);
+}
+
+static void film_sums(void *context, ulong *words)
+{
+    film_add_sums(context, words);
+}
+
+SplatSink render_run_sink(Film *film)
+{
+    return (SplatSink){film_splats, film_sums, film_sum_words(film), film};
 }
 
 /* The loop of integrators whose items are samples of pixels. */
@@ -157,7 +168,9 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     run->frame.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
     run->frame.first_item = (uint)(loop->next % run->crop_pixels);
     run->frame.item_count = items;
-    if (!run->interface->run(run->backend, &run->frame, &loop->list, film_sink, run->film,
+    run->frame.film_exponent = run->film->quantum_exponent;
+    const SplatSink sink = render_run_sink(run->film);
+    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink,
                              first || !run->options->stop ? &never : run->options->stop, &delivered, error)) {
         run->done += delivered; /* they are in the film */
         return false;

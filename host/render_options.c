@@ -17,6 +17,7 @@ enum {
     OPTION_BACKEND,
     OPTION_DEVICE,
     OPTION_BATCH,
+    OPTION_FILM,
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_MAX_DEPTH,
@@ -48,6 +49,7 @@ static const OptionSpec SPECS[] = {
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
                        "OpenCL devices, by number or part of a name as twinlight devices has them (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
+    [OPTION_FILM] = {"film", 0, "WHERE", "who adds the paths of OpenCL devices to the film: host (default) or device"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
@@ -135,6 +137,15 @@ static bool heuristic_set(RenderCommand *command, const char *value, Error *erro
     return error_fix(error, "use power or balance");
 }
 
+static bool film_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->film = value;
+    if (strcmp(value, "device") == 0 || strcmp(value, "host") == 0)
+        return true;
+    error_set(error, "--film=%s: there is no such place", value);
+    return error_fix(error, "use host or device");
+}
+
 static bool option_set(void *context, int index, const char *value, Error *error)
 {
     Parse *parse = context;
@@ -160,6 +171,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return true;
     case OPTION_HEURISTIC:
         return heuristic_set(command, value, error);
+    case OPTION_FILM:
+        return film_set(command, value, error);
     case OPTION_STRATEGY:
         command->only_strategy = true;
         return option_strategy("strategy", value, command->strategy, error);
@@ -204,6 +217,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->save_every > 0.0 ? "save-every"
                          : command->stats            ? "stats"
                          : command->trace            ? "trace"
+                         : command->film             ? "film"
                                                      : NULL;
     if (!command->verify || !option)
         return true;
@@ -223,7 +237,11 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
         error_set(error, "--verify compares devices with the CPU, and --backend=%s has none", command->backends.name);
         return error_fix(error, "use --backend=opencl, in a build that has it");
     }
-    const char *option = command->device ? "device" : command->batch > 0 ? "batch" : command->trace ? "trace" : NULL;
+    const char *option = command->device      ? "device"
+                         : command->batch > 0 ? "batch"
+                         : command->film      ? "film"
+                         : command->trace     ? "trace"
+                                              : NULL;
     if (!option || backend_choices_have_devices(&command->backends))
         return true;
     error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backends.name);

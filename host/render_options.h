@@ -22,6 +22,7 @@ typedef struct RenderCommand {
     const BackendInterface *reference;
     const char *device; /* as given: items of `backends` have their own */
     unsigned batch;
+    const char *film; /* "host" or "device" */
     uint64_t samples;
     double seconds;
     int threads;

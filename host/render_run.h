@@ -16,6 +16,9 @@ typedef struct RenderRun {
     double start, last_save;
 } RenderRun;
 
+/* Adds splats to the film; frame.film_exponent must be its quantum_exponent. */
+SplatSink render_run_sink(Film *film);
+
 /* Calls `progress`. fraction: of the samples wanted; 0 where their number is not limited. */
 void render_run_report(const RenderRun *run, double fraction);
 

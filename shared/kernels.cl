@@ -5,6 +5,7 @@
 #include "bd_connect.cl"
 #include "bd_walk.cl"
 #include "count.cl"
+#include "film_add.cl"
 #include "ibpt.cl"
 #include "mlt.cl"
 #include "pt.cl"

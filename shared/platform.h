@@ -19,6 +19,12 @@
 /* Items run at once and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 #define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
+/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. */
+#define atomic_count_add(count, n) atomic_add((volatile __global uint *)(count), n)
+#ifdef cl_khr_int64_base_atomics
+#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+#define atomic_sum_add(sum, n) atom_add((volatile __global ulong *)(sum), n)
+#endif
 
 typedef float4 Float4;
 typedef uint4 Uint4;
@@ -113,6 +119,9 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 /* Every thread has its own counters. */
 #define counter_increment(counter) (++*(counter))
 #define counter_add(counter, n) (*(counter) += (n))
+/* The film is everybody's. */
+#define atomic_count_add(count, n) __atomic_fetch_add(count, n, __ATOMIC_RELAXED)
+#define atomic_sum_add(sum, n) __atomic_fetch_add(sum, n, __ATOMIC_RELAXED)
 
 #endif
 

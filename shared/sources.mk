@@ -27,7 +27,9 @@ SHARED_FILES = \
 	shared/disk.h \
 	shared/distribution.h \
 	shared/elementary.h \
+	shared/film_add.cl \
 	shared/film_splat.h \
+	shared/film_sum.h \
 	shared/fresnel.h \
 	shared/ib_weight.h \
 	shared/ibpt.cl \

@@ -38,8 +38,10 @@ static const BackendInterface *setup_interface(const RenderSetup *setup)
 Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error)
 {
     BackendScene view = scene_backend_view(scene);
-    BackendOptions options = {
-        .threads = setup->threads > 0 ? setup->threads : 2, .batch = setup->batch, .record_spans = setup->record_spans};
+    BackendOptions options = {.threads = setup->threads > 0 ? setup->threads : 2,
+                              .batch = setup->batch,
+                              .film_on_device = setup->film_on_device,
+                              .record_spans = setup->record_spans};
     return setup_interface(setup)->open(&view, &options, error);
 }
 

@@ -15,6 +15,7 @@ typedef struct RenderSetup {
     int threads;
     const BackendInterface *backend; /* NULL: the CPU's */
     uint batch; /* of a device; 0: it chooses */
+    bool film_on_device;
     bool record_spans;
     uint64_t seed;
     const Integrator *integrator; /* NULL: path tracing */

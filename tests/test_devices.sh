@@ -17,7 +17,8 @@ if ! "$program" --version | grep -q opencl; then
     checks_end
     exit
 fi
-for option in --output=verify.exr --png=verify.png --stats=verify.json --trace=verify.json --time=1s --save-every=1s; do
+for option in --output=verify.exr --png=verify.png --stats=verify.json --trace=verify.json --time=1s --save-every=1s \
+    --film=host; do
     expect 2 'does not go with --verify' render --verify "$option" "$scene"
 done
 
@@ -56,7 +57,7 @@ expect 1 'more than one OpenCL device has that' render --backend=opencl --device
 
 # ---- the same image -----------------------------------------------------------------------------------------------
 
-# same SCENE WAYS OPTION...: the ways (opencl, two, all) of rendering it give the CPU's file. The options hold for all.
+# same SCENE WAYS OPTION...: the ways (opencl, two, all, film, film_all) of rendering it give the CPU's file. The options hold for all.
 same() {
     same_scene=$1
     same_ways=$2
@@ -66,6 +67,8 @@ same() {
     for way in $same_ways; do
         case $way in
         two) way='opencl --device=0,1' ;;
+        film) way='opencl --film=device' ;;
+        film_all) way='all --film=device' ;;
         esac
         # shellcheck disable=SC2086 # a way is several options
         "$program" render --quiet --no-png -o device.exr "$@" --backend=$way "$same_scene" >out 2>err &&
@@ -84,7 +87,10 @@ WorldBegin
 LightSource "infinite" "rgb L" [ 0.5 0.6 0.7 ]
 PBRT
 cp "$sources/../tests/instances.pbrt" .
-same "$scene" "two all" --resolution=64x48 --samples=2
+same "$scene" "two all film_all" --resolution=64x48 --samples=2
+for integrator in bdpt ibpt; do
+    same "$scene" "film film_all" --integrator=$integrator --resolution=31x23 --crop=3,2,30,21 --samples=3
+done
 for other in environment.pbrt instances.pbrt; do
     for batch in 1 63 100000; do
         "$program" render --quiet --no-png -o cpu.exr --samples=3 $other >out 2>err &&
@@ -94,9 +100,9 @@ for other in environment.pbrt instances.pbrt; do
     done
 done
 same instances.pbrt "two all" --samples=3
-same instances.pbrt "opencl two" --resolution=1x1 --samples=3000
+same instances.pbrt "opencl two film_all" --resolution=1x1 --samples=3000
 same instances.pbrt "opencl all" --resolution=333x7 --samples=1 --threads=1
-same instances.pbrt "opencl two" --crop=16,12,17,13 --samples=50
+same instances.pbrt "opencl two film" --crop=16,12,17,13 --samples=50
 same instances.pbrt opencl --max-depth=1 --samples=3
 same instances.pbrt opencl --max-depth=65535 --samples=1
 
@@ -149,7 +155,14 @@ result 'SIGINT with --backend=all: the statistics do not say so' $?
 
 # ---- the trace of several devices ---------------------------------------------------------------------------------
 
+expect 0 '' render --backend=all --film=device --trace=film.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
+for name in film_add 'copy sums' 'add to film'; do
+    grep -qF "\"$name\"" film.json
+    result "--film=device: no \"$name\" in the trace" $?
+done
 expect 0 '' render --backend=all --trace=trace.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
+! grep -q film_add trace.json
+result '--film=host: the device adds' $?
 if command -v python3 >/dev/null 2>&1; then
     python3 - <<'PYTHON' >out 2>err
 import json
@@ -170,6 +183,13 @@ TWINLIGHT_KERNELS=$work/nowhere expect 1 'nowhere/kernels.cl' render --verify "$
 # PoCL keeps files of its own there, and has no device when it cannot.
 touch file
 XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --backend=opencl "$scene"
+# Root may write anywhere.
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir sealed
+    chmod a-w sealed
+    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to one' render --backend=opencl \
+        "$scene"
+fi
 POCL_CACHE_DIR=$work/pocl
 export POCL_CACHE_DIR
 XDG_CACHE_HOME=$work/file expect 0 'cannot be kept in' render --backend=opencl --resolution=8x6 --samples=1 \

@@ -1,8 +1,9 @@
 #include "test_util.h"
 
 #include "film.h"
-#include "state.h"
+#include "film_sum.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <string.h>
 
@@ -149,6 +150,38 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
+/* What a device keeps: 12 pixels of three sums, two counters, counts by twos, and the light's sums when there are any. */
+START_TEST(test_sums_of_a_device)
+{
+    ulong words[3 * 12 + 2 + 6 + 3 * 12] = {0};
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE);
+    ck_assert_uint_eq(film_sum_words(&film), 44);
+    ck_assert(film_light_reserve(&film, &error));
+    ck_assert_uint_eq(film_sum_words(&film), 80);
+    film_add_one(&film, 2, 1.0f, 2.0f, 3.0f);
+    film_add_one(&film, 2 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
+    words[3 * 2 + 1] = (ulong)-5;
+    words[36] = 7;
+    words[37] = 9;
+    ((uint *)(words + 38))[2] = 4;
+    words[44 + 3 * 2 + 2] = 6;
+    film_add_sums(&film, words);
+    ck_assert_int_eq(film.sums[6], 1 << 30);
+    ck_assert_int_eq(film.sums[7], ((int64_t)2 << 30) - 5);
+    ck_assert_int_eq(film.light_sums[8], (1 << 30) + 6);
+    ck_assert_uint_eq(film.counts[2], 5);
+    ck_assert_uint_eq(film.saturated, 7);
+    ck_assert_uint_eq(film.not_finite, 9);
+    words[3 * 2 + 1] = (ulong)1 << 61;
+    film_add_sums(&film, words);
+    ck_assert_uint_eq(film.saturated, 2 * 7);
+    film_add_sums(&film, words); /* the sum leaves 2^62, and its pixel is one more */
+    ck_assert_uint_eq(film.saturated, 3 * 7 + 1);
+    film_destroy(&film);
+}
+END_TEST
+
 /* Halves go away from zero; the default unit is 2^-30. */
 START_TEST(test_rounding)
 {
@@ -160,6 +193,32 @@ START_TEST(test_rounding)
         ck_assert_int_eq(film.sums[15], expected[i]);
         ck_assert_int_eq(film.sums[17], expected[i]);
         film_destroy(&film);
+    }
+}
+END_TEST
+
+/* Whole numbers against doubles, which are exact here: a float has 24 bits and the scale is a power of two. */
+static void units_compare(uint bits, int exponent)
+{
+    float value = bits_float(bits);
+    double exact = ldexp(fabs((double)value), -exponent), most = 0x1p48;
+    bool clamped, more = exact > most;
+    ulong units = film_units(value, exponent, &clamped);
+    TEST_TRUE(clamped == more && units == (ulong)floor((more ? most : exact) + 0.5));
+}
+
+START_TEST(test_units_of_any_float)
+{
+    uint state = 1;
+    for (int exponent = -200; exponent <= 110; ++exponent) {
+        for (uint field = 0; field < 255; ++field) { /* around every power of two, and in between */
+            units_compare(field << 23, exponent);
+            units_compare(field << 23 | 1u, exponent);
+            units_compare(field << 23 | 0x7fffffu, exponent);
+            units_compare(field << 23 | 0x400000u | 0x80000000u, exponent);
+            state = state * 1664525u + 1013904223u;
+            units_compare(field << 23 | state >> 9, exponent);
+        }
     }
 }
 END_TEST
@@ -280,7 +339,9 @@ int main(void)
     tcase_add_test(tcase, test_billion_additions_exact);
     tcase_add_test(tcase, test_order_does_not_matter);
     tcase_add_test(tcase, test_merge_equals_one_film);
+    tcase_add_test(tcase, test_sums_of_a_device);
     tcase_add_test(tcase, test_rounding);
+    tcase_add_test(tcase, test_units_of_any_float);
     tcase_add_test(tcase, test_saturation);
     tcase_add_test(tcase, test_not_finite_counts_as_zero);
     tcase_add_test(tcase, test_crop);

@@ -73,7 +73,8 @@ static void walk_run(const TestScene *test, int threads, uint first, uint end, C
     uint64_t done = 0;
     frame.first_item = first;
     frame.item_count = end - first;
-    ck_assert(interface->run(backend, &frame, &list, collect, collector, &never, &done, &error));
+    ck_assert(interface->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = collector}, &never,
+                             &done, &error));
     ck_assert_uint_eq(done, end - first);
     BackendStatistics statistics;
     interface->statistics(backend, &statistics);
@@ -134,12 +135,15 @@ START_TEST(test_stop)
     StepList list = walk_list();
     frame.first_item = 0;
     frame.item_count = 600;
-    ck_assert(backend_cpu()->run(backend, &frame, &list, collect, &collector, &stopped, &done, &error));
+    ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector},
+                                 &stopped, &done, &error));
     ck_assert_uint_eq(done, 0);
-    ck_assert(backend_cpu()->run(backend, &frame, &list, collect, &collector, &never, &done, &error));
+    ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never,
+                                 &done, &error));
     ck_assert_uint_eq(done, 600);
     frame.item_count = 0;
-    ck_assert(backend_cpu()->run(backend, &frame, &list, collect, &collector, &never, &done, &error));
+    ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never,
+                                 &done, &error));
     ck_assert_uint_eq(done, 0);
     backend_cpu()->close(backend);
     test_scene_destroy(&test);
@@ -168,7 +172,8 @@ START_TEST(test_diagnostics)
     frame.first_item = 0;
     frame.item_count = ITEMS;
     for (int i = 0; i < 2; ++i)
-        ck_assert(backend_cpu()->run(backend, &frame, &list, collect, &collector, &never, NULL, &error));
+        ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector},
+                                     &never, NULL, &error));
     backend_cpu()->diagnostics(backend, counters);
     ck_assert_uint_eq(counters[DIAGNOSTIC_ZERO_DIRECTION], 2 * (uint64_t)ITEMS);
     ck_assert_uint_eq(counters[DIAGNOSTIC_NOT_FINITE], 0);
@@ -213,7 +218,8 @@ START_TEST(test_denormals_kept)
     StepList list = walk_list();
     frame.first_item = 0;
     frame.item_count = ITEMS;
-    ck_assert(backend_cpu()->run(backend, &frame, &list, denormal_sink, &sum, &never, NULL, &error));
+    ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = denormal_sink, .context = &sum}, &never,
+                                 NULL, &error));
     ck_assert_uint_gt(sum.chunks, 4);
     ck_assert_uint_eq(sum.kept, sum.chunks);
     backend_cpu()->close(backend);
@@ -287,7 +293,8 @@ START_TEST(test_group_same_bits)
         uint64_t done = 0;
         frame.first_item = first;
         frame.item_count = count;
-        ck_assert(interface->run(group, &frame, &list, collect, &together, &never, &done, &error));
+        ck_assert(interface->run(group, &frame, &list, &(SplatSink){.splats = collect, .context = &together}, &never,
+                                 &done, &error));
         ck_assert_uint_eq(done, count);
         first += count;
     }
@@ -304,10 +311,10 @@ START_TEST(test_group_same_bits)
 }
 END_TEST
 
-static bool failing_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+static bool failing_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                         const atomic_int *stop, uint64_t *items_done, Error *error)
 {
-    (void)backend, (void)frame, (void)list, (void)sink, (void)context, (void)stop;
+    (void)backend, (void)frame, (void)list, (void)sink, (void)stop;
     *items_done = 0;
     return error_set(error, "the device is lost");
 }
@@ -329,7 +336,8 @@ START_TEST(test_group_member_fails)
     uint64_t done = 0, seen = 0;
     frame.first_item = 0;
     frame.item_count = ITEMS;
-    ck_assert(!backend_group_interface()->run(group, &frame, &list, collect, &collector, &never, &done, &error));
+    ck_assert(!backend_group_interface()->run(
+        group, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never, &done, &error));
     ck_assert_str_eq(error.message, "error: the device is lost");
     for (uint item = 0; item < ITEMS; ++item)
         seen += collector.seen[item];

@@ -21,10 +21,10 @@ struct Backend {
     const char *name;
 };
 
-static bool play_run(Backend *backend, const FrameParams *frame, const StepList *list, SplatSink sink, void *context,
+static bool play_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                      const atomic_int *stop, uint64_t *items_done, Error *error)
 {
-    (void)list, (void)sink, (void)context;
+    (void)list, (void)sink;
     uint count = frame->item_count < backend->fails_at ? frame->item_count : backend->fails_at;
     backend->first = frame->first_item;
     backend->count = frame->item_count;
@@ -83,7 +83,7 @@ static bool pass_run(Backend *group, uint first, uint count, const atomic_int *s
     memset(items_seen, 0, sizeof items_seen);
     frame.first_item = first;
     frame.item_count = count;
-    return backend_group_interface()->run(group, &frame, &list, NULL, NULL, stop, done, error);
+    return backend_group_interface()->run(group, &frame, &list, NULL, stop, done, error);
 }
 
 /* ---- a pass ------------------------------------------------------------------------------------------------------ */

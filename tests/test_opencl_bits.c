@@ -17,25 +17,41 @@ static void films_equal(const char *what, const Film *a, const Film *b)
         if (a->counts[i] != b->counts[i])
             ck_abort_msg("%s: pixel %zu has %u samples on the CPU, %u on the device", what, i, a->counts[i],
                          b->counts[i]);
+    for (size_t i = 0; a->light_sums && i < 3 * pixels; ++i)
+        if (a->light_sums[i] != b->light_sums[i])
+            ck_abort_msg("%s: the light's sum %zu differs: %lld on the CPU, %lld on the device", what, i,
+                         (long long)a->light_sums[i], (long long)b->light_sums[i]);
+    ck_assert_uint_eq(a->saturated, b->saturated);
+    ck_assert_uint_eq(a->not_finite, b->not_finite);
 }
 
-/* Renders on both; film, rays and diagnostics are to be the same. */
+static void device_agrees(const char *what, const RenderSetup *setup, const RenderedImage *cpu)
+{
+    RenderedImage image;
+    fixture_render(setup, &image);
+    films_equal(what, &cpu->film, &image.film);
+    ck_assert_uint_eq(cpu->result.backend.closest_rays, image.result.backend.closest_rays);
+    ck_assert_uint_eq(cpu->result.backend.shadow_rays, image.result.backend.shadow_rays);
+    ck_assert_uint_eq(cpu->result.samples, image.result.samples);
+    for (int i = 0; i < cpu->result.diagnostic_count; ++i)
+        ck_assert_uint_eq(cpu->result.diagnostics[i], image.result.diagnostics[i]);
+    fixture_destroy(&image);
+}
+
+/* Renders on both, with the film on the device, too, where it can; film, rays and diagnostics are to be the same. */
 static void backends_agree(const char *what, RenderSetup setup)
 {
-    RenderedImage cpu, device;
-    setup.backend = NULL;
+    OclDevice device;
+    RenderedImage cpu;
+    test_device(&device);
     fixture_render(&setup, &cpu);
-    setup.backend = backend_ocl();
-    fixture_render(&setup, &device);
     ck_assert_msg(fixture_mean(&cpu) > 0.0, "%s: the picture is black", what);
-    films_equal(what, &cpu.film, &device.film);
-    ck_assert_uint_eq(cpu.result.backend.closest_rays, device.result.backend.closest_rays);
-    ck_assert_uint_eq(cpu.result.backend.shadow_rays, device.result.backend.shadow_rays);
-    ck_assert_uint_eq(cpu.result.samples, device.result.samples);
-    for (int i = 0; i < cpu.result.diagnostic_count; ++i)
-        ck_assert_uint_eq(cpu.result.diagnostics[i], device.result.diagnostics[i]);
+    setup.backend = backend_ocl();
+    device_agrees(what, &setup, &cpu);
+    setup.film_on_device = true;
+    if (device.info.atomics64)
+        device_agrees(what, &setup, &cpu);
     fixture_destroy(&cpu);
-    fixture_destroy(&device);
 }
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
@@ -75,6 +91,21 @@ START_TEST(test_bits_of_bidirectional_paths)
 }
 END_TEST
 
+/* Units so small that most contributions are clamped. */
+START_TEST(test_bits_of_clamped_sums)
+{
+    const Film fine = {.quantum_exponent = -50};
+    RenderSetup setup = {.text = OPENCL_MATERIALS_SCENE, .samples = 4, .max_depth = 5, .quantum_of = &fine};
+    RenderedImage image;
+    setup.integrator = integrator_ibpt();
+    fixture_render(&setup, &image);
+    ck_assert_uint_gt(image.film.saturated, 1000);
+    fixture_destroy(&image);
+    if (device_promises())
+        backends_agree("clamped", setup);
+}
+END_TEST
+
 /* The scenes of the tree are compared in test_cli.sh. */
 static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
                                             "coffee/gray.pbrt"};
@@ -94,12 +125,14 @@ START_TEST(test_bits_for_any_batch)
     static const uint BATCHES[] = {33, 63, 100, 1000, 0};
     RenderSetup setup = {.text = OPENCL_TEST_SCENE, .samples = 2, .max_depth = 5, .backend = backend_ocl()};
     RenderedImage reference, image;
+    OclDevice device;
+    test_device(&device);
     fixture_render(&setup, &reference);
-    for (int i = 0; i < 5; ++i) {
-        setup.batch = BATCHES[i];
+    for (int i = 0; i < 10; ++i) {
+        setup.batch = BATCHES[i % 5];
+        setup.film_on_device = i >= 5 && device.info.atomics64;
         setup.threads = 1 + 2 * i;
-        if (i == 3)
-            setenv("TWINLIGHT_OVERLAP", "0", 1);
+        setenv("TWINLIGHT_OVERLAP", i % 5 >= 3 ? "0" : "1", 1);
         fixture_render(&setup, &image);
         films_equal("another batch", &reference.film, &image.film);
         ck_assert_uint_eq(reference.result.backend.closest_rays, image.result.backend.closest_rays);
@@ -116,6 +149,7 @@ TCase *opencl_bits_tests(void)
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
     tcase_add_test(bits, test_bits_of_bidirectional_paths);
+    tcase_add_test(bits, test_bits_of_clamped_sums);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;

@@ -107,7 +107,8 @@ START_TEST(test_inspect_is_run)
     Backend *device = pair.sides[1].backend;
     pair.frame.first_item = 123;
     pair.frame.item_count = 357;
-    ck_assert(backend_ocl()->run(device, &pair.frame, &pair.list, splat_sum, &run, &NEVER, NULL, &error));
+    ck_assert(backend_ocl()->run(device, &pair.frame, &pair.list, &(SplatSink){.splats = splat_sum, .context = &run},
+                                 &NEVER, NULL, &error));
     backend_ocl()->statistics(device, &before);
     ck_assert(backend_ocl()->inspect(device, &pair.frame, &pair.list, inspect_sum, &inspected, &error));
     backend_ocl()->statistics(device, &after);

@@ -2,7 +2,7 @@
 #include "test_opencl.h"
 
 #include "backend_ocl.h"
-#include "device_memory.h"
+#include "device_film.h"
 
 #include <string.h>
 
@@ -96,6 +96,36 @@ START_TEST(test_scene_too_large)
 }
 END_TEST
 
+START_TEST(test_film_too_large)
+{
+    OclDevice device;
+    DeviceMemory memory = {.device = &device};
+    Error error = {0};
+    test_device(&device);
+    ck_assert(!device_memory_reserve_film(&memory, device.info.allocation_limit + 1, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "the sums of the film take"));
+    ck_assert_ptr_nonnull(strstr(error.fix, "--film=host"));
+    memory.bytes = device.info.memory;
+    ck_assert(!device_memory_reserve_film(&memory, 4096, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "4.00 KiB; the device has room for 0 bytes"));
+}
+END_TEST
+
+START_TEST(test_film_without_atomics)
+{
+    OclDevice device;
+    Error error = {0};
+    test_device(&device);
+    device.info.atomics64 = true;
+    ck_assert(device_film_check(&device, &error));
+    device.info.atomics64 = false;
+    ck_assert(!device_film_check(&device, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, device.info.name));
+    ck_assert_ptr_nonnull(strstr(error.message, "cl_khr_int64_base_atomics"));
+    ck_assert_ptr_nonnull(strstr(error.fix, "--film=host"));
+}
+END_TEST
+
 /* ---- failure and stop ---------------------------------------------------------------------------------------------- */
 
 /* Batch 0 is the pilot's first; 4096 pilot paths are 16 batches. What was finished before is in the film, whole. */
@@ -115,6 +145,27 @@ START_TEST(test_failure_on_the_way)
 }
 END_TEST
 
+/* With the film on the device a pass that fails leaves nothing, and passes before it all. */
+START_TEST(test_failure_with_film_on_device)
+{
+    OclDevice device;
+    Attempt attempt;
+    RenderSetup setup = SMALL;
+    test_device(&device);
+    setup.film_on_device = true;
+    setup.samples = 70; /* three passes: the first is of 16384 paths, 64 batches behind the pilot's 16 */
+    if (!device.info.atomics64)
+        return;
+    setenv("TWINLIGHT_TEST_FAIL_BATCH", _i == 0 ? "20" : "81", 1);
+    attempt_make(setup, NULL, NULL, &attempt);
+    ck_assert(attempt.backend && !attempt.done);
+    ck_assert_ptr_nonnull(strstr(attempt.error.message, "CL_OUT_OF_RESOURCES"));
+    ck_assert_uint_eq(attempt.result.samples, _i == 0 ? 0u : 16384u);
+    ck_assert_uint_eq(film_samples(&attempt.film), attempt.result.samples);
+    attempt_end(&attempt);
+}
+END_TEST
+
 static atomic_int stop_flag;
 
 static void stop_set(void *context, const RenderProgress *progress)
@@ -129,11 +180,15 @@ START_TEST(test_stop)
     Attempt attempt;
     RenderSetup setup = SMALL;
     RenderCallbacks callbacks = {.progress = stop_set};
+    OclDevice device;
+    test_device(&device);
     setup.samples = 1000000;
+    setup.film_on_device = _i == 1 && device.info.atomics64;
     stop_flag = 0;
     attempt_make(setup, &callbacks, &stop_flag, &attempt);
     ck_assert_msg(attempt.done, "%s", attempt.error.message);
     ck_assert(attempt.result.stopped);
+    ck_assert_uint_gt(attempt.result.samples, 0);
     ck_assert_uint_eq(film_samples(&attempt.film), attempt.result.samples);
     attempt_end(&attempt);
 }
@@ -197,8 +252,11 @@ TCase *opencl_pipeline_tests(void)
     tcase_set_timeout(pipeline, 120);
     tcase_add_test(pipeline, test_batch_too_large);
     tcase_add_test(pipeline, test_scene_too_large);
+    tcase_add_test(pipeline, test_film_too_large);
+    tcase_add_test(pipeline, test_film_without_atomics);
     tcase_add_loop_test(pipeline, test_failure_on_the_way, 0, 4);
-    tcase_add_test(pipeline, test_stop);
+    tcase_add_loop_test(pipeline, test_failure_with_film_on_device, 0, 2);
+    tcase_add_loop_test(pipeline, test_stop, 0, 2);
     tcase_add_test(pipeline, test_spans);
     tcase_add_test(pipeline, test_no_spans_unless_asked);
     return pipeline;

@@ -1,0 +1,112 @@
+/* What the film does with a splat, on the host and on devices: every contribution is rounded to a whole number of units
+ * of 2^exponent and added to a 64-bit sum. Sums are numbers modulo 2^64 in two's complement, so neither the order of
+ * additions nor who makes them matters. */
+#ifndef TWINLIGHT_FILM_SUM_H
+#define TWINLIGHT_FILM_SUM_H
+
+#include "state.h"
+
+/* A contribution larger than this many units is clamped. Of the largest ones 2^14 fit into a sum. */
+#define CONTRIBUTION_MAX ((ulong)1 << 48)
+
+/* A sum beyond +-this is reported as saturated, long before it could wrap. */
+#define SUM_MAX ((ulong)1 << 62)
+
+/* A film as functions see it; the pixels that are kept are x0 <= x < x1, y0 <= y < y1, row by row. */
+typedef struct FilmView {
+    uint width; /* of the whole film */
+    uint x0, y0, x1, y1;
+    int exponent;
+    __global ulong *sums; /* 3 a pixel */
+    __global ulong *light_sums; /* the same for splats with SPLAT_FROM_LIGHT */
+    __global uint *counts; /* samples of a pixel */
+    __global ulong *saturated; /* contributions that were clamped, or came to a sum that is full */
+    __global ulong *not_finite; /* contributions that counted as zero */
+} FilmView;
+
+/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, and last the
+ * light's sums where there are any. */
+SHARED_FUNCTION ulong film_words(uint pixels, bool from_light)
+{
+    return (from_light ? 6u : 3u) * (ulong)pixels + 2u + ((ulong)pixels + 1u) / 2u;
+}
+
+/* Points the view's sums into such a buffer. */
+SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint pixels)
+{
+    film->sums = words;
+    film->saturated = words + 3u * (size_t)pixels;
+    film->not_finite = film->saturated + 1;
+    film->counts = (__global uint *)(film->saturated + 2);
+    film->light_sums = words + film_words(pixels, false);
+}
+
+/* The pixel's place among those kept, or NONE. */
+SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
+{
+    uint x = pixel % film->width, y = pixel / film->width;
+    bool kept = x >= film->x0 && x < film->x1 && y >= film->y0 && y < film->y1;
+    return kept ? (y - film->y0) * (film->x1 - film->x0) + x - film->x0 : NONE;
+}
+
+/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX; whether it was more
+ * goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power of two. */
+SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
+{
+    uint bits = float_bits(value), field = bits >> 23 & 0xffu;
+    ulong mantissa = field != 0u ? (bits & 0x7fffffu) | 0x800000u : bits & 0x7fffffu;
+    int shift = (field != 0u ? (int)field : 1) - 150 - exponent; /* |value| = mantissa * 2^(shift + exponent) */
+    if (shift < 0) {
+        uint down = shift > -63 ? (uint)-shift : 63u;
+        *clamped = false;
+        return (mantissa + ((ulong)1 << (down - 1u))) >> down;
+    }
+    uint up = shift < 63 ? (uint)shift : 63u;
+    *clamped = mantissa > CONTRIBUTION_MAX >> up;
+    return *clamped ? CONTRIBUTION_MAX : mantissa << up;
+}
+
+#ifdef atomic_sum_add
+
+/* Adds to one sum; false when that has left +-SUM_MAX. */
+SHARED_FUNCTION bool film_sum_add(__global ulong *sum, ulong units)
+{
+    ulong after = atomic_sum_add(sum, units) + units;
+    return after + (SUM_MAX - 1u) <= 2u * (SUM_MAX - 1u);
+}
+
+/* Adds a contribution to three sums; false when it was clamped or a sum is full. */
+SHARED_FUNCTION bool film_color_add(__global ulong *sums, Vec3 color, int exponent)
+{
+    const float values[3] = {color.x, color.y, color.z};
+    bool fits = true;
+    for (uint c = 0; c < 3u; ++c) {
+        bool clamped;
+        ulong units = film_units(values[c], exponent, &clamped);
+        if (units != 0u && !film_sum_add(sums + c, values[c] < 0.0f ? 0u - units : units))
+            fits = false;
+        fits = fits && !clamped;
+    }
+    return fits;
+}
+
+/* Adds splat t of a buffer, and one sample to its pixel unless it comes from the light. Any number of threads or
+ * work-items may do so at once. */
+SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint t)
+{
+    uint name = state_load(splats, stride, SPLAT_PIXEL, t);
+    bool from_light = (name & SPLAT_FROM_LIGHT) != 0u;
+    uint slot = name != NONE ? film_slot(film, name & ~SPLAT_FROM_LIGHT) : NONE;
+    if (slot == NONE)
+        return;
+    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
+    if (!from_light)
+        atomic_count_add(film->counts + slot, 1u);
+    if (!vec3_finite(color))
+        atomic_sum_add(film->not_finite, 1u);
+    else if (!film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent))
+        atomic_sum_add(film->saturated, 1u);
+}
+
+#endif
+#endif
