@@ -5,6 +5,8 @@
 # no reference and has no floor. Efficiency is 1 / (variance x seconds), the median over the budgets; the time to equal
 # error of two integrators has the inverse ratio. usage: bench_bidirectional.sh TWINLIGHT PLOT.svg SCENE...
 set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
 
 BUDGETS=${BUDGETS:-2 4 8}
 DEPTH=${DEPTH:-10}
@@ -12,13 +14,6 @@ RESOLUTION=${RESOLUTION:-128x128}
 twinlight=$1
 plot=$2
 shift 2
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT INT TERM
-
-# number KEY FILE: the first number behind "KEY": in a JSON file.
-number() {
-    sed -n "s/.*\"$1\": *\\([0-9.eE+-]*\\).*/\\1/p" "$2" | head -n 1
-}
 
 # image INTEGRATOR SECONDS SEED SCENE
 image() {
@@ -37,13 +32,11 @@ variance() {
         $(number mse "$folder/compare.json") / 2 }"
 }
 
-printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-printf '# compiler\t%s\n' "$("${CC:-cc}" --version | head -n 1)"
-printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
+head_print
 printf '# setting\t%s segments, %s pixels\n' "$DEPTH" "$RESOLUTION"
 printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\n'
 for scene in "$@"; do
-    name=$(basename "$(dirname "$scene")")/$(basename "$scene" .pbrt)
+    name=$(scene_name "$scene")
     for integrator in pt ibpt bdpt; do
         for seconds in $BUDGETS; do
             printf '%s\t%s\t%s\n' "$name" "$integrator" "$(variance "$integrator" "$seconds" "$scene")"

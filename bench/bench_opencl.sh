@@ -4,6 +4,8 @@
 # where the CPU's time is that of all threads divided by their number. Every figure is the median of RUNS runs.
 # usage: bench_opencl.sh TWINLIGHT [SCENE...]; DEVICE: the device (default 0)
 set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
 
 RUNS=${RUNS:-3}
 SECONDS_EACH=${SECONDS_EACH:-5}
@@ -11,17 +13,6 @@ DEPTH=${DEPTH:-10}
 DEVICE=${DEVICE:-0}
 twinlight=$1
 shift
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT INT TERM
-
-# number KEY FILE: the first number behind "KEY": in a statistics file.
-number() {
-    sed -n "s/.*\"$1\": *\\([0-9.eE+-]*\\).*/\\1/p" "$2" | head -n 1
-}
-
-median() {
-    sort -g | awk '{ v[NR] = $1 } END { print (NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2) }'
-}
 
 # runs NAME SCENE OPTION...: renders RUNS times, statistics in $folder/NAME.N.json
 runs() {
@@ -49,11 +40,10 @@ rays() {
 }
 
 threads=$(nproc)
-printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$threads"
+head_print
 printf 'scene\tdevice\topencl samples/s\twithout overlap\tcpu samples/s\topencl/cpu\topencl rays/s\tcpu rays/s\n'
 for scene in "$@"; do
-    name=$(basename "$(dirname "$scene")")/$(basename "$scene")
+    name=$(scene_name "$scene")
     # The kernels are built before anything is timed.
     "$twinlight" render --quiet --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
     runs opencl "$scene" --backend=opencl --device="$DEVICE"

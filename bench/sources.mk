@@ -13,16 +13,11 @@ EXTRA_PROGRAMS += bench/bench_rays
 bench_bench_rays_SOURCES = bench/bench_rays.c
 bench_bench_rays_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) -lm
 EXTRA_PROGRAMS += bench/bench_bvh
-bench_bench_bvh_SOURCES = bench/bench_bvh.c
-if HAVE_OPENCL
-bench_bench_bvh_SOURCES += tests/opencl_probe.c
-else
-bench_bench_bvh_SOURCES += tests/opencl_probe_absent.c
-endif
+bench_bench_bvh_SOURCES = bench/bench_bvh.c $(OPENCL_PROBE)
 bench_bench_bvh_CPPFLAGS = $(AM_CPPFLAGS) -I$(srcdir)/tests
 bench_bench_bvh_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) -lm
 CLEANFILES += bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/bench_bidirectional.sh bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_DIST += bench/bench.sh bench/bench_util.h bench/bench_bidirectional.sh bench/bench_opencl.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)

@@ -74,20 +74,22 @@ START_TEST(test_sum)
 }
 END_TEST
 
-TCase *bidirectional_strategies_case(void)
+/* `test` on every scene. */
+static TCase *scenes_case(const char *name, const TTest *test)
 {
-    TCase *tcase = tcase_create("strategies");
+    TCase *tcase = tcase_create(name);
     tcase_set_timeout(tcase, 3000);
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_strategies, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_loop_test(tcase, test, 0, BIDIRECTIONAL_SCENE_COUNT);
     return tcase;
+}
+
+TCase *bidirectional_strategies_case(void)
+{
+    return scenes_case("strategies", test_strategies);
 }
 
 TCase *bidirectional_sums_case(void)
 {
-    TCase *tcase = tcase_create("sums");
-    tcase_set_timeout(tcase, 3000);
-    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_sum, 0, BIDIRECTIONAL_SCENE_COUNT);
-    return tcase;
+    return scenes_case("sums", test_sum);
 }

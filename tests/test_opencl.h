@@ -21,6 +21,14 @@ static inline void test_device(OclDevice *device)
         ck_abort_msg("%s", error.message);
 }
 
+/* Whether its images are to be the CPU's, bit for bit. */
+static inline bool test_device_promises(void)
+{
+    OclDevice device;
+    test_device(&device);
+    return device.info.same_bits;
+}
+
 /* One scene for most tests, so that one program is built for all of them: every kind of shape, a lamp and a point
  * light, and depth enough for some batches to end early. */
 #define OPENCL_TEST_SCENE                                                                                              \

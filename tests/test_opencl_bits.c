@@ -40,23 +40,16 @@ static void backends_agree(const char *what, RenderSetup setup)
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
-static bool device_promises(void)
-{
-    OclDevice device;
-    test_device(&device);
-    return device.info.same_bits;
-}
-
 START_TEST(test_bits_of_shapes)
 {
-    if (device_promises())
+    if (test_device_promises())
         backends_agree("shapes", (RenderSetup){.text = OPENCL_TEST_SCENE, .samples = 5, .max_depth = 30, .seed = 3});
 }
 END_TEST
 
 START_TEST(test_bits_of_materials)
 {
-    if (device_promises())
+    if (test_device_promises())
         backends_agree(
             "materials",
             (RenderSetup){.text = OPENCL_MATERIALS_SCENE, .samples = 8, .max_depth = 12, .seed = 1ull << 40});
@@ -65,7 +58,7 @@ END_TEST
 
 START_TEST(test_bits_of_bidirectional_paths)
 {
-    if (device_promises())
+    if (test_device_promises())
         backends_agree("bidirectional", (RenderSetup){.text = OPENCL_MATERIALS_SCENE,
                                                       .samples = 4,
                                                       .max_depth = 6,
@@ -82,7 +75,7 @@ static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/
 START_TEST(test_bits_of_public_scenes)
 {
     char path[1200];
-    if (getenv("SCENES") && device_promises() && test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
+    if (getenv("SCENES") && test_device_promises() && test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
         backends_agree(path, (RenderSetup){.path = path, .width = 40, .height = 24, .samples = 4, .seed = 7});
 }
 END_TEST
