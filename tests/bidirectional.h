@@ -78,10 +78,9 @@ double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, in
  * the smallest p-value and the ratio of means. */
 void groups_compare(const char *name, const PictureGroups *got, const PictureGroups *expected, int grid, bool pixels);
 
-/* Samples are multiplied by $TWINLIGHT_TEST_EFFORT (default 1), for a longer look. */
-unsigned bidirectional_effort(void);
-
 TCase *bidirectional_weights_case(void);
+TCase *bidirectional_walks_case(void);
+TCase *bidirectional_running_case(void);
 TCase *bidirectional_strategies_case(void);
 TCase *bidirectional_sums_case(void);
 TCase *bidirectional_film_case(void);

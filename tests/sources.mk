@@ -11,7 +11,6 @@ check_PROGRAMS += \
 	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
-	tests/test_ibpt \
 	tests/test_mmlt \
 	tests/test_group \
 	tests/test_import \
@@ -31,6 +30,13 @@ TESTS += $(check_PROGRAMS)
 check_LTLIBRARIES = tests/libfixtures.la
 endif
 
+# The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
+EFFORT = 8
+.PHONY: check-long
+check-long:
+	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
+	  TESTS='tests/test_bidirectional tests/test_opencl tests/test_reference'
+
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
 clean-local:
@@ -39,6 +45,7 @@ clean-local:
 EXTRA_DIST += \
 	tests/analytic.h \
 	tests/bidirectional.h \
+	tests/bidirectional_path.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
 	tests/cli.sh \
@@ -90,8 +97,11 @@ tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/test_analytic_textures.c
 
 tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
+	tests/bidirectional_path.c \
 	tests/test_bidirectional_film.c \
+	tests/test_bidirectional_running.c \
 	tests/test_bidirectional_strategies.c \
+	tests/test_bidirectional_walks.c \
 	tests/test_bidirectional_weights.c
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \

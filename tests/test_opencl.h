@@ -10,6 +10,7 @@
 TCase *opencl_devices_tests(void);
 TCase *opencl_program_tests(void);
 TCase *opencl_bits_tests(void);
+TCase *opencl_bidirectional_tests(void);
 TCase *opencl_inspect_tests(void);
 TCase *opencl_pipeline_tests(void);
 

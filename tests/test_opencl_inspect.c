@@ -22,19 +22,31 @@ static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyP
  * and one that is no multiple of a work-group. */
 START_TEST(test_state_is_the_same)
 {
-    static const struct {
+    const struct {
         const char *text;
         uint batch;
-    } cases[] = {{OPENCL_TEST_SCENE, 0}, {OPENCL_MATERIALS_SCENE, 0}, {OPENCL_MATERIALS_SCENE, 1000}};
+        const Integrator *integrator;
+        int depth;
+        uint items;
+    } cases[] = {{OPENCL_TEST_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 1000, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_ibpt(), 5, 3000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000}};
     if (!test_device_promises())
         return;
-    RenderSetup setup = {.text = cases[_i].text, .max_depth = 7, .seed = 11, .batch = cases[_i].batch};
+    RenderSetup setup = {.text = cases[_i].text,
+                         .max_depth = cases[_i].depth,
+                         .seed = 11,
+                         .batch = cases[_i].batch,
+                         .integrator = cases[_i].integrator};
     Error error = {0};
     VerifyReport report;
     VerifyPair pair;
     pair_open(setup, backend_ocl(), &pair);
-    ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, 20000, &NEVER, &report, &error), "%s", error.message);
-    ck_assert_uint_eq(report.items, 20000);
+    ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, cases[_i].items, &NEVER, &report, &error), "%s",
+                  error.message);
+    ck_assert_uint_eq(report.items, cases[_i].items);
     ck_assert_uint_gt(report.prefixes, 9);
     ck_assert_uint_le(report.prefixes, pair.list.count);
     verify_pair_close(&pair);
@@ -124,7 +136,7 @@ TCase *opencl_inspect_tests(void)
 {
     TCase *inspect = tcase_create("inspect");
     tcase_set_timeout(inspect, 120);
-    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 3);
+    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 5);
     tcase_add_test(inspect, test_inspect_is_run);
     tcase_add_test(inspect, test_fault_is_named);
     tcase_add_test(inspect, test_failure);

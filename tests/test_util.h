@@ -43,6 +43,14 @@ static inline const char *test_source_folder(void)
     return folder ? folder : "..";
 }
 
+/* $TWINLIGHT_TEST_EFFORT, 1 when it is not set: by how much long tests look longer (make check-long). */
+static inline unsigned test_effort(void)
+{
+    const char *text = getenv("TWINLIGHT_TEST_EFFORT");
+    int effort = text ? atoi(text) : 1;
+    return effort > 0 ? (unsigned)effort : 1;
+}
+
 /* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line on
  * standard error, when it is not there. */
 static inline bool test_public_scene(const char *name, char *path, size_t size)
