@@ -3,6 +3,7 @@
 #   bench_bvh        rays/s of Embree, of the devices' hierarchy walked in C, and of it on OpenCL, on BENCH_SCENES
 #   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
 #   bench_opencl.sh  samples/s of a device with overlap and without, and of the CPU; rays/s inside ray queries of both
+#   bench_bidirectional.sh  error against time of path tracing, IBPT and BDPT on BENCH_SCENES, and a plot of it
 # Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
