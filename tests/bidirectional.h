@@ -71,7 +71,7 @@ void groups_block(const PictureGroups *picture, int x0, int y0, int x1, int y1, 
 /* Two-sided p-value of Welch's t-test for equal means of that block. */
 double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, int y0, int x1, int y1);
 
-/* All tests of a run fail together with probability 0.01 when nothing is wrong: about 40,000 values are compared. */
+/* All tests of a run fail together with probability 0.01 when nothing is wrong: fewer than 40,000 values are compared. */
 #define P_LIMIT 2.5e-7
 
 /* Compares the mean, a grid of blocks and (pixels = true) every pixel; fails with name and place. Prints a line with

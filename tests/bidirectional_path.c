@@ -17,25 +17,26 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
 float test_path_weight(const TestPath *path, uint set, uint exponent, uint s)
 {
     uint k = path->k, t = k + 1 - s;
-    float words[4 * (PATH_SEGMENTS_MAX + 1) * DENSITY_WORDS];
-    for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
-        words[i] = NAN;
+    uint light[PATH_SEGMENTS_MAX + 1][DENSITY_WORDS], camera[PATH_SEGMENTS_MAX + 1][DENSITY_WORDS];
+    for (uint i = 0; i <= PATH_SEGMENTS_MAX; ++i)
+        for (uint which = 0; which < DENSITY_WORDS; ++which)
+            light[i][which] = camera[i][which] = float_bits(NAN);
     StrategyEnds ends;
     memset(&ends, 0xff, sizeof ends); /* NaN */
     ends.connect = path->connect;
     ends.hittable = path->hittable;
-    DensityView view = {(const uint *)words, 1, 0, PATH_SEGMENTS_MAX + 1, 0, 0};
+    DensityView view = {.light = light[0], .camera = camera[0], .stride = 1};
     for (uint i = 1; i < t; ++i) {
-        words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OWN] = path->camera[i];
+        camera[i - 1][DENSITY_OWN] = float_bits(path->camera[i]);
         if (i + 2 < t)
-            words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OTHER] = path->light[i];
+            camera[i - 1][DENSITY_OTHER] = float_bits(path->light[i]);
         view.camera_delta |= path->delta[i] ? 1u << i : 0u;
     }
     for (uint i = 0; i < s; ++i) {
         if (s > 1)
-            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OWN] = path->light[k - i];
+            light[i][DENSITY_OWN] = float_bits(path->light[k - i]);
         if (i + 2 < s)
-            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OTHER] = path->camera[k - i];
+            light[i][DENSITY_OTHER] = float_bits(path->camera[k - i]);
         view.light_delta |= path->delta[k - i] ? 1u << i : 0u;
     }
     ends.light_z1 = t > 1 ? path->light[t - 1] : NAN;

@@ -173,9 +173,9 @@ static void camera_part(const Walks *walks, uint item, uint s, uint t, RealPath 
     for (uint i = 1; i + 2 <= t; ++i)
         if ((view.camera_delta >> i & 1u) != 0u) {
             d->delta[i] = true;
-            d->camera[i + 1] = density_load(&view, SIDE_CAMERA, i + 1, DENSITY_OWN);
+            d->camera[i + 1] = density_own(&view, SIDE_CAMERA, i + 1);
             if (i > 1)
-                d->light[i - 1] = density_load(&view, SIDE_CAMERA, i - 1, DENSITY_OTHER);
+                d->light[i - 1] = density_other(&view, SIDE_CAMERA, i - 1);
         }
     if (t > 1)
         path->vertices[0].p = lens_point(walks, path->vertices[1].p, path->ways[1]);
@@ -196,8 +196,8 @@ static void light_part(const Walks *walks, uint item, uint s, RealPath *path)
     for (uint i = 1; i + 2 <= s; ++i)
         if ((view.light_delta >> i & 1u) != 0u) {
             path->densities.delta[k - i] = true;
-            path->densities.light[k - i - 1] = density_load(&view, SIDE_LIGHT, i + 1, DENSITY_OWN);
-            path->densities.camera[k - i + 1] = density_load(&view, SIDE_LIGHT, i - 1, DENSITY_OTHER);
+            path->densities.light[k - i - 1] = density_own(&view, SIDE_LIGHT, i + 1);
+            path->densities.camera[k - i + 1] = density_other(&view, SIDE_LIGHT, i - 1);
         }
     path->light = state_load(paths, ITEMS, BD_EMITTER, item);
     path->infinite = (flags & EMITTER_INFINITE) != 0u;
@@ -208,7 +208,7 @@ static void light_part(const Walks *walks, uint item, uint s, RealPath *path)
 static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
 {
     LightSample sample = {0};
-    Random4 random = bd_random(&walks->frame, walks->words[BUFFER_PATHS], item, bd_random_connection(1, t));
+    Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, 1, t);
     path->light = light_select(&walks->view, random.x[0], random.x[1]);
     TEST_TRUE(light_sample(&walks->view, path->light, path->vertices[t - 1].p,
                            vec2(random_float(random.x[2]), random_float(random.x[3])), &sample));
@@ -223,7 +223,7 @@ static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
 static Vec3 lens_drawn(const Walks *walks, uint item, uint s, Vec3 p)
 {
     CameraConnection camera;
-    Random4 random = bd_random(&walks->frame, walks->words[BUFFER_PATHS], item, bd_random_connection(s, 1));
+    Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, s, 1);
     TEST_TRUE(camera_connect(&walks->frame, p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera));
     return camera.p;
 }

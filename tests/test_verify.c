@@ -100,7 +100,7 @@ START_TEST(test_field_names)
 }
 END_TEST
 
-/* A list far longer than any path is compared as far as paths go: were it not, this would take days. */
+/* A list far longer than any path is compared as far as paths go. */
 START_TEST(test_long_list)
 {
     Error error = {0};
