@@ -3,8 +3,11 @@
 #
 # The error is the variance of a pixel: half the mean square difference of two images with different seeds, which needs
 # no reference and has no floor. Efficiency is 1 / (variance x seconds), the median over the budgets; the time to equal
-# error of two integrators has the inverse ratio. usage: bench_bidirectional.sh TWINLIGHT PLOT.svg SCENE...
+# error of two integrators has the inverse ratio. The plot says of what commit, compiler and machine it is. A scene takes
+# 6 renderings of every budget: 84 s. usage: bench_bidirectional.sh TWINLIGHT PLOT.svg SCENE...
 set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
 
 BUDGETS=${BUDGETS:-2 4 8}
 DEPTH=${DEPTH:-10}
@@ -12,13 +15,6 @@ RESOLUTION=${RESOLUTION:-128x128}
 twinlight=$1
 plot=$2
 shift 2
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT INT TERM
-
-# number KEY FILE: the first number behind "KEY": in a JSON file.
-number() {
-    sed -n "s/.*\"$1\": *\\([0-9.eE+-]*\\).*/\\1/p" "$2" | head -n 1
-}
 
 # image INTEGRATOR SECONDS SEED SCENE
 image() {
@@ -37,13 +33,11 @@ variance() {
         $(number mse "$folder/compare.json") / 2 }"
 }
 
-printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-printf '# compiler\t%s\n' "$("${CC:-cc}" --version | head -n 1)"
-printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$(nproc)"
+head_print
 printf '# setting\t%s segments, %s pixels\n' "$DEPTH" "$RESOLUTION"
 printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\n'
 for scene in "$@"; do
-    name=$(basename "$(dirname "$scene")")/$(basename "$scene" .pbrt)
+    name=$(scene_name "$scene")
     for integrator in pt ibpt bdpt; do
         for seconds in $BUDGETS; do
             printf '%s\t%s\t%s\n' "$name" "$integrator" "$(variance "$integrator" "$seconds" "$scene")"
@@ -69,14 +63,15 @@ awk -F'\t' '
     }' "$folder/table"
 
 # One panel a scene, both axes logarithmic.
-awk -F'\t' '
+caption=$(measured | sed 's/\t/: /; s/&/\&amp;/g; s/</\&lt;/g; s/$/;/' | tr '\n' ' ')
+awk -F'\t' -v caption="$caption$DEPTH segments, $RESOLUTION pixels" '
     { if (!($1 in panel)) { panel[$1] = ++panels; title[panels] = $1; low[panels] = high[panels] = log($5) / log(10) }
       p = panel[$1]; y = log($5) / log(10); n = ++rows; at[n] = p; who[n] = $2; xs[n] = log($3) / log(10); ys[n] = y
       if (y < low[p]) low[p] = y; if (y > high[p]) high[p] = y
       if (n == 1 || xs[n] < left) left = xs[n]; if (n == 1 || xs[n] > right) right = xs[n] }
     END {
         color["pt"] = "#888888"; color["ibpt"] = "#2a7fbf"; color["bdpt"] = "#c4541c"
-        printf "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"260\" font-family=\"sans-serif\" font-size=\"12\">\n", panels * 240 + 20
+        printf "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"282\" font-family=\"sans-serif\" font-size=\"12\">\n", panels * 240 + 20
         print "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>"
         for (p = 1; p <= panels; ++p) {
             x0 = (p - 1) * 240 + 50
@@ -95,5 +90,6 @@ awk -F'\t' '
         split("pt ibpt bdpt", names, " ")
         for (k = 1; k <= 3; ++k)
             printf "<text x=\"%d\" y=\"248\" fill=\"%s\">%s: variance against seconds</text>\n", 50 + (k - 1) * 210, color[names[k]], names[k]
+        printf "<text x=\"50\" y=\"270\" font-size=\"9\" fill=\"#666666\">%s</text>\n", caption
         print "</svg>"
     }' "$folder/table" >"$plot"

@@ -4,6 +4,7 @@
  *   opencl   the same on an OpenCL CPU device (one that computes in this process, as PoCL does).
  * Output: one line a scene, kind and path, tab-separated. Every path answers the same rays, step by step of the
  * integrator; answers that differ are counted. Usage: bench_bvh SHARED_FOLDER SCENE.pbrt ... */
+#include "bench_util.h"
 #include "bvh.h"
 #include "kernel_list.h"
 #include "kernels.h"
@@ -14,10 +15,7 @@
 #include "scene.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define ITEMS 65536u
 #define STRIDE (ITEMS + 16u)
@@ -51,19 +49,6 @@ typedef struct Bench {
     uint differ;
 } Bench;
 
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void fail(const char *what)
-{
-    fprintf(stderr, "bench_bvh: %s\n", what);
-    exit(EXIT_FAILURE);
-}
-
 /* ---- opening ----------------------------------------------------------------------------------------------------- */
 
 static void device_open(Bench *bench, const char *shared)
@@ -92,14 +77,13 @@ static void device_open(Bench *bench, const char *shared)
 static void bench_open(Bench *bench, const char *path)
 {
     Error error = {0};
-    ImportOptions options = {0};
     scene_init(&bench->scene);
-    if (!pbrt_import(path, &options, &bench->scene, &error) || !scene_finish(&bench->scene, &error))
-        fail(error.message);
+    if (!pbrt_load(path, false, &bench->scene, &error))
+        bench_fail(error.message);
     bench->backend = scene_backend_view(&bench->scene);
     bench->rays = rays_embree_create(&bench->backend, 2, &error);
     if (!bench->rays || !bvh_build(&bench->backend, &bench->bvh, &error))
-        fail(error.message);
+        bench_fail(error.message);
     FrameParams *frame = &bench->frame;
     *frame = *bench->backend.frame;
     uint pixels = (frame->crop_x1 - frame->crop_x0) * (frame->crop_y1 - frame->crop_y0);
@@ -109,7 +93,7 @@ static void bench_open(Bench *bench, const char *path)
     frame->pixel_stride = pixels / ITEMS < 1u ? 1u : pixels / ITEMS;
     for (int i = 0; i < BUFFER_COUNT; ++i)
         if (BUFFER_WORDS[i] > 0 && !(bench->buffers[i] = calloc((size_t)BUFFER_WORDS[i] * STRIDE, sizeof(uint))))
-            fail("out of memory");
+            bench_fail("out of memory");
     bench->buffers[BUFFER_FRAME] = frame;
     bench->buffers[BUFFER_GEOMETRY] = (void *)(uintptr_t)bench->backend.geometry;
     bench->buffers[BUFFER_TABLES] = (void *)(uintptr_t)bench->backend.tables;
@@ -142,13 +126,13 @@ static double trace_device(Bench *bench, bool shadow)
     for (size_t i = 0; i < count; ++i)
         arguments[i] = bench->device[ids[i]];
     if (!opencl_buffer_write(bench->probe, bench->device[in], bench->buffers[in], (size_t)BUFFER_WORDS[in] * STRIDE))
-        fail("the OpenCL device takes no rays");
-    double begin = seconds_now();
+        bench_fail("the OpenCL device takes no rays");
+    double begin = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (!opencl_probe_launch(bench->probe, shadow ? "trace_shadow" : "trace_closest", arguments, count, ITEMS, &wall))
-        fail("the OpenCL device does not trace");
-    double seconds = seconds_now() - begin;
+        bench_fail("the OpenCL device does not trace");
+    double seconds = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
     if (!opencl_buffer_read(bench->probe, bench->device[out], bench->buffers[out], (size_t)BUFFER_WORDS[out] * STRIDE))
-        fail("the OpenCL device returns no hits");
+        bench_fail("the OpenCL device returns no hits");
     return seconds;
 }
 
@@ -157,7 +141,7 @@ static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
 {
     if (path == PATH_OPENCL)
         return trace_device(bench, shadow);
-    double begin = seconds_now();
+    double begin = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
     if (path == PATH_C)
         kernel_run(shadow ? KERNEL_trace_shadow : KERNEL_trace_closest, bench->buffers, NULL, ITEMS);
     else if (shadow)
@@ -165,7 +149,7 @@ static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
     else
         *traced = rays_embree_trace_closest(bench->rays, bench->buffers[BUFFER_RAYS], bench->buffers[BUFFER_HITS],
                                             ITEMS, STRIDE);
-    return seconds_now() - begin;
+    return bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
 }
 
 static void trace_step(Bench *bench, bool shadow)
@@ -174,7 +158,7 @@ static void trace_step(Bench *bench, bool shadow)
     size_t words = (size_t)BUFFER_WORDS[out] * STRIDE;
     uint *before = malloc(words * sizeof *before), *first = malloc(words * sizeof *first), traced = 0;
     if (!before || !first)
-        fail("out of memory");
+        bench_fail("out of memory");
     memcpy(before, bench->buffers[out], words * sizeof *before);
     for (int path = 0; path < PATH_COUNT; ++path) {
         double best = HUGE_VAL;
@@ -225,7 +209,7 @@ int main(int argc, char **argv)
 {
     setenv("POCL_KERNEL_CACHE", "0", 0);
     if (argc < 3)
-        fail("usage: bench_bvh SHARED_FOLDER SCENE.pbrt ...");
+        bench_fail("usage: bench_bvh SHARED_FOLDER SCENE.pbrt ...");
     printf("scene\trays\tpath\tMrays/s\tratio\n");
     for (int i = 2; i < argc; ++i)
         scene_bench(argv[1], argv[i]);

@@ -6,6 +6,8 @@
 # does meets all of them.
 # usage: bench_opencl.sh TWINLIGHT [SCENE...]; DEVICE: the device (default 0)
 set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
 
 RUNS=${RUNS:-3}
 SECONDS_EACH=${SECONDS_EACH:-5}
@@ -13,17 +15,6 @@ DEPTH=${DEPTH:-10}
 DEVICE=${DEVICE:-0}
 twinlight=$1
 shift
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT INT TERM
-
-# number KEY FILE: the first number behind "KEY": in a statistics file.
-number() {
-    sed -n "s/.*\"$1\": *\\([0-9.eE+-]*\\).*/\\1/p" "$2" | head -n 1
-}
-
-median() {
-    sort -g | awk '{ v[NR] = $1 } END { print (NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2) }'
-}
 
 # run NAME SCENE OPTION...: renders once, statistics in $folder/NAME.$run.json
 run() {
@@ -49,20 +40,18 @@ rays() {
 }
 
 threads=$(nproc)
+head_print
 # All that the driver says of itself; of several devices, that of the one which is measured.
 driver=$("$twinlight" devices --json | awk -F'": ' -v device="$DEVICE" '
     /^  "/ { opencl = /"opencl"/ }
     /"index"/ { found = $2 + 0 "" == device }
     /"name"/ { found = found || index(tolower($2), tolower(device)) }
     /"version"/ && opencl && found { gsub(/^"|",$/, "", $2); print $2; exit }')
-printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-printf '# compiler\t%s\n' "$("${CC:-cc}" --version | head -n 1)"
-printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$threads"
 printf '# driver\t%s\n' "$driver"
 printf 'scene\tdevice\topencl samples/s\twithout overlap\tfilm on device\tcpu samples/s\topencl/cpu\topencl rays/s\t'
 printf 'cpu rays/s\n'
 for scene in "$@"; do
-    name=$(basename "$(dirname "$scene")")/$(basename "$scene")
+    name=$(scene_name "$scene")
     # The kernels are built before anything is timed.
     "$twinlight" render --quiet --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
     for run in $(seq "$RUNS"); do

@@ -5,6 +5,7 @@
  * Output: one line a scene, kind and path, tab-separated. `ratio` is time relative to `user`.
  * Usage: bench_rays [RAYS] */
 #include "backend.h"
+#include "bench_util.h"
 #include "rays_embree.h"
 #include "ray.h"
 #include "rng.h"
@@ -16,25 +17,9 @@
 #include <embree3/rtcore.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define REPEATS 5
-
-static double seconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void fail(const char *what)
-{
-    fprintf(stderr, "bench_rays: %s\n", what);
-    exit(EXIT_FAILURE);
-}
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
@@ -58,7 +43,7 @@ static void scene_star(BenchScene *bench, uint rings, uint sectors, float rough)
     bench->positions = calloc((size_t)(rings + 1) * sectors, sizeof *bench->positions);
     bench->indices = calloc((size_t)rings * sectors * 6, sizeof *bench->indices);
     if (!bench->positions || !bench->indices)
-        fail("out of memory");
+        bench_fail("out of memory");
     for (uint i = 0; i <= rings; ++i)
         for (uint j = 0; j < sectors; ++j) {
             float theta = PI * (float)i / (float)rings, phi = 2.0f * PI * (float)j / (float)sectors;
@@ -99,7 +84,7 @@ static void scene_room(BenchScene *bench)
     bench->positions = calloc(24, sizeof *bench->positions);
     bench->indices = calloc(36 * 3, sizeof *bench->indices);
     if (!bench->positions || !bench->indices)
-        fail("out of memory");
+        bench_fail("out of memory");
     add_box(bench, vec3(-1.0f, -1.0f, -1.0f), vec3(1.0f, 1.0f, 1.0f));
     add_box(bench, vec3(-0.7f, -1.0f, -0.6f), vec3(-0.1f, 0.2f, 0.0f));
     add_box(bench, vec3(0.1f, -1.0f, 0.0f), vec3(0.7f, -0.4f, 0.6f));
@@ -128,7 +113,7 @@ static void scene_prepare(BenchScene *bench)
     if (!scene_add_material(scene, &diffuse, &material, &error) || !scene_add_light(scene, &light, &error) ||
         !scene_add_mesh(scene, &mesh, (Shape){.alpha = NONE, .first_light = NONE}, NULL, 0, &error) ||
         !scene_finish(scene, &error))
-        fail(error.message);
+        bench_fail(error.message);
     bench->backend = scene_backend_view(scene);
 }
 
@@ -237,7 +222,7 @@ static RaySet rays_make(const BenchScene *bench, const RaysEmbree *rays, uint co
     set.shadow = malloc((size_t)set.count * SHADOW_WORDS * sizeof(uint));
     set.hits = malloc((size_t)set.count * HIT_WORDS * sizeof(uint));
     if (!set.closest || !set.shadow || !set.hits)
-        fail("out of memory");
+        bench_fail("out of memory");
     SceneView view = scene_view(bench->backend.frame, bench->backend.geometry, bench->backend.tables, NULL);
     Ray ray = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, FLOAT_MAX};
     Vec3 light = vec3(0.1f, 0.75f, -0.1f);
@@ -304,7 +289,7 @@ static void trace_shadow_bare(RTCScene scene, uint *words)
 /* Seconds for the whole set by one path: rays (the shared one) or scene (a bare one). */
 static double set_trace(const RaySet *set, const RaysEmbree *rays, RTCScene scene, bool shadow)
 {
-    double begin = seconds_now();
+    double begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (uint block = 0; block < set->count / STRIDE; ++block) {
         uint *closest = set->closest + (size_t)block * RAY_WORDS * STRIDE;
         uint *shadows = set->shadow + (size_t)block * SHADOW_WORDS * STRIDE;
@@ -318,25 +303,25 @@ static double set_trace(const RaySet *set, const RaysEmbree *rays, RTCScene scen
         else
             trace_closest_bare(scene, closest, hits);
     }
-    return seconds_now() - begin;
+    return bench_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
 }
 
 static void scene_bench(BenchScene *bench, uint count)
 {
     Error error = {0};
     scene_prepare(bench);
-    double begin = seconds_now();
+    double begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     RaysEmbree *rays = rays_embree_create(&bench->backend, 2, &error);
-    double build = seconds_now() - begin;
+    double build = bench_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
     if (!rays)
-        fail(error.message);
+        bench_fail(error.message);
     RTCDevice device = rtcNewDevice("threads=2,set_affinity=0");
-    begin = seconds_now();
+    begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     RTCScene user = bare_scene(device, bench, false);
-    double build_user = seconds_now() - begin;
-    begin = seconds_now();
+    double build_user = bench_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+    begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     RTCScene native = bare_scene(device, bench, true);
-    double build_native = seconds_now() - begin;
+    double build_native = bench_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
     RaySet set = rays_make(bench, rays, count);
     const char *names[3] = {"shared", "user", "native"};
     const double builds[3] = {build, build_user, build_native};

@@ -3,6 +3,8 @@
 # queries for each scene, scaling from one thread to all, and the loading time of a million triangles. Every figure is
 # the median of RUNS runs. usage: bench_render.sh TWINLIGHT MAKE_PLY [SCENE...]
 set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
 
 RUNS=${RUNS:-3}
 SECONDS_EACH=${SECONDS_EACH:-5}
@@ -10,18 +12,7 @@ DEPTH=${DEPTH:-10}
 twinlight=$1
 make_ply=$2
 shift 2
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT INT TERM
 cores=$(nproc)
-
-# number KEY FILE: the first number behind "KEY": in a statistics file.
-number() {
-    sed -n "s/.*\"$1\": *\\([0-9.eE+-]*\\).*/\\1/p" "$2" | head -n 1
-}
-
-median() {
-    sort -g | awk '{ v[NR] = $1 } END { print (NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2) }'
-}
 
 # runs SCENE THREADS: renders RUNS times, statistics in $folder/run.N.json
 runs() {
@@ -40,13 +31,11 @@ figure() {
     done | median
 }
 
-printf '# commit\t%s\n' "$(git -C "$(dirname "$0")" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-printf '# compiler\t%s\n' "$("${CC:-cc}" --version | head -n 1)"
-printf '# cpu\t%s, %s cores\n' "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1)" "$cores"
+head_print
 printf '# setting\t%s segments, %s s a run, median of %s runs\n' "$DEPTH" "$SECONDS_EACH" "$RUNS"
 printf 'scene\tthreads\tsamples/s\trays/s\tray share\tscaling per core\n'
 for scene in "$@"; do
-    name=$(basename "$(dirname "$scene")")/$(basename "$scene")
+    name=$(scene_name "$scene")
     runs "$scene" 1
     single=$(figure samples_per_second)
     for threads in 1 "$cores"; do

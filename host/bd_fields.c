@@ -36,18 +36,3 @@ const StateField BD_FIELDS[IB_FIELD_COUNT] = {
     {BUFFER_PATHS, IB_FIRST_RATIO, 1, true, "ratio of the light's point"},
     {BUFFER_PATHS, IB_FIRST_DELTA, 1, false, "whether the first vertex is a delta"},
 };
-
-void recorder_step(Recorder *recorder, StepKind kind)
-{
-    recorder->steps[recorder->count++] = (Step){.kind = kind};
-}
-
-void recorder_kernel(Recorder *recorder, unsigned kernel, bool live_only)
-{
-    recorder->steps[recorder->count++] = (Step){.kind = STEP_KERNEL, .kernel = kernel, .live_only = live_only};
-}
-
-void recorder_skip(Recorder *recorder, size_t target)
-{
-    recorder->steps[recorder->count++] = (Step){.kind = STEP_SKIP_IF_IDLE, .target = (unsigned)target};
-}

@@ -6,7 +6,6 @@
 #include "json.h"
 #include "metrics.h"
 #include "option_values.h"
-#include "options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,18 +14,16 @@
 
 typedef struct CompareCommand {
     bool json;
-    bool help;
     int blocks;
     const char *output; /* error image, NULL: none */
 } CompareCommand;
 
-enum { OPTION_OUTPUT, OPTION_BLOCKS, OPTION_JSON, OPTION_HELP };
+enum { OPTION_OUTPUT, OPTION_BLOCKS, OPTION_JSON };
 
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE", "write an error image (.exr or .png)"},
     [OPTION_BLOCKS] = {"blocks", 0, "N", "compare the means of N x N blocks (default 16)"},
     [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
-    [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
 };
 
 static const OptionTable TABLE = {
@@ -59,11 +56,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
             return false;
         command->blocks = (int)blocks;
         return true;
-    case OPTION_JSON:
-        command->json = true;
-        return true;
     default:
-        command->help = true;
+        command->json = true;
         return true;
     }
 }
@@ -166,12 +160,9 @@ int cmd_compare(int argc, char **argv, Error *error)
 {
     CompareCommand command = {.blocks = 16};
     int first = 0;
-    if (!options_parse(&TABLE, argc, argv, option_set, &command, &first, error))
-        return EXIT_USAGE;
-    if (command.help) {
-        options_help(&TABLE, stdout);
-        return EXIT_OK;
-    }
+    OptionsEnd end = options_parse(&TABLE, argc, argv, option_set, &command, &first, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
     if (argc - first != 2) {
         error_set(error, argc - first < 2 ? "compare needs two images" : "compare takes only two images");
         error_fix(error, "write twinlight compare IMAGE REFERENCE");

@@ -2,23 +2,12 @@
 #include "command.h"
 
 #include "json.h"
-#include "options.h"
 
 #include <stdlib.h>
 
 #define DEVICES_MAX 64
 
-typedef struct DevicesCommand {
-    bool json;
-    bool help;
-} DevicesCommand;
-
-enum { OPTION_JSON, OPTION_HELP };
-
-static const OptionSpec SPECS[] = {
-    [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
-    [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
-};
+static const OptionSpec SPECS[] = {{"json", 0, NULL, "print JSON"}};
 
 static const OptionTable TABLE = {
     "devices",
@@ -31,11 +20,11 @@ static const OptionTable TABLE = {
 
 static bool option_set(void *context, int index, const char *value, Error *error)
 {
-    DevicesCommand *command = context;
+    bool *json = context;
+    (void)index;
     (void)value;
     (void)error;
-    bool *flags[] = {&command->json, &command->help};
-    *flags[index] = true;
+    *json = true;
     return true;
 }
 
@@ -123,14 +112,11 @@ static void devices_print(const BackendTable *backends, bool as_json, BackendDev
 
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    DevicesCommand command = {0};
+    bool json = false;
     int first = 0;
-    if (!options_parse(&TABLE, argc, argv, option_set, &command, &first, error))
-        return EXIT_USAGE;
-    if (command.help) {
-        options_help(&TABLE, stdout);
-        return EXIT_OK;
-    }
+    OptionsEnd end = options_parse(&TABLE, argc, argv, option_set, &json, &first, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
     if (first < argc) {
         error_set(error, "devices takes no file: %s", argv[first]);
         error_fix(error, "write twinlight devices");
@@ -141,7 +127,7 @@ int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *erro
         error_memory(error, DEVICES_MAX * sizeof *devices, "the list of devices");
         return EXIT_FAILED;
     }
-    devices_print(backends, command.json, devices);
+    devices_print(backends, json, devices);
     free(devices);
     return EXIT_OK;
 }

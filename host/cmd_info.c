@@ -3,25 +3,20 @@
 
 #include "json.h"
 #include "log.h"
-#include "options.h"
 #include "pbrt_import.h"
 #include "scene.h"
 #include "scene_summary.h"
 
-#include <string.h>
-
 typedef struct InfoCommand {
     bool json;
     bool lenient;
-    bool help;
 } InfoCommand;
 
-enum { OPTION_JSON, OPTION_LENIENT, OPTION_HELP };
+enum { OPTION_JSON, OPTION_LENIENT };
 
 static const OptionSpec SPECS[] = {
     [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
     [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
-    [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
 };
 
 static const OptionTable TABLE = {
@@ -34,17 +29,16 @@ static bool option_set(void *context, int index, const char *value, Error *error
     InfoCommand *command = context;
     (void)value;
     (void)error;
-    bool *flags[] = {&command->json, &command->lenient, &command->help};
+    bool *flags[] = {&command->json, &command->lenient};
     *flags[index] = true;
     return true;
 }
 
 static int info_print(const InfoCommand *command, const char *path, Error *error)
 {
-    ImportOptions options = {.lenient = command->lenient};
     Scene scene;
     scene_init(&scene);
-    bool loaded = pbrt_import(path, &options, &scene, error) && (scene_finish(&scene, error) || error_in(error, path));
+    bool loaded = pbrt_load(path, command->lenient, &scene, error);
     if (loaded) {
         SceneSummary summary;
         scene_summary(&scene, &summary);
@@ -60,18 +54,11 @@ static int info_print(const InfoCommand *command, const char *path, Error *error
 int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error)
 {
     InfoCommand command = {0};
+    const char *scene;
     int first = 0;
     (void)backends;
-    if (!options_parse(&TABLE, argc, argv, option_set, &command, &first, error))
-        return EXIT_USAGE;
-    if (command.help) {
-        options_help(&TABLE, stdout);
-        return EXIT_OK;
-    }
-    if (argc - first != 1) {
-        error_set(error, first >= argc ? "no scene is given" : "more than one scene");
-        error_fix(error, "write twinlight info SCENE");
-        return EXIT_USAGE;
-    }
-    return info_print(&command, argv[first], error);
+    OptionsEnd end = options_parse(&TABLE, argc, argv, option_set, &command, &first, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
+    return options_scene(&TABLE, argc, argv, first, &scene, error) ? info_print(&command, scene, error) : EXIT_USAGE;
 }

@@ -16,6 +16,17 @@
 #include <math.h>
 #include <string.h>
 
+static const RenderOptionSet OPTIONS = {
+    .command = "render",
+    .usage = "render [OPTION]... SCENE",
+    .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
+    .footer = "SIGINT and SIGTERM end the rendering early; what is there is written and the exit status is 130.\n"
+              "More: man twinlight-render.",
+    .output_ending = ".exr",
+    .depth_low = 1,
+    .depth_high = 65535,
+};
+
 /* One rendering from command line to files. */
 typedef struct RenderJob {
     const RenderCommand *command;
@@ -65,11 +76,15 @@ static bool settings_override(RenderJob *job, Error *error)
     return scene_film_set(&job->scene, size[0], size[1], crop, error);
 }
 
-/* Whether --strategy and --heuristic mean something to the integrator. */
+/* Whether --strategy, --heuristic and --unweighted mean something to the integrator. */
 static bool strategy_check(const RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
+    if (command->unweighted && !command->only_strategy) {
+        error_set(error, "--unweighted without --strategy would count every path several times");
+        return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
+    }
     if (option && job->integrator == integrator_pt()) {
         error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
         return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
@@ -121,9 +136,7 @@ static bool outputs_name(RenderJob *job, Error *error)
 
 static bool scene_load(RenderJob *job, Error *error)
 {
-    ImportOptions options = {.lenient = job->command->lenient};
-    return pbrt_import(job->command->scene, &options, &job->scene, error) &&
-           (scene_finish(&job->scene, error) || error_in(error, job->command->scene));
+    return pbrt_load(job->command->scene, job->command->lenient, &job->scene, error);
 }
 
 static bool backend_build(RenderJob *job, Error *error)
@@ -330,13 +343,10 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command;
-    if (!render_options_parse(&command, backends, argc, argv, error))
-        return EXIT_USAGE;
-    if (command.help) {
-        render_options_help(stdout);
-        return EXIT_OK;
-    }
+    RenderCommand command = {.png = true, .integrator = "pt"};
+    OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
     log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
     RenderJob job;
     memset(&job, 0, sizeof job);

@@ -3,12 +3,19 @@
 #define TWINLIGHT_COMMAND_H
 
 #include "backend.h"
+#include "options.h"
 
 /* Exit statuses. */
 #define EXIT_OK 0
 #define EXIT_FAILED 1 /* something outside the program was not as it should be */
 #define EXIT_USAGE 2 /* the command line was not understood */
 #define EXIT_STOPPED 130 /* ended early by SIGINT or SIGTERM, output written */
+
+/* The status of a command whose options did not come to OPTIONS_READ. */
+static inline int options_status(OptionsEnd end)
+{
+    return end == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE;
+}
 
 /* A backend that this build lacks; an array of them ends with name NULL. */
 typedef struct BackendLeftOut {

@@ -3,27 +3,10 @@
 #include "bd_state.h"
 #include "integrator.h"
 #include "kernel_list.h"
-
-#include <assert.h>
-#include <stdlib.h>
+#include "step_recorder.h"
 
 /* Bits of BD_LIGHT_DELTA; also what vertices and pairs are worth storing and making. */
 #define BDPT_DEPTH_LIMIT 31
-
-/* `segments` segments of a walk; nothing is drawn at the last vertex. */
-static void record_walk(Recorder *recorder, uint segments)
-{
-    size_t end = recorder->count + (size_t)segments * 4 - 2;
-    for (uint i = 1; i <= segments; ++i) {
-        recorder_step(recorder, STEP_TRACE_CLOSEST);
-        recorder_kernel(recorder, KERNEL_bd_shade_hits, true);
-        if (i == segments)
-            break;
-        recorder_kernel(recorder, KERNEL_bd_extend_walks, true);
-        recorder_skip(recorder, end);
-    }
-    assert(recorder->count == end);
-}
 
 static void record_connection(Recorder *recorder, uint t)
 {
@@ -49,26 +32,19 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     uint max_depth = frame->max_depth;
     /* Two walks, their beginnings and the splat, and four steps a pair. */
     size_t capacity = 8 * (size_t)max_depth + 9 + 2 * (size_t)max_depth * (max_depth + 1);
-    Recorder recorder = {malloc(capacity * sizeof(Step)), 0};
-    if (!recorder.steps)
-        return error_memory(error, capacity * sizeof(Step), "the list of steps");
+    Recorder recorder;
+    if (!recorder_init(&recorder, capacity, error))
+        return false;
     recorder_kernel(&recorder, KERNEL_bd_start_light, false);
     if (max_depth > 1)
-        record_walk(&recorder, max_depth - 1);
+        recorder_walk(&recorder, max_depth - 1, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
     recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
-    record_walk(&recorder, max_depth);
+    recorder_walk(&recorder, max_depth, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
     record_connections(&recorder, max_depth);
     if (frame->pool)
         recorder_kernel(&recorder, KERNEL_pool_end, false);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
-    assert(recorder.count <= capacity);
-    *list = (StepList){
-        .steps = recorder.steps, .count = recorder.count, .fields = BD_FIELDS, .field_count = BD_FIELD_COUNT};
-    list->words_per_item[BUFFER_PATHS] = BD_HEADER_WORDS;
-    list->words_per_item[BUFFER_RAYS] = RAY_WORDS;
-    list->words_per_item[BUFFER_HITS] = HIT_WORDS;
-    list->words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;
-    list->words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
+    *list = recorder_list(&recorder, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);
     list->words_per_item[BUFFER_VERTICES] = 2 * max_depth * VERTEX_WORDS;
     list->words_per_item[BUFFER_DENSITIES] = 2 * max_depth * DENSITY_WORDS;
     return true;

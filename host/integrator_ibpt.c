@@ -4,9 +4,9 @@
 #include "ib_weight.h"
 #include "integrator.h"
 #include "kernel_list.h"
+#include "step_recorder.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 /* Random numbers of connections have 64 places a depth (bd_random.h). */
 #define IBPT_DEPTH_LIMIT 63
@@ -55,23 +55,16 @@ static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->max_depth;
     size_t capacity = 4 + 2 * (size_t)max_depth * SEGMENT_STEPS_MAX;
-    Recorder recorder = {malloc(capacity * sizeof(Step)), 0};
-    if (!recorder.steps)
-        return error_memory(error, capacity * sizeof(Step), "the list of steps");
+    Recorder recorder;
+    if (!recorder_init(&recorder, capacity, error))
+        return false;
     recorder_kernel(&recorder, KERNEL_ib_start_light, false);
     if (max_depth > 1)
         record_light(&recorder, max_depth - 1);
     recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
     record_camera(&recorder, max_depth);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
-    assert(recorder.count <= capacity);
-    *list = (StepList){
-        .steps = recorder.steps, .count = recorder.count, .fields = BD_FIELDS, .field_count = IB_FIELD_COUNT};
-    list->words_per_item[BUFFER_PATHS] = IB_HEADER_WORDS;
-    list->words_per_item[BUFFER_RAYS] = RAY_WORDS;
-    list->words_per_item[BUFFER_HITS] = HIT_WORDS;
-    list->words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;
-    list->words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
+    *list = recorder_list(&recorder, IB_HEADER_WORDS, BD_FIELDS, IB_FIELD_COUNT);
     list->words_per_item[BUFFER_VERTICES] = VERTEX_WORDS;
     return true;
 }

@@ -3,29 +3,28 @@
 
 #include "kernel_list.h"
 #include "path_state.h"
+#include "step_recorder.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 /* Two steps around the loop, seven in it, two in its last turn. */
-static size_t steps_record(Step *steps, uint max_depth)
+static void steps_record(Recorder *recorder, uint max_depth)
 {
-    size_t n = 0, last = 1 + (size_t)(max_depth - 1) * 7 + 2;
-    steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_start_paths};
+    size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2;
+    recorder_kernel(recorder, KERNEL_pt_start_paths, false);
     for (uint depth = 1;; ++depth) {
-        steps[n++] = (Step){.kind = STEP_TRACE_CLOSEST};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_shade_hits, .live_only = true};
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_pt_shade_hits, true);
         if (depth == max_depth)
             break;
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_sample_lights, .live_only = true};
-        steps[n++] = (Step){.kind = STEP_TRACE_SHADOW};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_add_lights, .live_only = true};
-        steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_extend_paths, .live_only = true};
-        steps[n++] = (Step){.kind = STEP_SKIP_IF_IDLE, .target = (unsigned)last};
+        recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
+        recorder_step(recorder, STEP_TRACE_SHADOW);
+        recorder_kernel(recorder, KERNEL_pt_add_lights, true);
+        recorder_kernel(recorder, KERNEL_pt_extend_paths, true);
+        recorder_skip(recorder, last);
     }
-    assert(n == last);
-    steps[n++] = (Step){.kind = STEP_KERNEL, .kernel = KERNEL_pt_splat};
-    return n;
+    assert(recorder->count == last);
+    recorder_kernel(recorder, KERNEL_pt_splat, false);
 }
 
 #define PATH_FIELD(field, words, is_float, name)                                                                       \
@@ -61,19 +60,11 @@ static const StateField PATH_FIELDS[] = {
 
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
-    uint max_depth = frame->max_depth;
-    size_t capacity = 4 + (size_t)max_depth * 7;
-    Step *steps = malloc(capacity * sizeof *steps);
-    if (!steps)
-        return error_memory(error, capacity * sizeof *steps, "the list of steps");
-    *list = (StepList){.steps = steps, .count = steps_record(steps, max_depth)};
-    list->words_per_item[BUFFER_PATHS] = PATH_WORDS;
-    list->words_per_item[BUFFER_RAYS] = RAY_WORDS;
-    list->words_per_item[BUFFER_HITS] = HIT_WORDS;
-    list->words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;
-    list->words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
-    list->fields = PATH_FIELDS;
-    list->field_count = sizeof PATH_FIELDS / sizeof PATH_FIELDS[0];
+    Recorder recorder;
+    if (!recorder_init(&recorder, 4 + (size_t)frame->max_depth * 7, error))
+        return false;
+    steps_record(&recorder, frame->max_depth);
+    *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
     return true;
 }
 

@@ -2,10 +2,19 @@
 
 #include <assert.h>
 #include <getopt.h>
+#include <stdio.h>
 #include <string.h>
 
 /* getopt_long's return value for option i without a letter of its own. */
 #define OPTION_CODE 256
+
+static const OptionSpec HELP = {"help", 'h', NULL, "print this and exit"};
+
+/* Option i, which is --help behind all others. */
+static const OptionSpec *spec_at(const OptionTable *table, int i)
+{
+    return i < table->count ? &table->specs[i] : &HELP;
+}
 
 /* getopt's two tables. */
 typedef struct GetoptTables {
@@ -22,12 +31,12 @@ static int spec_argument(const OptionSpec *spec)
 
 static void getopt_tables_fill(GetoptTables *tables, const OptionTable *table)
 {
-    assert(table->count <= OPTION_SPECS_MAX);
+    assert(table->count < OPTION_SPECS_MAX);
     memset(tables, 0, sizeof *tables);
     char *letter = tables->letters;
     *letter++ = ':'; /* tells a missing value from an unknown option */
-    for (int i = 0; i < table->count; ++i) {
-        const OptionSpec *spec = &table->specs[i];
+    for (int i = 0; i <= table->count; ++i) {
+        const OptionSpec *spec = spec_at(table, i);
         int argument = spec_argument(spec);
         tables->longs[i] = (struct option){spec->name, argument, NULL, OPTION_CODE + i};
         if (!spec->letter)
@@ -42,59 +51,36 @@ static int spec_index(const OptionTable *table, int code)
 {
     if (code >= OPTION_CODE)
         return code - OPTION_CODE;
-    for (int i = 0; i < table->count; ++i)
-        if (table->specs[i].letter == code)
+    for (int i = 0; i <= table->count; ++i)
+        if (spec_at(table, i)->letter == code)
             return i;
     return -1;
 }
 
 /* What getopt_long refused: `code` is its return value, `word` the argument it was reading. */
-static bool options_refuse(const OptionTable *table, int code, const char *word, Error *error)
+static void options_refuse(const OptionTable *table, int code, const char *word, Error *error)
 {
     int index = optopt ? spec_index(table, optopt) : -1;
+    const OptionSpec *spec = index < 0 ? NULL : spec_at(table, index);
     if (code == ':') {
-        error_set(error, "option --%s needs a value", table->specs[index].name);
-        return error_fix(error, "write --%s=%s", table->specs[index].name, table->specs[index].argument);
+        error_set(error, "option --%s needs a value", spec->name);
+        error_fix(error, "write --%s=%s", spec->name, spec->argument);
+        return;
     }
-    if (index >= 0)
-        error_set(error, "option --%s takes no value: %s", table->specs[index].name, word);
+    if (spec)
+        error_set(error, "option --%s takes no value: %s", spec->name, word);
     else if (optopt)
         error_set(error, "unknown option -%c", optopt);
     else
         error_set(error, "unknown or ambiguous option %s", word);
-    return error_fix(error, "see twinlight %s --help", table->command);
+    error_fix(error, "see twinlight %s --help", table->command);
 }
 
-bool options_parse(const OptionTable *table, int argc, char **argv, OptionSetter set, void *context, int *first_operand,
-                   Error *error)
+static void help_print(const OptionTable *table)
 {
-    GetoptTables tables;
-    getopt_tables_fill(&tables, table);
-    opterr = 0;
-    optind = 0; /* glibc: start afresh */
-    for (;;) {
-        int code = getopt_long(argc, argv, tables.letters, tables.longs, NULL);
-        if (code == -1)
-            break;
-        if (code == '?' || code == ':')
-            return options_refuse(table, code, argv[optind - 1], error);
-        int index = spec_index(table, code);
-        if (optarg && !optarg[0]) {
-            error_set(error, "option --%s has an empty value", table->specs[index].name);
-            return error_fix(error, "write --%s=%s", table->specs[index].name, table->specs[index].argument);
-        }
-        if (!set(context, index, optarg, error))
-            return false;
-    }
-    *first_operand = optind;
-    return true;
-}
-
-void options_help(const OptionTable *table, FILE *stream)
-{
-    fprintf(stream, "Usage: twinlight %s\n%s\n\n", table->usage, table->summary);
-    for (int i = 0; i < table->count; ++i) {
-        const OptionSpec *spec = &table->specs[i];
+    printf("Usage: twinlight %s\n%s\n\n", table->usage, table->summary);
+    for (int i = 0; i <= table->count; ++i) {
+        const OptionSpec *spec = spec_at(table, i);
         const char *argument = spec->argument ? spec->argument : "";
         bool optional = argument[0] == '[';
         char left[64];
@@ -103,8 +89,56 @@ void options_help(const OptionTable *table, FILE *stream)
             snprintf(letter, sizeof letter, "-%c, ", spec->letter);
         snprintf(left, sizeof left, "%s--%s%s%s%s", letter, spec->name, optional ? "[" : "", argument[0] ? "=" : "",
                  optional ? argument + 1 : argument);
-        fprintf(stream, "  %-28s  %s\n", left, spec->help);
+        printf("  %-28s  %s\n", left, spec->help);
     }
     if (table->footer)
-        fprintf(stream, "\n%s\n", table->footer);
+        printf("\n%s\n", table->footer);
+}
+
+OptionsEnd options_parse(const OptionTable *table, int argc, char **argv, OptionSetter set, void *context,
+                         int *first_operand, Error *error)
+{
+    GetoptTables tables;
+    bool help = false;
+    getopt_tables_fill(&tables, table);
+    opterr = 0;
+    optind = 0; /* glibc: start afresh */
+    for (;;) {
+        int code = getopt_long(argc, argv, tables.letters, tables.longs, NULL);
+        if (code == -1)
+            break;
+        if (code == '?' || code == ':') {
+            options_refuse(table, code, argv[optind - 1], error);
+            return OPTIONS_WRONG;
+        }
+        int index = spec_index(table, code);
+        if (optarg && !optarg[0]) {
+            error_set(error, "option --%s has an empty value", table->specs[index].name);
+            error_fix(error, "write --%s=%s", table->specs[index].name, table->specs[index].argument);
+            return OPTIONS_WRONG;
+        }
+        if (index == table->count)
+            help = true;
+        else if (!set(context, index, optarg, error))
+            return OPTIONS_WRONG;
+    }
+    *first_operand = optind;
+    if (help)
+        help_print(table);
+    return help ? OPTIONS_HELPED : OPTIONS_READ;
+}
+
+bool options_scene(const OptionTable *table, int argc, char **argv, int first_operand, const char **scene, Error *error)
+{
+    if (first_operand >= argc) {
+        error_set(error, "no scene is given");
+        return error_fix(error, "write twinlight %s SCENE, e.g. twinlight %s scenes/cornell.pbrt", table->command,
+                         table->command);
+    }
+    if (first_operand + 1 < argc) {
+        error_set(error, "more than one scene: %s and %s", argv[first_operand], argv[first_operand + 1]);
+        return error_fix(error, "give one scene at a time; options come as --name=value");
+    }
+    *scene = argv[first_operand];
+    return true;
 }

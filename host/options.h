@@ -1,13 +1,12 @@
 /* Options and operands of a command line, GNU style: long options (which may be shortened while they stay unique), a
  * few letters, operands anywhere, "--" ends the options. One table describes a command's options to the parser and to
- * --help. */
+ * --help, which every command has. */
 #ifndef TWINLIGHT_OPTIONS_H
 #define TWINLIGHT_OPTIONS_H
 
 #include "error.h"
 
-#include <stdio.h>
-
+/* Of one command, --help among them. */
 #define OPTION_SPECS_MAX 32
 
 typedef struct OptionSpec {
@@ -22,18 +21,26 @@ typedef struct OptionTable {
     const char *usage; /* what follows "twinlight " */
     const char *summary;
     const OptionSpec *specs;
-    int count; /* <= OPTION_SPECS_MAX */
+    int count; /* < OPTION_SPECS_MAX */
     const char *footer; /* NULL or text after the options */
 } OptionTable;
 
 /* Takes option `index` of the table. `value` is NULL when none was given. */
 typedef bool (*OptionSetter)(void *context, int index, const char *value, Error *error);
 
+typedef enum OptionsEnd {
+    OPTIONS_WRONG, /* with an error */
+    OPTIONS_READ,
+    OPTIONS_HELPED /* --help was among them and the help has been printed on standard output */
+} OptionsEnd;
+
 /* Calls `set` for every option of argv[1 ...] in order and moves the operands to the end of argv, from
  * *first_operand on. Stops at the first failure. Not thread-safe (getopt_long). */
-bool options_parse(const OptionTable *table, int argc, char **argv, OptionSetter set, void *context, int *first_operand,
-                   Error *error);
+OptionsEnd options_parse(const OptionTable *table, int argc, char **argv, OptionSetter set, void *context,
+                         int *first_operand, Error *error);
 
-void options_help(const OptionTable *table, FILE *stream);
+/* The scene of a command that takes one: the only operand. */
+bool options_scene(const OptionTable *table, int argc, char **argv, int first_operand, const char **scene,
+                   Error *error);
 
 #endif

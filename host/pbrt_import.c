@@ -163,3 +163,9 @@ bool pbrt_import_text(const char *text, size_t length, const char *name, const c
     import_destroy(&im);
     return good;
 }
+
+bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)
+{
+    const ImportOptions options = {.lenient = lenient};
+    return pbrt_import(path, &options, scene, error) && (scene_finish(scene, error) || error_in(error, path));
+}

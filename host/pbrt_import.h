@@ -13,7 +13,10 @@ typedef struct ImportOptions {
  * says file:line:column. */
 bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error);
 
-/* The same from memory. `name` stands for the file's name in messages; `directory` is where names in the text lead
+/* The same, and scene_finish. */
+bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error);
+
+/* As pbrt_import, from memory. `name` stands for the file's name in messages; `directory` is where names in the text lead
  * from. */
 bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
                       const ImportOptions *options, Scene *scene, Error *error);

@@ -243,7 +243,7 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     *frame = scene->frame;
     frame->max_depth =
         (uint)(options->max_depth < integrator->depth_limit ? options->max_depth : integrator->depth_limit);
-    frame->strategies = options->strategies ? options->strategies : integrator->strategies;
+    frame->strategies = integrator->strategies;
     frame->mis_exponent = options->balance ? 1 : 2;
     frame->only_s = options->only_strategy ? options->strategy[0] : NONE;
     frame->only_t = options->only_strategy ? options->strategy[1] : NONE;

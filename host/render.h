@@ -27,7 +27,6 @@ typedef struct RenderOptions {
     double seconds; /* 0: no limit but `samples` */
     int max_depth; /* path segments, >= 1 */
     uint64_t seed;
-    unsigned strategies; /* STRATEGIES_*: fewer than the integrator's; 0: all of them */
     bool balance; /* balance heuristic; else the power heuristic */
     bool only_strategy; /* show one strategy alone: */
     unsigned strategy[2]; /* s, t */

@@ -6,36 +6,7 @@
 
 #include <string.h>
 
-enum {
-    OPTION_OUTPUT,
-    OPTION_INTEGRATOR,
-    OPTION_HEURISTIC,
-    OPTION_STRATEGY,
-    OPTION_UNWEIGHTED,
-    OPTION_SAMPLES,
-    OPTION_TIME,
-    OPTION_BACKEND,
-    OPTION_DEVICE,
-    OPTION_BATCH,
-    OPTION_FILM,
-    OPTION_THREADS,
-    OPTION_SEED,
-    OPTION_MAX_DEPTH,
-    OPTION_RESOLUTION,
-    OPTION_CROP,
-    OPTION_SAVE_EVERY,
-    OPTION_PNG,
-    OPTION_NO_PNG,
-    OPTION_EXPOSURE,
-    OPTION_STATS,
-    OPTION_TRACE,
-    OPTION_VERIFY,
-    OPTION_LENIENT,
-    OPTION_QUIET,
-    OPTION_HELP
-};
-
-static const OptionSpec SPECS[] = {
+static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
                            "algorithm: pt, path tracing (default), bdpt or ibpt, bidirectional"},
@@ -65,36 +36,23 @@ static const OptionSpec SPECS[] = {
                        "compare the backend's state with the CPU's bit for bit, instead of rendering"},
     [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
     [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
-    [OPTION_HELP] = {"help", 'h', NULL, "print this and exit"},
 };
-
-static const OptionTable TABLE = {
-    "render",
-    "render [OPTION]... SCENE",
-    "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
-    SPECS,
-    sizeof SPECS / sizeof SPECS[0],
-    "SIGINT and SIGTERM end the rendering early; what is there is written and the exit status is 130.\n"
-    "More: man twinlight-render.",
-};
-
-void render_options_help(FILE *stream)
-{
-    options_help(&TABLE, stream);
-}
 
 /* Parsing in progress. */
 typedef struct Parse {
     RenderCommand *command;
+    const RenderOptionSet *set;
+    OptionSpec specs[RENDER_OPTION_COUNT]; /* of the set */
     const char *backend; /* --backend; NULL: not given */
 } Parse;
 
 /* The options whose value is a number. */
-static bool number_set(RenderCommand *command, int index, const char *value, Error *error)
+static bool number_set(const Parse *parse, int option, const char *value, Error *error)
 {
+    RenderCommand *command = parse->command;
     uint64_t whole = 0;
-    const char *name = SPECS[index].name;
-    switch (index) {
+    const char *name = SPECS[option].name;
+    switch (option) {
     case OPTION_SAMPLES:
         return option_whole(name, value, 1, 0x7fffffff, &command->samples, error);
     case OPTION_SEED:
@@ -110,7 +68,7 @@ static bool number_set(RenderCommand *command, int index, const char *value, Err
         command->batch = (unsigned)whole;
         return true;
     case OPTION_MAX_DEPTH:
-        if (!option_whole(name, value, 1, 65535, &whole, error))
+        if (!option_whole(name, value, parse->set->depth_low, parse->set->depth_high, &whole, error))
             return false;
         command->max_depth = (int)whole;
         return true;
@@ -119,12 +77,12 @@ static bool number_set(RenderCommand *command, int index, const char *value, Err
     }
 }
 
-static bool path_set(const char **path, int index, const char *value, const char *ending, Error *error)
+static bool path_set(const char **path, int option, const char *value, const char *ending, Error *error)
 {
     *path = value;
     if (!ending || path_ends(value, ending))
         return true;
-    error_set(error, "--%s=%s: the name does not end in %s", SPECS[index].name, value, ending);
+    error_set(error, "--%s=%s: the name does not end in %s", SPECS[option].name, value, ending);
     return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
 }
 
@@ -150,19 +108,20 @@ static bool option_set(void *context, int index, const char *value, Error *error
 {
     Parse *parse = context;
     RenderCommand *command = parse->command;
-    switch (index) {
+    const int option = parse->set->uses ? (int)parse->set->uses[index].option : index;
+    switch (option) {
     case OPTION_OUTPUT:
-        return path_set(&command->output, index, value, ".exr", error);
+        return path_set(&command->output, option, value, parse->set->output_ending, error);
     case OPTION_STATS:
-        return path_set(&command->stats, index, value, NULL, error);
+        return path_set(&command->stats, option, value, NULL, error);
     case OPTION_TRACE:
-        return path_set(&command->trace, index, value, NULL, error);
+        return path_set(&command->trace, option, value, NULL, error);
     case OPTION_DEVICE:
         command->device = value;
         return true;
     case OPTION_PNG:
         command->png = true;
-        return !value || path_set(&command->png_path, index, value, ".png", error);
+        return !value || path_set(&command->png_path, option, value, ".png", error);
     case OPTION_NO_PNG:
         command->png = false;
         return true;
@@ -200,11 +159,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_QUIET:
         command->quiet = true;
         return true;
-    case OPTION_HELP:
-        command->help = true;
-        return true;
     default:
-        return number_set(command, index, value, error);
+        return number_set(parse, option, value, error);
     }
 }
 
@@ -248,29 +204,33 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
     return error_fix(error, "add --backend=opencl, or leave --%s out", option);
 }
 
-bool render_options_parse(RenderCommand *command, const BackendTable *backends, int argc, char **argv, Error *error)
+/* The set's options as a table; returns their number. */
+static int specs_fill(const RenderOptionSet *set, OptionSpec *specs)
 {
-    Parse parse = {command, NULL};
+    if (!set->uses) {
+        memcpy(specs, SPECS, sizeof SPECS);
+        return RENDER_OPTION_COUNT;
+    }
+    for (int i = 0; i < set->use_count; ++i) {
+        const RenderOptionUse *use = &set->uses[i];
+        specs[i] = SPECS[use->option];
+        specs[i].argument = use->argument ? use->argument : specs[i].argument;
+        specs[i].help = use->help ? use->help : specs[i].help;
+    }
+    return set->use_count;
+}
+
+OptionsEnd render_options_parse(RenderCommand *command, const RenderOptionSet *set, const BackendTable *backends,
+                                int argc, char **argv, Error *error)
+{
+    Parse parse = {.command = command, .set = set};
+    const OptionTable table = {set->command, set->usage, set->summary, parse.specs, specs_fill(set, parse.specs),
+                               set->footer};
     int first = 0;
-    memset(command, 0, sizeof *command);
-    command->png = true;
-    command->integrator = "pt";
-    if (!options_parse(&TABLE, argc, argv, option_set, &parse, &first, error))
-        return false;
-    if (command->help)
-        return true;
-    if (first >= argc) {
-        error_set(error, "no scene is given");
-        return error_fix(error, "write twinlight render SCENE, e.g. twinlight render scenes/cornell.pbrt");
-    }
-    if (first + 1 < argc) {
-        error_set(error, "more than one scene: %s and %s", argv[first], argv[first + 1]);
-        return error_fix(error, "render one scene at a time; options come as --name=value");
-    }
-    command->scene = argv[first];
-    if (command->unweighted && !command->only_strategy) {
-        error_set(error, "--unweighted without --strategy would count every path several times");
-        return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
-    }
-    return verify_alone(command, error) && backends_set(command, backends, parse.backend, error);
+    OptionsEnd end = options_parse(&table, argc, argv, option_set, &parse, &first, error);
+    if (end != OPTIONS_READ)
+        return end;
+    bool good = options_scene(&table, argc, argv, first, &command->scene, error) && verify_alone(command, error) &&
+                backends_set(command, backends, parse.backend, error);
+    return good ? OPTIONS_READ : OPTIONS_WRONG;
 }

@@ -1,12 +1,10 @@
-/* The command line of `twinlight render`. */
+/* The command line of `twinlight render`, and of commands that take a part of its options. */
 #ifndef TWINLIGHT_RENDER_OPTIONS_H
 #define TWINLIGHT_RENDER_OPTIONS_H
 
 #include "backend_choice.h"
 
-#include <stdio.h>
-
-/* Strings are borrowed from argv, NULL when not given; numbers are 0 when not given. */
+/* Strings are borrowed from argv. */
 typedef struct RenderCommand {
     const char *scene;
     const char *output; /* ends in .exr */
@@ -36,11 +34,53 @@ typedef struct RenderCommand {
     const char *trace;
     bool lenient;
     bool quiet;
-    bool help; /* nothing else is valid */
 } RenderCommand;
 
-bool render_options_parse(RenderCommand *command, const BackendTable *backends, int argc, char **argv, Error *error);
+typedef enum RenderOption {
+    OPTION_OUTPUT,
+    OPTION_INTEGRATOR,
+    OPTION_HEURISTIC,
+    OPTION_STRATEGY,
+    OPTION_UNWEIGHTED,
+    OPTION_SAMPLES,
+    OPTION_TIME,
+    OPTION_BACKEND,
+    OPTION_DEVICE,
+    OPTION_BATCH,
+    OPTION_FILM,
+    OPTION_THREADS,
+    OPTION_SEED,
+    OPTION_MAX_DEPTH,
+    OPTION_RESOLUTION,
+    OPTION_CROP,
+    OPTION_SAVE_EVERY,
+    OPTION_PNG,
+    OPTION_NO_PNG,
+    OPTION_EXPOSURE,
+    OPTION_STATS,
+    OPTION_TRACE,
+    OPTION_VERIFY,
+    OPTION_LENIENT,
+    OPTION_QUIET,
+    RENDER_OPTION_COUNT
+} RenderOption;
 
-void render_options_help(FILE *stream);
+/* An option as a command has it. */
+typedef struct RenderOptionUse {
+    RenderOption option;
+    const char *argument, *help; /* of OptionSpec; NULL: render's */
+} RenderOptionUse;
+
+typedef struct RenderOptionSet {
+    const char *command, *usage, *summary, *footer; /* of OptionTable */
+    const RenderOptionUse *uses; /* NULL: all options are taken as render has them */
+    int use_count;
+    const char *output_ending; /* of --output's value */
+    uint64_t depth_low, depth_high; /* of --max-depth */
+} RenderOptionSet;
+
+/* Fills in what is given; `command` holds what is meant where nothing is. */
+OptionsEnd render_options_parse(RenderCommand *command, const RenderOptionSet *set, const BackendTable *backends,
+                                int argc, char **argv, Error *error);
 
 #endif

@@ -82,6 +82,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene_finish.c \
 	host/scene_summary.c host/scene_summary.h \
 	host/stats.c host/stats.h \
+	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \

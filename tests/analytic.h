@@ -63,13 +63,22 @@ double analytic_fresnel(double cosine, double eta);
 /* RGB floats as a PFM file; row 0 on top. */
 void analytic_write_pfm(const char *path, int width, int height, const float *rgb);
 
-/* What an image of `width` x `height` RGB texels, row 0 at v = 1, has at (u, v), interpolated; wrap is pbrt's "repeat",
- * "clamp" or "black". */
-double analytic_bilinear(const float *rgb, int width, int height, double u, double v, int channel, const char *wrap);
+/* A small image of random colours below 0.9 (greys where `grey`), row 0 at v = 1, which is also written to a file, and
+ * what it has at (u, v), interpolated; wrap is pbrt's "repeat", "clamp" or "black". */
+enum {
+    ANALYTIC_MAP_WIDTH = 4,
+    ANALYTIC_MAP_HEIGHT = 3,
+    ANALYTIC_MAP_TEXELS = ANALYTIC_MAP_WIDTH * ANALYTIC_MAP_HEIGHT
+};
+extern float analytic_map[3 * ANALYTIC_MAP_TEXELS];
+void analytic_map_make(const char *path, bool grey);
+double analytic_map_at(double u, double v, int channel, const char *wrap);
 
-/* A pixel of a picture, and the middle of pixel (x, y) of n x n as (u, v) with v upwards. */
 double analytic_pixel(const RenderedImage *image, int x, int y, int channel);
-void analytic_middle(int x, int y, int n, double *u, double *v);
+
+/* Fails unless every pixel is what is expected where its middle is, (u, v) with v upwards, or but for `tolerance`. */
+typedef double AnalyticValue(const void *context, double u, double v, int channel);
+void analytic_compare(const RenderedImage *image, AnalyticValue *expected, const void *context, double tolerance);
 
 TCase *analytic_area_case(void);
 TCase *analytic_bumps_case(void);

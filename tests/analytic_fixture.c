@@ -156,35 +156,51 @@ void analytic_write_pfm(const char *path, int width, int height, const float *rg
     free(bytes);
 }
 
-static double texel(const float *rgb, int width, int height, int x, int y, int c, const char *wrap)
+double analytic_pixel(const RenderedImage *image, int x, int y, int channel)
 {
+    return (double)image->rgb[3 * (y * image->width + x) + channel];
+}
+
+void analytic_compare(const RenderedImage *image, AnalyticValue *expected, const void *context, double tolerance)
+{
+    for (int i = 0; i < 3 * image->width * image->height; ++i) {
+        int x = i / 3 % image->width, y = i / 3 / image->width;
+        double u = (x + 0.5) / image->width, v = 1.0 - (y + 0.5) / image->height;
+        double value = expected(context, u, v, i % 3);
+        if (!(fabs((double)image->rgb[i] - value) <= tolerance))
+            ck_abort_msg("channel %d of pixel %d %d is %g, not %g", i % 3, x, y, (double)image->rgb[i], value);
+    }
+}
+
+float analytic_map[3 * ANALYTIC_MAP_TEXELS];
+
+void analytic_map_make(const char *path, bool grey)
+{
+    unsigned state = 9;
+    for (int i = 0; i < 3 * ANALYTIC_MAP_TEXELS; ++i)
+        analytic_map[i] = grey && i % 3 > 0 ? analytic_map[i - 1] : (float)(0.9 * test_random_unit(&state));
+    analytic_write_pfm(path, ANALYTIC_MAP_WIDTH, ANALYTIC_MAP_HEIGHT, analytic_map);
+}
+
+static double texel(int x, int y, int c, const char *wrap)
+{
+    const int width = ANALYTIC_MAP_WIDTH, height = ANALYTIC_MAP_HEIGHT;
     if (strcmp(wrap, "black") == 0 && (x < 0 || x >= width || y < 0 || y >= height))
         return 0.0;
     if (strcmp(wrap, "clamp") == 0) {
         x = x < 0 ? 0 : x >= width ? width - 1 : x;
         y = y < 0 ? 0 : y >= height ? height - 1 : y;
     }
-    return (double)rgb[3 * ((y + 9 * height) % height * width + (x + 9 * width) % width) + c];
+    return (double)analytic_map[3 * ((y + 9 * height) % height * width + (x + 9 * width) % width) + c];
 }
 
-double analytic_bilinear(const float *rgb, int width, int height, double u, double v, int channel, const char *wrap)
+double analytic_map_at(double u, double v, int channel, const char *wrap)
 {
-    double x = u * width - 0.5, y = (1.0 - v) * height - 0.5, sum = 0.0;
+    double x = u * ANALYTIC_MAP_WIDTH - 0.5, y = (1.0 - v) * ANALYTIC_MAP_HEIGHT - 0.5, sum = 0.0;
     int i = (int)floor(x), j = (int)floor(y);
     for (int k = 0; k < 4; ++k) {
         double weight = (k % 2 ? x - i : 1.0 - (x - i)) * (k / 2 ? y - j : 1.0 - (y - j));
-        sum += weight * texel(rgb, width, height, i + k % 2, j + k / 2, channel, wrap);
+        sum += weight * texel(i + k % 2, j + k / 2, channel, wrap);
     }
     return sum;
-}
-
-double analytic_pixel(const RenderedImage *image, int x, int y, int channel)
-{
-    return (double)image->rgb[3 * (y * image->width + x) + channel];
-}
-
-void analytic_middle(int x, int y, int n, double *u, double *v)
-{
-    *u = (x + 0.5) / n;
-    *v = 1.0 - (y + 0.5) / n;
 }

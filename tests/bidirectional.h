@@ -71,17 +71,16 @@ void groups_block(const PictureGroups *picture, int x0, int y0, int x1, int y1, 
 /* Two-sided p-value of Welch's t-test for equal means of that block. */
 double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, int y0, int x1, int y1);
 
-/* All tests of a run fail together with probability 0.01 when nothing is wrong: about 40,000 values are compared. */
+/* All tests of a run fail together with probability 0.01 when nothing is wrong: fewer than 40,000 values are compared. */
 #define P_LIMIT 2.5e-7
 
 /* Compares the mean, a grid of blocks and (pixels = true) every pixel; fails with name and place. Prints a line with
  * the smallest p-value and the ratio of means. */
 void groups_compare(const char *name, const PictureGroups *got, const PictureGroups *expected, int grid, bool pixels);
 
-/* Samples are multiplied by $TWINLIGHT_TEST_EFFORT (default 1), for a longer look. */
-unsigned bidirectional_effort(void);
-
 TCase *bidirectional_weights_case(void);
+TCase *bidirectional_walks_case(void);
+TCase *bidirectional_running_case(void);
 TCase *bidirectional_strategies_case(void);
 TCase *bidirectional_sums_case(void);
 TCase *bidirectional_film_case(void);

@@ -5,13 +5,6 @@
 
 #include <string.h>
 
-unsigned bidirectional_effort(void)
-{
-    const char *text = getenv("TWINLIGHT_TEST_EFFORT");
-    int effort = text ? atoi(text) : 1;
-    return effort > 0 ? (unsigned)effort : 1;
-}
-
 /* ---- rendering --------------------------------------------------------------------------------------------------- */
 
 typedef struct Renderer {
@@ -30,7 +23,7 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
     RenderResult result;
     const RenderSetup *setup = renderer->setup;
     const SceneSettings *settings = &renderer->scene.settings;
-    RenderOptions options = {.samples = setup->samples * bidirectional_effort(),
+    RenderOptions options = {.samples = setup->samples * test_effort(),
                              .max_depth = depth,
                              .seed = seed,
                              .chains = setup->chains,

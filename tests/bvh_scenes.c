@@ -9,23 +9,6 @@ static void add_mesh(TestScene *test, TestMesh mesh, float scale, Vec3 shift)
     mesh_destroy(&mesh);
 }
 
-static void add_quadrics(TestScene *test, TestRandom *random, uint count)
-{
-    for (uint i = 0; i < count; ++i) {
-        double m[16];
-        bool disk = i % 3 == 2;
-        matrix_random(random, 0.2f, i % 2 == 0 ? 0.2f : 0.6f, true, vec3_scale(random_direction(random), 0.8f), m);
-        Quadric quadric = {.radius = 0.5f, .z_min = -0.5f, .z_max = i % 4 == 1 ? 0.2f : 0.5f, .phi_max = 2.0f * PI};
-        if (i % 5 == 1)
-            quadric.phi_max = 4.0f;
-        if (disk) {
-            quadric.z_min = 0.1f;
-            quadric.inner_radius = i % 2 == 0 ? 0.2f : 0.0f;
-        }
-        test_scene_quadric(test, disk ? PRIMITIVE_DISK : PRIMITIVE_SPHERE, quadric, m);
-    }
-}
-
 /* Patches with four random corners each, so hardly any is flat. */
 static void add_patches(TestScene *test, TestRandom *random, uint count)
 {
@@ -92,17 +75,6 @@ static void add_curtain(TestScene *test, TestRandom *random, uint side, uint pro
     free(uvs);
 }
 
-static void add_instances(TestScene *test, TestRandom *random, uint object, uint count, float size)
-{
-    Error error = {0};
-    for (uint i = 0; i < count; ++i) {
-        double m[16], inverse[16];
-        matrix_random(random, 0.3f * size, size, true, vec3_scale(random_direction(random), 2.5f), m);
-        test_matrix_inverse(m, inverse);
-        ck_assert(scene_add_instance(&test->scene, object, m, inverse, &error));
-    }
-}
-
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
 static void make_star(TestScene *test)
@@ -162,7 +134,7 @@ static void make_curved(TestScene *test)
     TestRandom random = {.seed = 9};
     test_scene_init(test);
     add_mesh(test, mesh_star(6, 7, 0.2f, 9), 2.0f, vec3_splat(0.0f));
-    add_quadrics(test, &random, 30);
+    test_scene_quadrics(test, &random, 30);
     add_patches(test, &random, 30);
     test_scene_finish(test);
 }
@@ -191,15 +163,15 @@ static void make_instances(TestScene *test)
         if (i < 2)
             add_mesh(test, mesh_star(5, 6 + 2 * i, 0.3f, 31 + i), 1.0f, vec3_splat(0.1f * (float)i));
         if (i == 0) {
-            add_quadrics(test, &random, 6);
+            test_scene_quadrics(test, &random, 6);
             add_patches(test, &random, 5);
             add_curtain(test, &random, 3, add_squares(test, 3.0f, 0.3f));
         }
         ck_assert(scene_object_end(&test->scene, &error));
     }
-    add_quadrics(test, &random, 4);
+    test_scene_quadrics(test, &random, 4);
     for (uint i = 0; i < 3; ++i)
-        add_instances(test, &random, object[i], 6, 1.0f);
+        test_scene_instances(test, &random, object[i], 6, 1.0f);
     test_scene_finish(test);
 }
 
@@ -214,7 +186,7 @@ static void make_swarm(TestScene *test)
     add_mesh(test, mesh_star(30, 40, 0.05f, 33), 1.0f, vec3_splat(0.0f));
     ck_assert(scene_object_end(&test->scene, &error));
     add_mesh(test, mesh_star(5, 6, 0.2f, 34), 4.0f, vec3_splat(0.0f));
-    add_instances(test, &random, object, 2000, 0.5f);
+    test_scene_instances(test, &random, object, 2000, 0.5f);
     test_scene_finish(test);
 }
 

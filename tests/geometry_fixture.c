@@ -183,6 +183,34 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
         "%s", error.message);
 }
 
+void test_scene_quadrics(TestScene *test, TestRandom *random, uint count)
+{
+    for (uint i = 0; i < count; ++i) {
+        double m[16];
+        bool disk = i % 3 == 2;
+        matrix_random(random, 0.2f, i % 2 == 0 ? 0.2f : 0.6f, true, vec3_scale(random_direction(random), 0.8f), m);
+        Quadric quadric = {.radius = 0.5f, .z_min = -0.5f, .z_max = i % 4 == 1 ? 0.2f : 0.5f, .phi_max = 2.0f * PI};
+        if (i % 5 == 1)
+            quadric.phi_max = 4.0f;
+        if (disk) {
+            quadric.z_min = 0.1f;
+            quadric.inner_radius = i % 2 == 0 ? 0.2f : 0.0f;
+        }
+        test_scene_quadric(test, disk ? PRIMITIVE_DISK : PRIMITIVE_SPHERE, quadric, m);
+    }
+}
+
+void test_scene_instances(TestScene *test, TestRandom *random, uint object, uint count, float size)
+{
+    Error error = {0};
+    for (uint i = 0; i < count; ++i) {
+        double m[16], inverse[16];
+        matrix_random(random, 0.3f * size, size, true, vec3_scale(random_direction(random), 2.5f), m);
+        test_matrix_inverse(m, inverse);
+        ck_assert(scene_add_instance(&test->scene, object, m, inverse, &error));
+    }
+}
+
 void test_scene_finish(TestScene *test)
 {
     Error error = {0};

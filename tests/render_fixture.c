@@ -63,7 +63,6 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .samples = setup->samples,
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
-                             .strategies = setup->strategies,
                              .chains = setup->chains,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
@@ -100,16 +99,21 @@ double fixture_mean(const RenderedImage *image)
     return fixture_block_mean(image->rgb, image->width, 0, 0, image->width, image->height);
 }
 
-double fixture_block_difference(const float *rgb, const float *reference, int width, int height, int grid)
+/* The mean of block (i, j) of grid x grid. */
+static double grid_mean(PictureView picture, int i, int j, int grid)
 {
-    double floor_value = 0.01 * fixture_block_mean(reference, width, 0, 0, width, height), sum = 0.0;
+    int x0 = (int)lrint((double)picture.width * i / grid), x1 = (int)lrint((double)picture.width * (i + 1) / grid);
+    int y0 = (int)lrint((double)picture.height * j / grid), y1 = (int)lrint((double)picture.height * (j + 1) / grid);
+    return fixture_block_mean(picture.rgb, picture.width, x0, y0, x1, y1);
+}
+
+double fixture_block_difference(PictureView picture, PictureView reference, int grid)
+{
+    double floor_value = 0.01 * grid_mean(reference, 0, 0, 1), sum = 0.0;
     for (int j = 0; j < grid; ++j)
         for (int i = 0; i < grid; ++i) {
-            int x0 = (int)lrint((double)width * i / grid), x1 = (int)lrint((double)width * (i + 1) / grid);
-            int y0 = (int)lrint((double)height * j / grid), y1 = (int)lrint((double)height * (j + 1) / grid);
-            double a = fixture_block_mean(rgb, width, x0, y0, x1, y1);
-            double b = fixture_block_mean(reference, width, x0, y0, x1, y1);
-            sum += fabs(a - b) / (b + floor_value);
+            double b = grid_mean(reference, i, j, grid);
+            sum += fabs(grid_mean(picture, i, j, grid) - b) / (b + floor_value);
         }
     return sum / (grid * grid);
 }

@@ -19,7 +19,6 @@ typedef struct RenderSetup {
     bool record_spans;
     uint64_t seed;
     const Integrator *integrator; /* NULL: path tracing */
-    unsigned strategies; /* 0: the integrator's */
     bool balance, only_strategy, unweighted; /* RenderOptions */
     unsigned strategy[2];
     ChainOptions chains;
@@ -49,7 +48,14 @@ double fixture_mean(const RenderedImage *image);
 /* Mean over channels of the block of pixels [x0, x1) x [y0, y1). */
 double fixture_block_mean(const float *rgb, int width, int x0, int y0, int x1, int y1);
 
-/* Mean over a grid x grid of blocks of |a - b| / (b + 0.01 mean b), b the blocks of `reference`. */
-double fixture_block_difference(const float *rgb, const float *reference, int width, int height, int grid);
+/* A picture of 3 floats a pixel. */
+typedef struct PictureView {
+    const float *rgb;
+    int width, height;
+} PictureView;
+
+/* Mean over a grid x grid of blocks of |a - b| / (b + 0.01 mean b), b the blocks of `reference`, which may have another
+ * size. */
+double fixture_block_difference(PictureView picture, PictureView reference, int grid);
 
 #endif

@@ -1,7 +1,6 @@
-# One Check program per area; each lists every unit of the area that can be wrong.
-TEST_LIBS = libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS) $(CHECK_LIBS) $(MPFR_LIBS) -lm
-# Check prints floats as doubles.
-TEST_CFLAGS = $(AM_CFLAGS) $(CHECK_CFLAGS) -Wno-double-promotion
+# One Check program per area; each lists every unit of the area that can be wrong. A program of one file needs no list.
+LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) \
+	$(CHECK_LIBS) $(MPFR_LIBS) -lm
 
 if HAVE_CHECK
 check_PROGRAMS += \
@@ -12,7 +11,6 @@ check_PROGRAMS += \
 	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
-	tests/test_ibpt \
 	tests/test_mmlt \
 	tests/test_group \
 	tests/test_import \
@@ -29,7 +27,15 @@ if HAVE_OPENCL
 check_PROGRAMS += tests/test_opencl
 endif
 TESTS += $(check_PROGRAMS)
+check_LTLIBRARIES = tests/libfixtures.la
 endif
+
+# The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
+EFFORT = 8
+.PHONY: check-long
+check-long:
+	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
+	  TESTS='tests/test_bidirectional tests/test_opencl tests/test_reference'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
@@ -39,9 +45,11 @@ clean-local:
 EXTRA_DIST += \
 	tests/analytic.h \
 	tests/bidirectional.h \
+	tests/bidirectional_path.h \
 	tests/bsdf_cases.h \
 	tests/bvh_scenes.h \
 	tests/cli.sh \
+	tests/filter_cases.h \
 	tests/geometry_fixture.h \
 	tests/geometry_suites.h \
 	tests/instances.pbrt \
@@ -58,11 +66,26 @@ EXTRA_DIST += \
 	tests/test_opencl.h \
 	tests/test_matrix.h \
 	tests/test_util.h \
+	tests/verify_fixture.h \
 	tests/platform_probe.cl
 
-tests_test_analytic_SOURCES = tests/test_analytic.c \
+if HAVE_OPENCL
+OPENCL_PROBE = tests/opencl_probe.c
+else
+OPENCL_PROBE = tests/opencl_probe_absent.c
+endif
+
+# What several programs share.
+tests_libfixtures_la_SOURCES = \
 	tests/analytic_fixture.c \
+	tests/bidirectional_groups.c \
+	tests/bidirectional_scenes.c \
+	tests/geometry_fixture.c \
 	tests/render_fixture.c \
+	tests/verify_fixture.c \
+	$(OPENCL_PROBE)
+
+tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/test_analytic_area.c \
 	tests/test_analytic_bumps.c \
 	tests/test_analytic_camera.c \
@@ -72,19 +95,14 @@ tests_test_analytic_SOURCES = tests/test_analytic.c \
 	tests/test_analytic_lights.c \
 	tests/test_analytic_opaque.c \
 	tests/test_analytic_textures.c
-tests_test_analytic_CFLAGS = $(TEST_CFLAGS)
-tests_test_analytic_LDADD = $(TEST_LIBS)
 
 tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
-	tests/analytic_fixture.c \
-	tests/bidirectional_groups.c \
-	tests/bidirectional_scenes.c \
-	tests/render_fixture.c \
+	tests/bidirectional_path.c \
 	tests/test_bidirectional_film.c \
+	tests/test_bidirectional_running.c \
 	tests/test_bidirectional_strategies.c \
+	tests/test_bidirectional_walks.c \
 	tests/test_bidirectional_weights.c
-tests_test_bidirectional_CFLAGS = $(TEST_CFLAGS)
-tests_test_bidirectional_LDADD = $(TEST_LIBS)
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
@@ -92,21 +110,12 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_formulas.c \
 	tests/test_bsdf_identities.c \
 	tests/test_bsdf_sampling.c
-tests_test_bsdf_CFLAGS = $(TEST_CFLAGS)
-tests_test_bsdf_LDADD = $(TEST_LIBS)
 
 tests_test_bvh_SOURCES = tests/test_bvh.c \
 	tests/test_bvh_build.c \
 	tests/test_bvh_opencl.c \
-	tests/bvh_scenes.c \
-	tests/geometry_fixture.c
-if HAVE_OPENCL
-tests_test_bvh_SOURCES += tests/opencl_probe.c
-else
-tests_test_bvh_SOURCES += tests/opencl_probe_absent.c
-endif
-tests_test_bvh_CFLAGS = $(TEST_CFLAGS)
-tests_test_bvh_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
+	tests/bvh_scenes.c
+
 tests_test_emit_SOURCES = tests/test_emit.c \
 	tests/test_emit_area.c \
 	tests/test_emit_camera.c \
@@ -114,40 +123,15 @@ tests_test_emit_SOURCES = tests/test_emit.c \
 	tests/test_emit_distance.c \
 	tests/test_emit_image.c \
 	tests/test_emit_power.c \
-	tests/test_emit_splat.c \
-	tests/render_fixture.c
-tests_test_emit_CFLAGS = $(TEST_CFLAGS)
-tests_test_emit_LDADD = $(TEST_LIBS)
+	tests/test_emit_splat.c
 
 tests_test_film_SOURCES = tests/test_film.c \
 	tests/test_film_output.c
-tests_test_film_CFLAGS = $(TEST_CFLAGS)
-tests_test_film_LDADD = $(TEST_LIBS)
 
 tests_test_geometry_SOURCES = tests/test_geometry.c \
 	tests/test_geometry_backend.c \
 	tests/test_geometry_quadrics.c \
-	tests/test_geometry_rays.c \
-	tests/geometry_fixture.c
-tests_test_geometry_CFLAGS = $(TEST_CFLAGS)
-tests_test_geometry_LDADD = $(TEST_LIBS)
-
-tests_test_ibpt_SOURCES = tests/test_ibpt.c \
-	tests/render_fixture.c
-tests_test_ibpt_CFLAGS = $(TEST_CFLAGS)
-tests_test_ibpt_LDADD = $(TEST_LIBS)
-
-tests_test_mmlt_SOURCES = tests/test_mmlt.c \
-	tests/analytic_fixture.c \
-	tests/bidirectional_groups.c \
-	tests/bidirectional_scenes.c \
-	tests/render_fixture.c
-tests_test_mmlt_CFLAGS = $(TEST_CFLAGS)
-tests_test_mmlt_LDADD = $(TEST_LIBS)
-
-tests_test_group_SOURCES = tests/test_group.c
-tests_test_group_CFLAGS = $(TEST_CFLAGS)
-tests_test_group_LDADD = $(TEST_LIBS)
+	tests/test_geometry_rays.c
 
 tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_bad.c \
@@ -161,8 +145,6 @@ tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_text.c \
 	tests/test_import_textures.c \
 	tests/test_import_transform.c
-tests_test_import_CFLAGS = $(TEST_CFLAGS)
-tests_test_import_LDADD = $(TEST_LIBS)
 
 tests_test_light_SOURCES = tests/test_light.c \
 	tests/test_light_area.c \
@@ -172,8 +154,6 @@ tests_test_light_SOURCES = tests/test_light.c \
 	tests/test_light_irradiance.c \
 	tests/test_light_mis.c \
 	tests/test_light_select.c
-tests_test_light_CFLAGS = $(TEST_CFLAGS)
-tests_test_light_LDADD = $(TEST_LIBS)
 
 tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_alias.c \
@@ -183,58 +163,18 @@ tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_rng.c \
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
-tests_test_math_CFLAGS = $(TEST_CFLAGS)
-tests_test_math_LDADD = $(TEST_LIBS)
-
-tests_test_metrics_SOURCES = tests/test_metrics.c
-tests_test_metrics_CFLAGS = $(TEST_CFLAGS)
-tests_test_metrics_LDADD = $(TEST_LIBS)
 
 tests_test_opencl_SOURCES = tests/test_opencl.c \
 	tests/test_opencl_bits.c \
 	tests/test_opencl_devices.c \
 	tests/test_opencl_inspect.c \
 	tests/test_opencl_pipeline.c \
-	tests/test_opencl_program.c \
-	tests/render_fixture.c
-tests_test_opencl_CFLAGS = $(TEST_CFLAGS)
-tests_test_opencl_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
-
-tests_test_options_SOURCES = tests/test_options.c
-tests_test_options_CFLAGS = $(TEST_CFLAGS)
-tests_test_options_LDADD = $(TEST_LIBS)
-
-tests_test_platform_bits_SOURCES = tests/test_platform_bits.c
-if HAVE_OPENCL
-tests_test_platform_bits_SOURCES += tests/opencl_probe.c
-else
-tests_test_platform_bits_SOURCES += tests/opencl_probe_absent.c
-endif
-tests_test_platform_bits_CPPFLAGS = $(AM_CPPFLAGS) -DTEST_SRCDIR='"$(srcdir)"'
-tests_test_platform_bits_CFLAGS = $(TEST_CFLAGS)
-tests_test_platform_bits_LDADD = $(TEST_LIBS) $(OPENCL_LIBS)
-
-tests_test_reference_SOURCES = tests/test_reference.c \
-	tests/render_fixture.c
-tests_test_reference_CFLAGS = $(TEST_CFLAGS)
-tests_test_reference_LDADD = $(TEST_LIBS)
-
-tests_test_render_SOURCES = tests/test_render.c \
-	tests/render_fixture.c
-tests_test_render_CFLAGS = $(TEST_CFLAGS)
-tests_test_render_LDADD = $(TEST_LIBS)
+	tests/test_opencl_program.c
 
 tests_test_texture_SOURCES = tests/test_texture.c \
 	tests/test_texture_color.c \
 	tests/test_texture_files.c \
 	tests/test_texture_image.c
-tests_test_texture_CFLAGS = $(TEST_CFLAGS)
-tests_test_texture_LDADD = $(TEST_LIBS)
-
-tests_test_verify_SOURCES = tests/test_verify.c \
-	tests/render_fixture.c
-tests_test_verify_CFLAGS = $(TEST_CFLAGS)
-tests_test_verify_LDADD = $(TEST_LIBS)
 
 # Rules of the tree itself, and the whole program from outside.
 script_tests = \

@@ -2,7 +2,6 @@
  * what arrives, by brute force over all directions. */
 #include "analytic.h"
 #include "light.h"
-#include "pbrt_import.h"
 #include "test_files.h"
 
 enum { SIDE = 8 };
@@ -24,7 +23,7 @@ static const Environment ENVIRONMENTS[] = {
 
 static float texels[3 * SIDE * SIDE];
 
-static void setup(void)
+static void map_make(void)
 {
     unsigned state = 5;
     test_folder_make();
@@ -33,11 +32,6 @@ static void setup(void)
         texels[3 * i] = texels[3 * i + 1] = texels[3 * i + 2] = bright < 0.3 ? 0.0f : (float)(3.0 * bright * bright);
     }
     analytic_write_pfm(test_path("map.pfm"), SIDE, SIDE, texels);
-}
-
-static void teardown(void)
-{
-    test_folder_remove();
 }
 
 /* The directive that places the map, the matrix column by column. */
@@ -169,14 +163,10 @@ START_TEST(test_light_samples_alone)
     char light[600], name[64];
     Scene scene;
     unsigned state = 17;
-    Error error = {0};
-    ImportOptions options = {0};
     strcpy(light, "WorldBegin\n");
     light_text(e, light + strlen(light), sizeof light - strlen(light));
-    scene_init(&scene);
-    ck_assert_msg(pbrt_import_text(light, strlen(light), "test.pbrt", ".", &options, &scene, &error), "%s",
-                  error.message);
-    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    const RenderSetup setup = {.text = light};
+    fixture_scene(&setup, &scene);
     BackendScene packed = scene_backend_view(&scene);
     SceneView view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels);
     double sum = 0.0;
@@ -213,7 +203,7 @@ TCase *analytic_environment_case(void)
 {
     TCase *tcase = tcase_create("environment");
     tcase_set_timeout(tcase, 120);
-    tcase_add_checked_fixture(tcase, setup, teardown);
+    tcase_add_checked_fixture(tcase, map_make, test_folder_remove);
     tcase_add_loop_test(tcase, test_view, 0, ENVIRONMENT_COUNT);
     tcase_add_loop_test(tcase, test_irradiance, 0, ENVIRONMENT_COUNT);
     tcase_add_loop_test(tcase, test_light_samples_alone, 0, ENVIRONMENT_COUNT);

@@ -3,31 +3,20 @@
 #include "png_write.h"
 #include "test_files.h"
 
-enum { MAP_WIDTH = 4, MAP_HEIGHT = 3 };
-
-static float map[3 * MAP_WIDTH * MAP_HEIGHT];
-
-static void setup(void)
+static void map_make(void)
 {
-    unsigned state = 9;
     test_folder_make();
-    for (int i = 0; i < 3 * MAP_WIDTH * MAP_HEIGHT; ++i)
-        map[i] = (float)(0.9 * test_random_unit(&state));
-    analytic_write_pfm(test_path("map.pfm"), MAP_WIDTH, MAP_HEIGHT, map);
-}
-
-static void teardown(void)
-{
-    test_folder_remove();
-}
-
-/* The map at (u, v). */
-static double bilinear(double u, double v, int c, const char *wrap)
-{
-    return analytic_bilinear(map, MAP_WIDTH, MAP_HEIGHT, u, v, c, wrap);
+    analytic_map_make(test_path("map.pfm"), false);
 }
 
 /* ---- images -------------------------------------------------------------------------------------------------------- */
+
+static double texel_at(const void *context, double u, double v, int channel)
+{
+    (void)context;
+    int x = (int)(u * ANALYTIC_MAP_WIDTH), y = (int)((1.0 - v) * ANALYTIC_MAP_HEIGHT);
+    return (double)analytic_map[3 * (y * ANALYTIC_MAP_WIDTH + x) + channel];
+}
 
 /* Texels appear where the file has them, the first row on top (v = 1). */
 START_TEST(test_orientation)
@@ -39,65 +28,72 @@ START_TEST(test_orientation)
                      "\"string filter\" \"point\"\n"
                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
                      12, 12, test_path("map.pfm"));
-    for (int y = 0; y < 12; ++y)
-        for (int x = 0; x < 12; ++x)
-            for (int c = 0; c < 3; ++c)
-                TEST_NEAR(analytic_pixel(&image, x, y, c), map[3 * (y / 4 * MAP_WIDTH + x / 3) + c], 1e-5);
+    analytic_compare(&image, texel_at, NULL, 1e-5);
     fixture_destroy(&image);
 }
 END_TEST
 
+/* `context`: how the image goes on. */
+static double placed_image(const void *context, double u, double v, int channel)
+{
+    return analytic_map_at(2.3 * u - 0.4, -1.7 * v + 1.1, channel, context);
+}
+
 START_TEST(test_bilinear)
 {
     static const char *const WRAPS[] = {"repeat", "clamp", "black"};
-    enum { N = 40 };
     RenderedImage image;
-    double u, v;
     analytic_picture(&image, 1, 2,
                      ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string wrap\" \"%s\" "
                      "\"float uscale\" 2.3 \"float vscale\" -1.7 \"float udelta\" -0.4 \"float vdelta\" 1.1\n"
                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
-                     N, N, test_path("map.pfm"), WRAPS[_i]);
-    for (int y = 0; y < N; ++y)
-        for (int x = 0; x < N; ++x)
-            for (int c = 0; c < 3; ++c) {
-                analytic_middle(x, y, N, &u, &v);
-                TEST_NEAR(analytic_pixel(&image, x, y, c), bilinear(2.3 * u - 0.4, -1.7 * v + 1.1, c, WRAPS[_i]), 5e-5);
-            }
+                     40, 40, test_path("map.pfm"), WRAPS[_i]);
+    analytic_compare(&image, placed_image, WRAPS[_i], 5e-5);
     fixture_destroy(&image);
 }
 END_TEST
 
+/* (u, v) are x and y of the world. */
+static double planar_image(const void *context, double u, double v, int channel)
+{
+    (void)context;
+    return analytic_map_at(0.1 + 3.0 * (v - 0.5) / 4.0, 0.2 + (u - 0.25) / 2.0, channel, "repeat");
+}
+
 /* Planar mapping in the space in which the texture is defined. */
 START_TEST(test_planar)
 {
-    enum { N = 16 };
     RenderedImage image;
-    double u, v;
     analytic_picture(&image, 1, 2,
                      ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "AttributeBegin Translate 0.25 0.5 0 Scale 2 4 1\n"
                      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"%s\" \"string mapping\" \"planar\" "
                      "\"vector3 v1\" [ 0 3 0 ] \"vector3 v2\" [ 1 0 0 ] \"float udelta\" 0.1 \"float vdelta\" 0.2\n"
                      "AttributeEnd Material \"diffuse\" \"texture reflectance\" \"t\"\n" ANALYTIC_SQUARE,
-                     N, N, test_path("map.pfm"));
-    for (int y = 0; y < N; ++y)
-        for (int x = 0; x < N; ++x) {
-            analytic_middle(x, y, N, &u, &v); /* x and y of the world */
-            double s = 0.1 + 3.0 * (v - 0.5) / 4.0, t = 0.2 + (u - 0.25) / 2.0;
-            TEST_NEAR(analytic_pixel(&image, x, y, 1), bilinear(s, t, 1, "repeat"), 5e-5);
-        }
+                     16, 16, test_path("map.pfm"));
+    analytic_compare(&image, planar_image, NULL, 5e-5);
     fixture_destroy(&image);
 }
 END_TEST
 
+/* pbrt's checkerboard of 4 x 2 squares: whether the first texture shows at (u, v). */
+static bool first_square(double u, double v)
+{
+    return ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0;
+}
+
+static double mixed_image(const void *context, double u, double v, int channel)
+{
+    (void)context;
+    double here = analytic_map_at(u, v, channel, "repeat");
+    return 0.7 * 0.6 * here + 0.3 * (1.0 - here) * (first_square(u, v) ? 0.25 : 1.0);
+}
+
 /* scale, mix, checkerboard, invert, by hand. */
 START_TEST(test_expressions)
 {
-    enum { N = 16 };
     RenderedImage image;
-    double u, v;
     analytic_picture(
         &image, 1, 2,
         ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
@@ -109,15 +105,8 @@ START_TEST(test_expressions)
         "Texture \"mixed\" \"spectrum\" \"mix\" \"texture tex1\" \"image\" \"texture tex2\" \"scaled\" "
         "\"float amount\" 0.3\n"
         "Material \"diffuse\" \"texture reflectance\" \"mixed\"\n" ANALYTIC_SQUARE,
-        N, N, test_path("map.pfm"), test_path("map.pfm"));
-    for (int y = 0; y < N; ++y)
-        for (int x = 0; x < N; ++x)
-            for (int c = 0; c < 3; ++c) {
-                analytic_middle(x, y, N, &u, &v);
-                double here = bilinear(u, v, c, "repeat");
-                double square = ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0 ? 0.25 : 1.0;
-                TEST_NEAR(analytic_pixel(&image, x, y, c), 0.7 * 0.6 * here + 0.3 * (1.0 - here) * square, 5e-5);
-            }
+        16, 16, test_path("map.pfm"), test_path("map.pfm"));
+    analytic_compare(&image, mixed_image, NULL, 5e-5);
     fixture_destroy(&image);
 }
 END_TEST
@@ -241,9 +230,9 @@ START_TEST(test_parametrisation)
             continue;
         ++seen;
         for (int c = 0; c < 3; ++c)
-            ck_assert_msg(fabs(analytic_pixel(&image, i % N, i / N, c) - bilinear(u, v, c, "repeat")) < 0.03,
+            ck_assert_msg(fabs(analytic_pixel(&image, i % N, i / N, c) - analytic_map_at(u, v, c, "repeat")) < 0.03,
                           "%s at (%g, %g): %g, not %g", name, x, y, analytic_pixel(&image, i % N, i / N, c),
-                          bilinear(u, v, c, "repeat"));
+                          analytic_map_at(u, v, c, "repeat"));
     }
     ck_assert_int_gt(seen, N * N / 4);
     fixture_destroy(&image);
@@ -252,12 +241,17 @@ END_TEST
 
 /* ---- alpha --------------------------------------------------------------------------------------------------------- */
 
+static double squares_image(const void *context, double u, double v, int channel)
+{
+    (void)context;
+    (void)channel;
+    return first_square(u, v) ? 0.0 : 1.0;
+}
+
 /* Holes where the texture is 0. */
 START_TEST(test_alpha_texture)
 {
-    enum { N = 16 };
     RenderedImage image;
-    double u, v;
     analytic_picture(&image, 1, 2,
                      ANALYTIC_FROM_ABOVE ANALYTIC_OVERHEAD
                      "Texture \"holes\" \"float\" \"checkerboard\" \"float uscale\" 4 \"float vscale\" 2 "
@@ -266,13 +260,8 @@ START_TEST(test_alpha_texture)
                      "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  1 1 0  0 1 0 ] "
                      "\"point2 uv\" [ 0 0 1 0 1 1 0 1 ] \"integer indices\" [ 0 1 2 0 2 3 ] "
                      "\"texture alpha\" \"holes\"\n",
-                     N, N);
-    for (int y = 0; y < N; ++y)
-        for (int x = 0; x < N; ++x) {
-            analytic_middle(x, y, N, &u, &v);
-            double expected = ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0 ? 0.0 : 1.0;
-            TEST_NEAR(analytic_pixel(&image, x, y, 0), expected, 1e-5);
-        }
+                     16, 16);
+    analytic_compare(&image, squares_image, NULL, 1e-5);
     fixture_destroy(&image);
 }
 END_TEST
@@ -281,7 +270,7 @@ TCase *analytic_textures_case(void)
 {
     TCase *tcase = tcase_create("textures");
     tcase_set_timeout(tcase, 120);
-    tcase_add_checked_fixture(tcase, setup, teardown);
+    tcase_add_checked_fixture(tcase, map_make, test_folder_remove);
     tcase_add_test(tcase, test_orientation);
     tcase_add_loop_test(tcase, test_bilinear, 0, 3);
     tcase_add_test(tcase, test_planar);

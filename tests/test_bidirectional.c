@@ -1,10 +1,12 @@
-/* Bidirectional path tracing: weights, strategies one by one, their sum, film, and what is numerically hard. */
+/* Bidirectional integrators: weights, strategies one by one, their sum, film, and what is numerically hard. */
 #include "bidirectional.h"
 
 int main(void)
 {
     Suite *suite = suite_create("bidirectional");
     suite_add_tcase(suite, bidirectional_weights_case());
+    suite_add_tcase(suite, bidirectional_walks_case());
+    suite_add_tcase(suite, bidirectional_running_case());
     suite_add_tcase(suite, bidirectional_strategies_case());
     suite_add_tcase(suite, bidirectional_film_case());
     suite_add_tcase(suite, bidirectional_hard_case());

@@ -1,5 +1,5 @@
 /* Every strategy alone and unweighted against path tracing's paths of the same length (Veach 1997, section 10.2: each is
- * an unbiased estimator of what it can make), and all together, weighted, against path tracing. */
+ * an unbiased estimator of what it can make), and all together, or IBPT's three, weighted, against path tracing. */
 #include "bidirectional.h"
 
 /* ---- one strategy ------------------------------------------------------------------------------------------------ */
@@ -58,15 +58,17 @@ START_TEST(test_sum)
         .groups = 16,
         .render = {.text = bidirectional_text(scene), .samples = 24, .max_depth = scene->depth, .threads = 1}};
     groups_render(&setup, &expected);
-    setup.render.integrator = integrator_bdpt();
-    setup.render.samples = 8;
-    for (int balance = 0; balance < 2; ++balance) {
+    for (unsigned i = 0; i < 4; ++i) {
         PictureGroups got;
         char name[96];
-        setup.render.balance = balance;
-        setup.render.seed = 1000u + 100u * (unsigned)balance;
+        bool three = i >= 2;
+        setup.render.integrator = three ? integrator_ibpt() : integrator_bdpt();
+        setup.render.samples = three ? 16 : 8;
+        setup.render.balance = i % 2 == 1;
+        setup.render.seed = 1000u + 100u * i;
         groups_render(&setup, &got);
-        snprintf(name, sizeof name, "%s, %s", scene->name, balance ? "balance" : "power");
+        snprintf(name, sizeof name, "%s, %s %s", scene->name, setup.render.integrator->name,
+                 setup.render.balance ? "balance" : "power");
         groups_compare(name, &got, &expected, 4, true);
         groups_destroy(&got);
     }
@@ -74,20 +76,22 @@ START_TEST(test_sum)
 }
 END_TEST
 
-TCase *bidirectional_strategies_case(void)
+/* `test` on every scene. */
+static TCase *scenes_case(const char *name, const TTest *test)
 {
-    TCase *tcase = tcase_create("strategies");
+    TCase *tcase = tcase_create(name);
     tcase_set_timeout(tcase, 3000);
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_strategies, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_loop_test(tcase, test, 0, BIDIRECTIONAL_SCENE_COUNT);
     return tcase;
+}
+
+TCase *bidirectional_strategies_case(void)
+{
+    return scenes_case("strategies", test_strategies);
 }
 
 TCase *bidirectional_sums_case(void)
 {
-    TCase *tcase = tcase_create("sums");
-    tcase_set_timeout(tcase, 3000);
-    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_sum, 0, BIDIRECTIONAL_SCENE_COUNT);
-    return tcase;
+    return scenes_case("sums", test_sum);
 }

@@ -1,66 +1,10 @@
 /* Weights of strategies from densities: against long double, at the ends of float's range, and their sum. */
 #include "bidirectional.h"
+#include "bidirectional_path.h"
 
-#include "strategy.h"
 #include "test_files.h"
 
 #include <string.h>
-
-#define SEGMENTS_MAX 31
-
-/* A path x_0 ... x_k, x_0 on the lens and x_k on a light. */
-typedef struct TestPath {
-    uint k;
-    float camera[SEGMENTS_MAX + 1]; /* density of x_i as made from the camera */
-    float light[SEGMENTS_MAX + 1]; /* and from the light */
-    bool delta[SEGMENTS_MAX + 1];
-    float connect; /* StrategyEnds */
-    bool hittable;
-} TestPath;
-
-static bool strategy_possible(const TestPath *path, uint set, uint s)
-{
-    uint t = path->k + 1 - s;
-    if (!strategy_taken(set, s, path->k))
-        return false;
-    if (s == 0)
-        return path->hittable;
-    return !path->delta[t - 1] && !path->delta[t];
-}
-
-/* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left out
- * of the buffer: NaN there must not matter. */
-static float kernel_weight(const TestPath *path, uint set, uint exponent, uint s)
-{
-    uint k = path->k, t = k + 1 - s;
-    float words[4 * (SEGMENTS_MAX + 1) * DENSITY_WORDS];
-    for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
-        words[i] = NAN;
-    StrategyEnds ends;
-    memset(&ends, 0xff, sizeof ends); /* NaN */
-    ends.connect = path->connect;
-    ends.hittable = path->hittable;
-    DensityView view = {(const uint *)words, 1, 0, SEGMENTS_MAX + 1, 0, 0};
-    for (uint i = 1; i < t; ++i) {
-        words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OWN] = path->camera[i];
-        if (i + 2 < t)
-            words[density_field(&view, SIDE_CAMERA, i) + DENSITY_OTHER] = path->light[i];
-        view.camera_delta |= path->delta[i] ? 1u << i : 0u;
-    }
-    for (uint i = 0; i < s; ++i) {
-        if (s > 1)
-            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OWN] = path->light[k - i];
-        if (i + 2 < s)
-            words[density_field(&view, SIDE_LIGHT, i) + DENSITY_OTHER] = path->camera[k - i];
-        view.light_delta |= path->delta[k - i] ? 1u << i : 0u;
-    }
-    ends.light_z1 = t > 1 ? path->light[t - 1] : NAN;
-    ends.light_z2 = t > 2 ? path->light[t - 2] : NAN;
-    ends.camera_y1 = s > 0 ? path->camera[t] : NAN;
-    ends.camera_y2 = s > 1 ? path->camera[t + 1] : NAN;
-    ends.own_y0 = s == 1 ? path->light[k] : NAN;
-    return strategy_weight(set, exponent, s, t, &view, &ends);
-}
 
 /* By the definition: densities as whole products, in long double, whose exponent has 15 bits. */
 static long double exact_density(const TestPath *path, uint s)
@@ -77,13 +21,13 @@ static void path_check(const TestPath *path, uint set, uint exponent)
     double weights = 0.0;
     bool any = false;
     for (uint s = 0; s <= path->k; ++s)
-        if (strategy_possible(path, set, s))
+        if (test_path_possible(path, set, s))
             sum += powl(exact_density(path, s), exponent);
     for (uint s = 0; s <= path->k; ++s) {
-        if (!strategy_possible(path, set, s))
+        if (!test_path_possible(path, set, s))
             continue;
         long double expected = powl(exact_density(path, s), exponent) / sum;
-        double weight = (double)kernel_weight(path, set, exponent, s);
+        double weight = (double)test_path_weight(path, set, exponent, s);
         TEST_NEAR(weight, expected, 1e-5); /* the requirement is 1e-4 */
         weights += weight;
         any = true;
@@ -155,7 +99,7 @@ START_TEST(test_extremes)
         path.light[3] = VALUES[digits[3]];
         for (uint s = 0; s <= 4; ++s)
             for (uint exponent = 1; exponent <= 2; ++exponent) {
-                float weight = kernel_weight(&path, STRATEGIES_BDPT, exponent, s);
+                float weight = test_path_weight(&path, STRATEGIES_BDPT, exponent, s);
                 TEST_TRUE(weight >= 0.0f && weight <= 1.0f);
             }
     }
@@ -163,11 +107,11 @@ START_TEST(test_extremes)
         path.camera[j] = path.light[j] = 1.0f;
     path.light[2] = 0.0f; /* needed by (3,2) and (4,1) */
     for (uint s = 0; s <= 2; ++s)
-        TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, s), 1.0 / 3.0, 1e-6);
+        TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, s), 1.0 / 3.0, 1e-6);
     path.light[2] = 1.0f;
     path.camera[2] = INFINITY; /* made for certain by the camera's side */
-    TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, 3), 0.0, 0.0);
-    TEST_NEAR(kernel_weight(&path, STRATEGIES_BDPT, 2, 4), 0.0, 0.0);
+    TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, 3), 0.0, 0.0);
+    TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, 4), 0.0, 0.0);
 }
 END_TEST
 

@@ -16,6 +16,7 @@ expect 0 '--save-every=TIME' render --help
 expect 0 'Usage: twinlight info' info --help
 expect 0 'twinlight compare' compare --help
 expect 0 'Usage: twinlight devices' devices --help
+expect 0 '--max-depth=D' pyramid --help
 expect 2 'no command is given'
 expect 2 'unknown command paint' paint
 expect 2 'unknown option --verbose' --verbose
@@ -66,6 +67,12 @@ expect 2 'add --max-depth=7' render --integrator=bdpt --strategy=4,4 --max-depth
 expect 2 'no longer ones than 31' render --integrator=bdpt --strategy=20,20 --max-depth=60 "$scene"
 expect 2 '--unweighted without --strategy' render --integrator=bdpt --unweighted "$scene"
 expect 2 'no scene is given' info
+expect 2 'more than one scene' info "$scene" "$scene"
+expect 2 'no scene is given' pyramid
+expect 2 'does not end in .png' pyramid -o sheet.exr "$scene"
+expect 2 '--max-depth=13: out of range' pyramid --max-depth=13 "$scene"
+expect 2 'unknown or ambiguous option --crop' pyramid --crop=0,0,1,1 "$scene"
+expect 2 '--device is for devices' pyramid --device=0 "$scene"
 expect 2 '' compare
 expect 2 '' compare one.exr
 
@@ -152,6 +159,16 @@ render --crop=4,2,12,10 -o crop.exr "$scene"
 result '--crop: exit status' $?
 file_exists crop.exr
 
+for threads in 1 2; do
+    "$program" pyramid --resolution=16x12 --samples=1 --max-depth=3 --threads=$threads --quiet -o sheet$threads.png "$scene"
+    result 'pyramid: exit status' $?
+done
+cmp sheet1.png sheet2.png
+result 'the sheet depends on the number of threads' $?
+"$program" pyramid --resolution=16x12 --samples=1 --max-depth=3 --unweighted --quiet -o sheet3.png "$scene"
+! cmp -s sheet1.png sheet3.png
+result 'pyramid: --unweighted changes nothing' $?
+
 expect 0 'lights        2' info "$scene"
 expect 0 '"feature_mask"' info --json "$scene"
 
@@ -208,7 +225,7 @@ elif "$program" devices | grep -A1 '^opencl' | grep -q 'no device'; then
     echo 'skipped: there is no OpenCL device'
 else
     for other in "$scene" "${scene%/*}/showcase.pbrt"; do
-        for integrator in pt bdpt; do
+        for integrator in pt ibpt bdpt; do
             render --integrator=$integrator --samples=3 -o cpu.exr "$other"
             opencl --integrator=$integrator --samples=3 -o opencl.exr "$other"
             result "$other on OpenCL by $integrator: exit status" $?

@@ -3,7 +3,6 @@
 #include "camera.h"
 #include "film_splat.h"
 #include "light_emit.h"
-#include "pbrt_import.h"
 #include "render_fixture.h"
 #include "rng.h"
 #include "test_emit.h"
@@ -131,13 +130,9 @@ static void path_from_light(const SceneView *scene, uint index, uint stream, dou
 
 static void trace_from_light(const char *text, int *pixels, Batches *batches)
 {
-    Error error = {0};
-    ImportOptions options = {0};
+    const RenderSetup setup = {.text = text};
     Scene scene;
-    scene_init(&scene);
-    ck_assert_msg(pbrt_import_text(text, strlen(text), "test.pbrt", ".", &options, &scene, &error) &&
-                      scene_finish(&scene, &error),
-                  "%s", error.message);
+    fixture_scene(&setup, &scene);
     SceneView view = scene_view(&scene.frame, scene.geometry_words.data, scene.tables_words.data, scene.texels.data);
     *pixels = (int)((scene.frame.crop_x1 - scene.frame.crop_x0) * (scene.frame.crop_y1 - scene.frame.crop_y0));
     for (uint k = 0; k < BATCHES; ++k) {

@@ -1,43 +1,21 @@
 /* Splats against the filter that they stand for. */
 #include "film_splat.h"
-#include "filter_setup.h"
-#include "light_fixture.h"
+#include "filter_cases.h"
 #include "test_emit.h"
-
-typedef struct SplatCase {
-    const char *name;
-    FilterSettings settings;
-} SplatCase;
-
-static const SplatCase CASES[] = {
-    {"box", {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f}},
-    {"other box", {.kind = PIXEL_FILTER_BOX, .radius_x = 1.3f, .radius_y = 0.3f}},
-    {"triangle", {.kind = PIXEL_FILTER_TRIANGLE, .radius_x = 2.0f, .radius_y = 1.0f}},
-    {"gaussian", {.kind = PIXEL_FILTER_GAUSSIAN, .radius_x = 1.5f, .radius_y = 1.5f, .sigma = 0.5f}},
-    {"narrow gaussian", {.kind = PIXEL_FILTER_GAUSSIAN, .radius_x = 1.0f, .radius_y = 3.0f, .sigma = 0.25f}},
-    {"mitchell",
-     {.kind = PIXEL_FILTER_MITCHELL, .radius_x = 2.0f, .radius_y = 2.0f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f}},
-    {"sharp mitchell", {.kind = PIXEL_FILTER_MITCHELL, .radius_x = 2.0f, .radius_y = 3.0f, .b = 0.0f, .c = 0.75f}},
-    {"sinc", {.kind = PIXEL_FILTER_SINC, .radius_x = 4.0f, .radius_y = 4.0f, .tau = 3.0f}},
-};
-enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
 
 /* A film of 12 x 11 whose crop window touches its left edge and no other. */
 enum { WIDTH = 12, X0 = 0, X1 = 6, Y0 = 3, Y1 = 8, ROWS = Y1 - Y0, COLUMNS = X1 - X0 };
 
 static void setup(LightFixture *f, const FilterSettings *settings)
 {
-    Error error = {0};
-    fixture_init(f);
     FrameParams *frame = &f->scene.frame;
-    ck_assert_msg(filter_setup(settings, &f->scene.lookup, &frame->filter, &error), "%s", error.message);
+    fixture_init_filter(f, settings);
     frame->width = WIDTH;
     frame->height = 11;
     frame->crop_x0 = X0;
     frame->crop_y0 = Y0;
     frame->crop_x1 = X1;
     frame->crop_y1 = Y1;
-    f->view = (SceneView){.frame = frame, .lookup = f->scene.lookup.data};
 }
 
 /* f over its integral at `offset`; for a tabulated filter the mean over the table's cell. */
@@ -62,7 +40,7 @@ static double filter_density(const FilterSettings *s, double radius, double offs
 START_TEST(test_expectation)
 {
     enum { N = 256, POSITIONS = 60 };
-    const FilterSettings *s = &CASES[_i].settings;
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
     const double rx = (double)s->radius_x, ry = (double)s->radius_y;
     LightFixture f;
     setup(&f, s);
@@ -88,7 +66,7 @@ START_TEST(test_expectation)
                     filter_density(s, rx, (double)film.x - x - 0.5) * filter_density(s, ry, (double)film.y - y - 0.5);
                 double got = pixels[(y - Y0) * COLUMNS + x - X0];
                 if (fabs(got - expected) > largest * 3.0 / N + 1e-4 * fabs(expected) + 2e-5)
-                    ck_abort_msg("%s at %g %g: pixel %d %d gets %g, not %g", CASES[_i].name, (double)film.x,
+                    ck_abort_msg("%s at %g %g: pixel %d %d gets %g, not %g", FILTER_CASES[_i].name, (double)film.x,
                                  (double)film.y, x, y, got, expected);
             }
     }
@@ -100,7 +78,7 @@ END_TEST
 START_TEST(test_constant)
 {
     enum { SAMPLES = 600000 };
-    const FilterSettings *s = &CASES[_i].settings;
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
     LightFixture f;
     setup(&f, s);
     double sums[ROWS * COLUMNS] = {0.0}, squares[ROWS * COLUMNS] = {0.0};
@@ -119,8 +97,8 @@ START_TEST(test_constant)
     }
     for (int i = 0; i < ROWS * COLUMNS; ++i) {
         double mean = sums[i] / SAMPLES, error = sqrt((squares[i] / SAMPLES - mean * mean) / SAMPLES);
-        ck_assert_msg(fabs(mean - 1.0) < 4.5 * error && error < 0.04, "%s: pixel %d gets %g +- %g", CASES[_i].name, i,
-                      mean, error);
+        ck_assert_msg(fabs(mean - 1.0) < 4.5 * error && error < 0.04, "%s: pixel %d gets %g +- %g",
+                      FILTER_CASES[_i].name, i, mean, error);
     }
     fixture_destroy(&f);
 }
@@ -132,7 +110,7 @@ START_TEST(test_box)
 {
     LightFixture f;
     float weight;
-    setup(&f, &CASES[0].settings);
+    setup(&f, &FILTER_CASES[FILTER_BOX].settings);
     for (uint i = 0; i < 20000; ++i) {
         Vec2 r = fixture_random(1, i);
         Vec2 film = vec2(X0 + r.x * COLUMNS, Y0 + r.y * ROWS);
@@ -146,8 +124,8 @@ START_TEST(test_box)
     for (size_t i = 0; i < sizeof OUTSIDE / sizeof *OUTSIDE; ++i)
         ck_assert(film_splat_pixel(&f.view, vec2(OUTSIDE[i][0], OUTSIDE[i][1]), vec2(0.5f, 0.5f), &weight) == NONE);
     fixture_destroy(&f);
-    for (int i = 0; i < CASE_COUNT; ++i) {
-        setup(&f, &CASES[i].settings);
+    for (int i = 0; i < FILTER_CASE_COUNT; ++i) {
+        setup(&f, &FILTER_CASES[i].settings);
         film_splat_pixel(&f.view, vec2(NAN, INFINITY), vec2(0.5f, 0.5f), &weight);
         ck_assert(film_splat_pixel(&f.view, vec2(3.0f, INFINITY), vec2(0.5f, 0.5f), &weight) == NONE);
         fixture_destroy(&f);
@@ -159,8 +137,8 @@ TCase *emit_splat_case(void)
 {
     TCase *tcase = tcase_create("splats");
     tcase_set_timeout(tcase, 60);
-    tcase_add_loop_test(tcase, test_expectation, 0, CASE_COUNT);
-    tcase_add_loop_test(tcase, test_constant, 0, CASE_COUNT);
+    tcase_add_loop_test(tcase, test_expectation, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_box);
     return tcase;
 }

@@ -180,26 +180,6 @@ START_TEST(test_tie_by_id)
 }
 END_TEST
 
-static void add_quadrics(TestScene *test, TestRandom *random, uint count)
-{
-    for (uint i = 0; i < count; ++i) {
-        double m[16];
-        bool disk = i % 3 == 2;
-        Vec3 shift = vec3_scale(random_direction(random), 0.8f);
-        matrix_random(random, 0.2f, i % 2 == 0 ? 0.2f : 0.6f, true, shift, m);
-        Quadric quadric = {.radius = 0.5f, .z_min = -0.5f, .z_max = 0.5f, .phi_max = 2.0f * PI};
-        if (i % 4 == 1)
-            quadric.z_max = 0.2f;
-        if (i % 5 == 1)
-            quadric.phi_max = 4.0f;
-        if (disk) {
-            quadric.z_min = 0.1f;
-            quadric.inner_radius = i % 2 == 0 ? 0.2f : 0.0f;
-        }
-        test_scene_quadric(test, disk ? PRIMITIVE_DISK : PRIMITIVE_SPHERE, quadric, m);
-    }
-}
-
 /* World geometry, and instances (mirrored and stretched ones among them) of an object with every kind of primitive. */
 static void instances_scene(TestScene *test, TestRandom *random, uint instances)
 {
@@ -211,15 +191,10 @@ static void instances_scene(TestScene *test, TestRandom *random, uint instances)
     test_scene_mesh(test, &world, 0);
     ck_assert(scene_object_begin(&test->scene, &object, &error));
     test_scene_mesh(test, &inner, 0);
-    add_quadrics(test, random, 6);
+    test_scene_quadrics(test, random, 6);
     ck_assert(scene_object_end(&test->scene, &error));
-    add_quadrics(test, random, 4);
-    for (uint i = 0; i < instances; ++i) {
-        double m[16], inverse[16];
-        matrix_random(random, 0.3f, 1.0f, true, vec3_scale(random_direction(random), 2.5f), m);
-        test_matrix_inverse(m, inverse);
-        ck_assert(scene_add_instance(&test->scene, object, m, inverse, &error));
-    }
+    test_scene_quadrics(test, random, 4);
+    test_scene_instances(test, random, object, instances, 1.0f);
     test_scene_finish(test);
     mesh_destroy(&world);
     mesh_destroy(&inner);

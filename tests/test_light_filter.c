@@ -1,36 +1,10 @@
 /* Pixel filters: what is drawn against the filter's definition. */
+#include "filter_cases.h"
 #include "pixel_filter.h"
-#include "filter_setup.h"
-#include "light_fixture.h"
 #include "test_light.h"
 
-typedef struct FilterCase {
-    const char *name;
-    FilterSettings settings;
-} FilterCase;
-
-static const FilterCase CASES[] = {
-    {"box", {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.7f}},
-    {"triangle", {.kind = PIXEL_FILTER_TRIANGLE, .radius_x = 2.0f, .radius_y = 1.0f}},
-    {"gaussian", {.kind = PIXEL_FILTER_GAUSSIAN, .radius_x = 1.5f, .radius_y = 1.5f, .sigma = 0.5f}},
-    {"narrow gaussian", {.kind = PIXEL_FILTER_GAUSSIAN, .radius_x = 1.0f, .radius_y = 3.0f, .sigma = 0.25f}},
-    {"mitchell",
-     {.kind = PIXEL_FILTER_MITCHELL, .radius_x = 2.0f, .radius_y = 2.0f, .b = 1.0f / 3.0f, .c = 1.0f / 3.0f}},
-    {"sharp mitchell", {.kind = PIXEL_FILTER_MITCHELL, .radius_x = 2.0f, .radius_y = 3.0f, .b = 0.0f, .c = 0.75f}},
-    {"sinc", {.kind = PIXEL_FILTER_SINC, .radius_x = 4.0f, .radius_y = 4.0f, .tau = 3.0f}},
-};
-enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
-
 /* Two chi-square tests a case. */
-#define P_MIN (1e-3 / (2.0 * CASE_COUNT))
-
-static void setup(LightFixture *f, const FilterSettings *settings)
-{
-    Error error = {0};
-    fixture_init(f);
-    ck_assert_msg(filter_setup(settings, &f->scene.lookup, &f->scene.frame.filter, &error), "%s", error.message);
-    f->view = (SceneView){.frame = &f->scene.frame, .lookup = f->scene.lookup.data};
-}
+#define P_MIN (1e-3 / (2.0 * FILTER_CASE_COUNT))
 
 /* Integrals over [-radius, radius] of |f|, f, x^2 f and, over `cells` cells, of |f|, by a fine midpoint rule. */
 static void integrate(const FilterSettings *s, double radius, double *absolute, double *moments, double *cells, int n)
@@ -49,9 +23,9 @@ static void integrate(const FilterSettings *s, double radius, double *absolute, 
 START_TEST(test_density)
 {
     enum { CELLS = 40, SAMPLES = 100000 };
-    const FilterSettings *s = &CASES[_i].settings;
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
     LightFixture f;
-    setup(&f, s);
+    fixture_init_filter(&f, s);
     double cells[2][CELLS], observed[2][CELLS] = {{0.0}}, absolute[2], moments[2][2];
     const double radius[2] = {(double)s->radius_x, (double)s->radius_y};
     for (int axis = 0; axis < 2; ++axis)
@@ -62,7 +36,7 @@ START_TEST(test_density)
         const double x[2] = {(double)offset.x, (double)offset.y};
         double sign = filter_evaluate(s, radius[0], x[0]) * filter_evaluate(s, radius[1], x[1]);
         ck_assert(fabs(x[0]) <= radius[0] && fabs(x[1]) <= radius[1]);
-        ck_assert_msg(sign * (double)weight >= 0.0, "%s at %g %g", CASES[_i].name, x[0], x[1]);
+        ck_assert_msg(sign * (double)weight >= 0.0, "%s at %g %g", FILTER_CASES[_i].name, x[0], x[1]);
         for (int axis = 0; axis < 2; ++axis)
             observed[axis][(int)fmin((x[axis] / radius[axis] + 1.0) * 0.5 * CELLS, CELLS - 1)] += 1.0;
     }
@@ -70,7 +44,7 @@ START_TEST(test_density)
         for (int i = 0; i < CELLS; ++i)
             cells[axis][i] *= SAMPLES / absolute[axis];
         double p = test_chi_square(observed[axis], cells[axis], CELLS);
-        ck_assert_msg(p > P_MIN, "%s, axis %d: p = %g", CASES[_i].name, axis, p);
+        ck_assert_msg(p > P_MIN, "%s, axis %d: p = %g", FILTER_CASES[_i].name, axis, p);
     }
     fixture_destroy(&f);
 }
@@ -81,9 +55,9 @@ END_TEST
 START_TEST(test_moments)
 {
     enum { N = 65536 };
-    const FilterSettings *s = &CASES[_i].settings;
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
     LightFixture f;
-    setup(&f, s);
+    fixture_init_filter(&f, s);
     double weight_of_all = 1.0;
     for (int axis = 0; axis < 2; ++axis) {
         double sum = 0.0, first = 0.0, second = 0.0, absolute, moments[2], cells[64];
@@ -98,10 +72,10 @@ START_TEST(test_moments)
             first += w * at;
             second += w * at * at;
         }
-        ck_assert_msg(fabs(sum - 1.0) < 1e-3, "%s: mean weight %g", CASES[_i].name, sum);
-        ck_assert_msg(fabs(first) < 1e-3, "%s: mean %g", CASES[_i].name, first);
-        ck_assert_msg(fabs(second - moments[1] / moments[0]) < 1e-3, "%s: variance %g, not %g", CASES[_i].name, second,
-                      moments[1] / moments[0]);
+        ck_assert_msg(fabs(sum - 1.0) < 1e-3, "%s: mean weight %g", FILTER_CASES[_i].name, sum);
+        ck_assert_msg(fabs(first) < 1e-3, "%s: mean %g", FILTER_CASES[_i].name, first);
+        ck_assert_msg(fabs(second - moments[1] / moments[0]) < 1e-3, "%s: variance %g, not %g", FILTER_CASES[_i].name,
+                      second, moments[1] / moments[0]);
     }
     ck_assert_double_eq_tol((double)f.scene.frame.filter.weight, weight_of_all, 1e-4);
     fixture_destroy(&f);
@@ -112,10 +86,10 @@ END_TEST
 START_TEST(test_filtered_edge)
 {
     enum { SAMPLES = 400000 };
-    const FilterSettings *s = &CASES[_i].settings;
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
     const double edge = 0.4 * (double)s->radius_x;
     LightFixture f;
-    setup(&f, s);
+    fixture_init_filter(&f, s);
     double above = 0.0, all = 0.0, sum = 0.0, squares = 0.0;
     for (int i = 0; i < 100000; ++i) {
         double x = (double)s->radius_x * (2.0 * (i + 0.5) / 100000 - 1.0);
@@ -132,7 +106,8 @@ START_TEST(test_filtered_edge)
     }
     double mean = sum / SAMPLES, error = sqrt((squares / SAMPLES - mean * mean) / SAMPLES);
     double expected = 1.0 + 2.0 * above / all;
-    ck_assert_msg(fabs(mean - expected) < 4.0 * error, "%s: %g, not %g +- %g", CASES[_i].name, mean, expected, error);
+    ck_assert_msg(fabs(mean - expected) < 4.0 * error, "%s: %g, not %g +- %g", FILTER_CASES[_i].name, mean, expected,
+                  error);
     fixture_destroy(&f);
 }
 END_TEST
@@ -140,7 +115,8 @@ END_TEST
 /* pbrt-v4's values. */
 START_TEST(test_definitions)
 {
-    const FilterSettings *g = &CASES[2].settings, *m = &CASES[4].settings, *s = &CASES[6].settings;
+    const FilterSettings *g = &FILTER_CASES[FILTER_GAUSSIAN].settings, *m = &FILTER_CASES[FILTER_MITCHELL].settings,
+                         *s = &FILTER_CASES[FILTER_SINC].settings;
     ck_assert_double_eq_tol(filter_evaluate(g, 1.5, 0.5) / filter_evaluate(g, 1.5, 0.0),
                             (exp(-0.5) - exp(-4.5)) / (1.0 - exp(-4.5)), 1e-12);
     ck_assert_double_eq_tol(filter_evaluate(m, 2.0, 0.0), 16.0 / 18.0, 1e-7);
@@ -173,9 +149,9 @@ END_TEST
 TCase *pixel_filter_case(void)
 {
     TCase *tcase = tcase_create("pixel filter");
-    tcase_add_loop_test(tcase, test_density, 0, CASE_COUNT);
-    tcase_add_loop_test(tcase, test_moments, 0, CASE_COUNT);
-    tcase_add_loop_test(tcase, test_filtered_edge, 0, CASE_COUNT);
+    tcase_add_loop_test(tcase, test_density, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_moments, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_filtered_edge, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_definitions);
     tcase_add_test(tcase, test_bad_settings);
     return tcase;

@@ -24,6 +24,7 @@ int main(void)
     suite_add_tcase(suite, opencl_devices_tests());
     suite_add_tcase(suite, opencl_program_tests());
     suite_add_tcase(suite, opencl_bits_tests());
+    suite_add_tcase(suite, opencl_bidirectional_tests());
     suite_add_tcase(suite, opencl_inspect_tests());
     suite_add_tcase(suite, opencl_pipeline_tests());
     return test_run(suite);

@@ -10,6 +10,7 @@
 TCase *opencl_devices_tests(void);
 TCase *opencl_program_tests(void);
 TCase *opencl_bits_tests(void);
+TCase *opencl_bidirectional_tests(void);
 TCase *opencl_inspect_tests(void);
 TCase *opencl_pipeline_tests(void);
 
@@ -19,6 +20,14 @@ static inline void test_device(OclDevice *device)
     Error error = {0};
     if (!ocl_device_choose(getenv("OPENCL_TEST_DEVICE"), device, &error))
         ck_abort_msg("%s", error.message);
+}
+
+/* Whether its images are to be the CPU's, bit for bit. */
+static inline bool test_device_promises(void)
+{
+    OclDevice device;
+    test_device(&device);
+    return device.info.same_bits;
 }
 
 /* One scene for most tests, so that one program is built for all of them: every kind of shape, a lamp and a point

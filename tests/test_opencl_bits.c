@@ -1,4 +1,5 @@
 /* The same image, bit for bit, on the CPU and on the device. */
+#include "bidirectional.h"
 #include "test_opencl.h"
 
 #include "backend_ocl.h"
@@ -56,37 +57,33 @@ static void backends_agree(const char *what, RenderSetup setup)
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
-static bool device_promises(void)
-{
-    OclDevice device;
-    test_device(&device);
-    return device.info.same_bits;
-}
-
 START_TEST(test_bits_of_shapes)
 {
-    if (device_promises())
+    if (test_device_promises())
         backends_agree("shapes", (RenderSetup){.text = OPENCL_TEST_SCENE, .samples = 5, .max_depth = 30, .seed = 3});
 }
 END_TEST
 
 START_TEST(test_bits_of_materials)
 {
-    if (device_promises())
+    if (test_device_promises())
         backends_agree(
             "materials",
             (RenderSetup){.text = OPENCL_MATERIALS_SCENE, .samples = 8, .max_depth = 12, .seed = 1ull << 40});
 }
 END_TEST
 
+static const Integrator *(*const BIDIRECTIONAL[])(void) = {integrator_ibpt, integrator_bdpt};
+
+/* The scenes above, by both. */
 START_TEST(test_bits_of_bidirectional_paths)
 {
-    if (device_promises())
-        backends_agree("bidirectional", (RenderSetup){.text = OPENCL_MATERIALS_SCENE,
+    if (test_device_promises())
+        backends_agree("bidirectional", (RenderSetup){.text = _i < 2 ? OPENCL_TEST_SCENE : OPENCL_MATERIALS_SCENE,
                                                       .samples = 4,
                                                       .max_depth = 6,
                                                       .seed = 11,
-                                                      .integrator = integrator_bdpt(),
+                                                      .integrator = BIDIRECTIONAL[_i % 2](),
                                                       .balance = true});
 }
 END_TEST
@@ -106,15 +103,33 @@ START_TEST(test_bits_of_clamped_sums)
 }
 END_TEST
 
+/* Every scene of the bidirectional tests, by both; most have a program of their own, so this is for make check-long. */
+START_TEST(test_bits_of_bidirectional_scenes)
+{
+    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
+    for (int i = 0; test_effort() > 1 && test_device_promises() && i < 2; ++i)
+        backends_agree(scene->name, (RenderSetup){.text = bidirectional_text(scene),
+                                                  .samples = 4,
+                                                  .max_depth = scene->depth,
+                                                  .seed = 5,
+                                                  .integrator = BIDIRECTIONAL[i]()});
+}
+END_TEST
+
 /* The scenes of the tree are compared in test_cli.sh. */
 static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
                                             "coffee/gray.pbrt"};
 
 START_TEST(test_bits_of_public_scenes)
 {
+    static const Integrator *(*const all[])(void) = {integrator_pt, integrator_ibpt, integrator_bdpt};
     char path[1200];
-    if (getenv("SCENES") && device_promises() && test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
-        backends_agree(path, (RenderSetup){.path = path, .width = 40, .height = 24, .samples = 4, .seed = 7});
+    if (!getenv("SCENES") || !test_device_promises() || !test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
+        return;
+    for (int i = 0; i < 3; ++i)
+        backends_agree(
+            path,
+            (RenderSetup){.path = path, .width = 40, .height = 24, .samples = 4, .seed = 7, .integrator = all[i]()});
 }
 END_TEST
 
@@ -145,12 +160,21 @@ END_TEST
 TCase *opencl_bits_tests(void)
 {
     TCase *bits = tcase_create("bits");
-    tcase_set_timeout(bits, 120); /* the first time, kernels are built */
+    tcase_set_timeout(bits, 600); /* the first time, kernels are built */
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
-    tcase_add_test(bits, test_bits_of_bidirectional_paths);
     tcase_add_test(bits, test_bits_of_clamped_sums);
+    tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;
+}
+
+TCase *opencl_bidirectional_tests(void)
+{
+    TCase *scenes = tcase_create("bits of bidirectional scenes");
+    tcase_set_timeout(scenes, 300);
+    tcase_add_unchecked_fixture(scenes, bidirectional_files_make, bidirectional_files_remove);
+    tcase_add_loop_test(scenes, test_bits_of_bidirectional_scenes, 0, BIDIRECTIONAL_SCENE_COUNT);
+    return scenes;
 }

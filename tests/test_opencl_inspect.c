@@ -1,76 +1,55 @@
 /* The whole state of every path, step by step: what the device holds is what the CPU holds, and --verify sees when it is
  * not. */
 #include "test_opencl.h"
+#include "verify_fixture.h"
 
-#include "backend_cpu.h"
 #include "backend_ocl.h"
-#include "kernel_list.h"
-#include "path_state.h"
-#include "verify.h"
+#include "state.h"
 
 #include <string.h>
 
 static const atomic_int NEVER = 0;
 
-/* A scene opened on the CPU and on a device, and its list of steps. */
-typedef struct Pair {
-    Scene scene;
-    BackendMember sides[2];
-    StepList list;
-    FrameParams frame;
-} Pair;
-
-static void pair_open(RenderSetup setup, const BackendInterface *device, Pair *pair)
+/* On the CPU and on a device. */
+static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyPair *pair)
 {
-    Error error = {0};
-    RenderOptions options = {.max_depth = setup.max_depth, .seed = setup.seed};
-    fixture_scene(&setup, &pair->scene);
-    pair->sides[0].interface = backend_cpu();
-    pair->sides[1].interface = device;
-    for (int i = 0; i < 2; ++i) {
-        setup.backend = pair->sides[i].interface;
-        pair->sides[i].backend = fixture_open(&setup, &pair->scene, &error);
-        ck_assert_msg(pair->sides[i].backend != NULL, "%s", error.message);
-    }
-    render_frame(integrator_pt(), &pair->scene, &options, &pair->frame);
-    ck_assert(integrator_pt()->list(&pair->frame, &pair->list, &error));
-}
-
-static void pair_close(Pair *pair)
-{
-    for (int i = 0; i < 2; ++i)
-        pair->sides[i].interface->close(pair->sides[i].backend);
-    step_list_destroy(&pair->list);
-    scene_destroy(&pair->scene);
-}
-
-static bool device_promises(void)
-{
-    OclDevice device;
-    test_device(&device);
-    return device.info.same_bits;
+    RenderSetup setups[2] = {setup, setup};
+    setups[1].backend = device;
+    verify_pair_open(setups, pair);
 }
 
 /* Scenes that together have every shape, material, light and texture; batches smaller and larger than verify's blocks,
  * and one that is no multiple of a work-group. */
 START_TEST(test_state_is_the_same)
 {
-    static const struct {
+    const struct {
         const char *text;
         uint batch;
-    } cases[] = {{OPENCL_TEST_SCENE, 0}, {OPENCL_MATERIALS_SCENE, 0}, {OPENCL_MATERIALS_SCENE, 1000}};
-    if (!device_promises())
+        const Integrator *integrator;
+        int depth;
+        uint items;
+    } cases[] = {{OPENCL_TEST_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 1000, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_ibpt(), 5, 3000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000}};
+    if (!test_device_promises())
         return;
-    RenderSetup setup = {.text = cases[_i].text, .max_depth = 7, .seed = 11, .batch = cases[_i].batch};
+    RenderSetup setup = {.text = cases[_i].text,
+                         .max_depth = cases[_i].depth,
+                         .seed = 11,
+                         .batch = cases[_i].batch,
+                         .integrator = cases[_i].integrator};
     Error error = {0};
     VerifyReport report;
-    Pair pair;
+    VerifyPair pair;
     pair_open(setup, backend_ocl(), &pair);
-    ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, 20000, &NEVER, &report, &error), "%s", error.message);
-    ck_assert_uint_eq(report.items, 20000);
+    ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, cases[_i].items, &NEVER, &report, &error), "%s",
+                  error.message);
+    ck_assert_uint_eq(report.items, cases[_i].items);
     ck_assert_uint_gt(report.prefixes, 9);
     ck_assert_uint_le(report.prefixes, pair.list.count);
-    pair_close(&pair);
+    verify_pair_close(&pair);
 }
 END_TEST
 
@@ -102,7 +81,7 @@ START_TEST(test_inspect_is_run)
     SplatSum run = {0}, inspected = {0};
     BackendStatistics before, after;
     Error error = {0};
-    Pair pair;
+    VerifyPair pair;
     pair_open(setup, backend_ocl(), &pair);
     Backend *device = pair.sides[1].backend;
     pair.frame.first_item = 123;
@@ -116,54 +95,26 @@ START_TEST(test_inspect_is_run)
     ck_assert_uint_eq(inspected.items, 357);
     ck_assert_uint_eq(run.sum, inspected.sum);
     ck_assert_uint_eq(before.closest_rays, after.closest_rays); /* inspecting is not rendering */
-    pair_close(&pair);
+    verify_pair_close(&pair);
 }
 END_TEST
 
 /* A device that gets one bit of one word wrong, at an item of the second block, from the first closest hits on. */
-#define FAULT_ITEM 9000u
-
-typedef struct FaultSink {
-    StateSink sink;
-    void *context;
-    const FrameParams *frame;
-} FaultSink;
-
-static void fault_sink(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride)
-{
-    const FaultSink *faulty = context;
-    uint item = FAULT_ITEM - faulty->frame->first_item;
-    if (buffer == BUFFER_HITS && item >= first && item < first + count)
-        ((uint *)(uintptr_t)words)[(size_t)HIT_U * stride + item - first] ^= 1u;
-    faulty->sink(faulty->context, buffer, words, first, count, stride);
-}
-
-static bool fault_inspect(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink,
-                          void *context, Error *error)
-{
-    bool traced = false;
-    for (size_t i = 0; i < list->count; ++i)
-        traced = traced || list->steps[i].kind == STEP_TRACE_CLOSEST;
-    FaultSink faulty = {sink, context, frame};
-    return traced ? backend_ocl()->inspect(backend, frame, list, fault_sink, &faulty, error)
-                  : backend_ocl()->inspect(backend, frame, list, sink, context, error);
-}
-
 START_TEST(test_fault_is_named)
 {
     RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 3};
-    BackendInterface faulty = *backend_ocl();
+    const Fault fault = {.kind = STEP_TRACE_CLOSEST, .buffer = BUFFER_HITS, .field = HIT_U, .item = 9000};
+    BackendInterface faulty = fault_backend(backend_ocl(), &fault);
     Error error = {0};
     VerifyReport report;
-    Pair pair;
-    if (!device_promises())
+    VerifyPair pair;
+    if (!test_device_promises())
         return;
-    faulty.inspect = fault_inspect;
     pair_open(setup, &faulty, &pair);
     ck_assert(!verify_run(pair.sides, &pair.frame, &pair.list, 10000, &NEVER, &report, &error));
     ck_assert_msg(strstr(error.message, "closest hits (segment 1), item 9000: hit u is"), "%s", error.message);
     ck_assert_uint_eq(report.items, 8192);
-    pair_close(&pair);
+    verify_pair_close(&pair);
 }
 END_TEST
 
@@ -173,12 +124,12 @@ START_TEST(test_failure)
     RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 3, .batch = 1024};
     Error error = {0};
     VerifyReport report;
-    Pair pair;
+    VerifyPair pair;
     setenv("TWINLIGHT_TEST_FAIL_BATCH", "5", 1);
     pair_open(setup, backend_ocl(), &pair);
     ck_assert(!verify_run(pair.sides, &pair.frame, &pair.list, 5000, &NEVER, &report, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "CL_OUT_OF_RESOURCES"));
-    pair_close(&pair);
+    verify_pair_close(&pair);
 }
 END_TEST
 
@@ -186,7 +137,7 @@ TCase *opencl_inspect_tests(void)
 {
     TCase *inspect = tcase_create("inspect");
     tcase_set_timeout(inspect, 120);
-    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 3);
+    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 5);
     tcase_add_test(inspect, test_inspect_is_run);
     tcase_add_test(inspect, test_fault_is_named);
     tcase_add_test(inspect, test_failure);

@@ -59,12 +59,18 @@ static int occurrences(const char *text, const char *what)
     return count;
 }
 
+static char *text_read(const char *folder, const char *name)
+{
+    Error error = {0};
+    char *text = program_source_read(folder, name, &error);
+    ck_assert_msg(text != NULL, "%s", error.message);
+    return text;
+}
+
 START_TEST(test_text_is_whole)
 {
     char folder[PATH_MAX];
-    Error error = {0};
-    char *text = program_source_read(sources_folder(folder, sizeof folder), "kernels.cl", &error);
-    ck_assert_msg(text != NULL, "%s", error.message);
+    char *text = text_read(sources_folder(folder, sizeof folder), "kernels.cl");
     ck_assert_int_eq(occurrences(text, "#include \""), 0);
     ck_assert_int_eq(occurrences(text, "#line 1 \"shared/vec.h\"\n"), 1);
     ck_assert_int_eq(occurrences(text, "__kernel void pt_start_paths("), 1);
@@ -76,12 +82,10 @@ END_TEST
 START_TEST(test_text_keeps_lines)
 {
     char folder[PATH_MAX];
-    Error error = {0};
     scratch_make(folder, sizeof folder);
     scratch_write(folder, "a.cl", "one\n  #  include \"b.h\"\nthree\n#include \"b.h\"\n#include <math.h>\nlast");
     scratch_write(folder, "b.h", "inside\n");
-    char *text = program_source_read(folder, "a.cl", &error);
-    ck_assert_msg(text != NULL, "%s", error.message);
+    char *text = text_read(folder, "a.cl");
     ck_assert_str_eq(text, "#line 1 \"shared/a.cl\"\none\n#line 1 \"shared/b.h\"\ninside\n#line 3 \"shared/a.cl\"\n"
                            "three\n#line 5 \"shared/a.cl\"\n#include <math.h>\nlast");
     free(text);

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Check's macros print floats as doubles. */
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+
 /* Runs the suite; the program's exit status is the result. */
 static inline int test_run(Suite *suite)
 {
@@ -38,6 +41,14 @@ static inline const char *test_source_folder(void)
 {
     const char *folder = getenv("srcdir");
     return folder ? folder : "..";
+}
+
+/* $TWINLIGHT_TEST_EFFORT, 1 when it is not set: by how much long tests look longer (make check-long). */
+static inline unsigned test_effort(void)
+{
+    const char *text = getenv("TWINLIGHT_TEST_EFFORT");
+    int effort = text ? atoi(text) : 1;
+    return effort > 0 ? (unsigned)effort : 1;
 }
 
 /* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line on
