@@ -1,4 +1,4 @@
-/* Before any shared header: everything is inlined into the loops of this file. */
+/* Before any shared header: everything is inlined into the loops of this file, those of path tracing. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif
@@ -7,11 +7,7 @@
 
 #include "kernel_loop.h"
 
-#include "count.cl"
-#include "film_add.cl"
 #include "pt.cl"
-#include "trace.cl"
-#include "walk.cl"
 
 #include <assert.h>
 

@@ -89,6 +89,19 @@ static bool strategy_check(const RenderJob *job, Error *error)
         error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
         return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
     }
+    if (option && job->integrator == integrator_mmlt()) {
+        error_set(error, "--%s is not for mmlt, whose chains go over all strategies by the balance heuristic", option);
+        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
+    }
+    if (command->chain_option && job->integrator != integrator_mmlt()) {
+        error_set(error, "--%s is for mmlt, and %s has no Markov chains", command->chain_option, job->integrator->name);
+        return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);
+    }
+    if (command->chains.large_step > 0.0 && !command->chains.paper) {
+        error_set(error,
+                  "--large-step is for --mlt-scheme=paper: generations begin anew instead of making large steps");
+        return error_fix(error, "add --mlt-scheme=paper, or leave --large-step out");
+    }
     unsigned s = command->strategy[0], t = command->strategy[1];
     if (!command->only_strategy || strategy_taken(job->integrator->strategies, s, s + t - 1))
         return true;
@@ -173,6 +186,7 @@ static RenderOptions render_settings(const RenderJob *job)
         .samples = (unsigned)command->samples,
         .seconds = command->seconds,
         .max_depth = settings->max_depth,
+        .chains = command->chains,
         .balance = command->balance,
         .only_strategy = command->only_strategy,
         .strategy = {command->strategy[0], command->strategy[1]},
@@ -324,6 +338,11 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     if (!settings_override(job, error) || !depth_check(job, error))
         return EXIT_USAGE;
+    if (command->verify && !job->integrator->list) {
+        error_set(error, "--verify compares the steps of pt, ibpt and bdpt; chains are compared by their images");
+        error_fix(error, "render with --backend=cpu and --backend=opencl, and compare the files");
+        return EXIT_USAGE;
+    }
     if (command->verify)
         return job_verify(job, error);
     if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error))

@@ -28,6 +28,10 @@
 #define CHAINS_FIRST 4096u
 #define STEPS_DEFAULT 64u
 
+/* Chains of `paper`, and what one of them is chosen from. */
+#define PAPER_CHAINS_DEFAULT 16384u
+#define PAPER_POOL_PER_CHAIN 8u
+
 /* Chain steps that take about as long as a sample of the pool. */
 #define STEPS_PER_POOL_SAMPLE 12u
 #define LARGE_STEP_DEFAULT 0.3
@@ -45,6 +49,7 @@ typedef struct Mmlt {
     StepList direct, pool, chains;
     uint64_t direct_done, steps_done;
     uint next_sample; /* of the pool: numbers below it are used */
+    uint pool_sample; /* the first of the latest pool */
     uint generation;
     uint pool_count, chain_count; /* of the buffers */
     uint *pool_words, *chain_words;
@@ -146,14 +151,48 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
     mmlt->chains.pass_stride = count;
     frame.film_exponent = mmlt->film.quantum_exponent;
     frame.brightness = (float)mmlt->brightness;
-    frame.sample_index = mmlt->next_sample;
+    frame.sample_index = mmlt->pool_sample;
     frame.roulette_depth = NONE;
     frame.item_count = count;
     film_clear(&mmlt->film);
     const SplatSink sink = render_run_sink(&mmlt->film);
     bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
     *whole = delivered == count;
+    if (frame.keep_chains) /* their coordinates are there */
+        for (uint i = 0; i < count; ++i)
+            mmlt->chain_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
     return done;
+}
+
+/* A pool, and where `count` chains begin. *whole: not stopped before its end. */
+static bool seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+{
+    uint64_t wanted =
+        mmlt->options.pool ? mmlt->options.pool : (uint64_t)count * mmlt->options.steps / STEPS_PER_POOL_SAMPLE;
+    uint pool_count = wanted < 1u << 30 ? (uint)wanted : 1u << 30;
+    if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
+        return false;
+    mmlt->pool_sample = mmlt->next_sample;
+    mmlt->next_sample += samples_of(mmlt->run, pool_count);
+    mmlt->run->chains.pool_samples += pool_count;
+    mmlt->run->chains.seeds += count;
+    return true;
+}
+
+/* How often chains of each depth took what they proposed. */
+static void tally_chains(Mmlt *mmlt, uint count)
+{
+    ChainStatistics *statistics = &mmlt->run->chains;
+    const uint *words = mmlt->chain_words;
+    for (uint i = 0; i < count; ++i) {
+        uint depth = chain_key_depth(words[(size_t)CHAIN_PASS_KEY * count + i]) % CHAIN_DEPTHS;
+        for (uint kind = 0; kind < MUTATION_COUNT; ++kind) {
+            uint tally = words[(size_t)(CHAIN_PASS_TALLY + kind) * count + i];
+            statistics->proposals[kind][depth] += tally & 0xffffu;
+            statistics->accepted[kind][depth] += tally >> 16;
+        }
+    }
+    statistics->steps += (uint64_t)count * mmlt->options.steps;
 }
 
 /* A generation counts only as a whole: its chains are in the order of their paths. */
@@ -161,20 +200,22 @@ static bool generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error
 {
     RenderRun *run = mmlt->run;
     uint steps = mmlt->options.steps;
-    uint64_t wanted = mmlt->options.pool ? mmlt->options.pool : (uint64_t)count * steps / STEPS_PER_POOL_SAMPLE;
-    uint pool_count = wanted < 1u << 30 ? (uint)wanted : 1u << 30;
-    bool whole = false;
-    if (!pool_run(mmlt, pool_count, stop, &whole, error))
+    bool whole = true, anew = !mmlt->options.paper || mmlt->generation == 0;
+    double begin = timing_now();
+    if (anew && !seeds_run(mmlt, count, stop, &whole, error))
         return false;
-    if (whole && (!chains_begin(mmlt, pool_count, count, error) || !chains_run(mmlt, count, stop, &whole, error)))
+    double seeded = timing_now();
+    if (whole && !chains_run(mmlt, count, stop, &whole, error))
         return false;
-    mmlt->next_sample += samples_of(run, pool_count);
     ++mmlt->generation;
     if (!whole)
         return true;
     mmlt->film.light_samples = (uint64_t)count * steps;
     if (!film_merge(run->film, &mmlt->film, error))
         return false;
+    tally_chains(mmlt, count);
+    run->chains.pool_seconds += seeded - begin;
+    run->chains.chain_seconds += timing_now() - seeded;
     mmlt->steps_done += (uint64_t)count * steps;
     run->done = mmlt->steps_done;
     return true;
@@ -201,6 +242,8 @@ static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
     const RenderOptions *options = run->options;
     uint chains = mmlt->options.chains < CHAINS_FIRST ? mmlt->options.chains : CHAINS_FIRST;
     uint64_t left = (total + mmlt->options.steps - 1) / mmlt->options.steps;
+    if (mmlt->options.paper)
+        chains = mmlt->options.chains;
     chains = left < chains ? (uint)left : chains;
     while (mmlt->steps_done < total) {
         bool first = mmlt->generation == 0;
@@ -210,22 +253,27 @@ static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
             return false;
         uint64_t direct = (uint64_t)(DIRECT_PART * (double)mmlt->steps_done);
         direct = direct < run->crop_pixels ? run->crop_pixels : direct;
+        double chained = timing_now();
         if (!direct_run(mmlt, direct, stop, error))
             return false;
         double now = timing_now();
+        run->chains.direct_seconds += now - chained;
         render_run_report(run, options->samples > 0 ? (double)mmlt->steps_done / (double)total : 0.0);
         if ((options->stop && *options->stop) || (options->seconds > 0.0 && now - run->start >= options->seconds))
             break;
         if (!render_run_save_if_due(run, error))
             return false;
-        chains = chains_next(mmlt, chains, now - begin, total);
+        if (!mmlt->options.paper)
+            chains = chains_next(mmlt, chains, now - begin, total);
     }
     return true;
 }
 
 static void options_complete(ChainOptions *options)
 {
-    options->chains = options->chains ? options->chains : CHAINS_DEFAULT;
+    options->chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    if (options->paper && !options->pool)
+        options->pool = PAPER_POOL_PER_CHAIN * options->chains;
     options->steps = options->steps ? options->steps : STEPS_DEFAULT;
     options->mutations = options->mutations ? options->mutations : 7u;
     if (options->paper && !(options->large_step > 0.0))
@@ -243,7 +291,8 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     frame->mis_exponent = 1;
     frame->mutations = mmlt->options.mutations;
     frame->group_mutations = !mmlt->options.ungrouped;
-    frame->large_step = 0.0f;
+    frame->large_step = mmlt->options.paper ? (float)mmlt->options.large_step : 0.0f;
+    frame->keep_chains = mmlt->options.paper;
     pool_frame = *frame;
     pool_frame.pool = 1;
     return integrator_pt()->list(&mmlt->direct_frame, &mmlt->direct, error) &&

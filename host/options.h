@@ -7,7 +7,7 @@
 #include "error.h"
 
 /* Of one command, --help among them. */
-#define OPTION_SPECS_MAX 32
+#define OPTION_SPECS_MAX 64
 
 typedef struct OptionSpec {
     const char *name; /* without dashes */

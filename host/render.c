@@ -230,6 +230,7 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     result->seconds = timing_now() - run->start;
     run->interface->statistics(run->backend, &result->backend);
     run->interface->diagnostics(run->backend, counters);
+    result->chains = run->chains;
     result->stopped = run->options->stop && *run->options->stop;
     result->diagnostic_count = 0;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {

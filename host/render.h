@@ -49,6 +49,16 @@ typedef struct RenderCallbacks {
     void *context;
 } RenderCallbacks;
 
+#define CHAIN_KINDS 4 /* MUTATION_* */
+#define CHAIN_DEPTHS 32
+
+/* What Markov chains did. */
+typedef struct ChainStatistics {
+    uint64_t pool_samples, seeds, steps;
+    uint64_t proposals[CHAIN_KINDS][CHAIN_DEPTHS], accepted[CHAIN_KINDS][CHAIN_DEPTHS]; /* by depth */
+    double pool_seconds, chain_seconds, direct_seconds;
+} ChainStatistics;
+
 /* What happened inside the kernels: names from diagnostics.h. */
 typedef struct RenderResult {
     uint64_t samples; /* paths */
@@ -56,6 +66,7 @@ typedef struct RenderResult {
     double seconds; /* rendering alone */
     bool stopped; /* by options->stop */
     BackendStatistics backend;
+    ChainStatistics chains;
     int diagnostic_count;
     const char *diagnostic_names[DIAGNOSTIC_NAMES_MAX];
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];

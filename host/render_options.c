@@ -9,7 +9,7 @@
 static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
-                           "algorithm: pt, path tracing (default), bdpt or ibpt, bidirectional"},
+                           "algorithm: pt, path tracing (default), bdpt or ibpt, bidirectional, or mmlt, Metropolis"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
@@ -21,6 +21,15 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                        "OpenCL devices, by number or part of a name as twinlight devices has them (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
     [OPTION_FILM] = {"film", 0, "WHERE", "who adds the paths of OpenCL devices to the film: host (default) or device"},
+    [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME",
+                           "how mmlt runs its chains: generations (default) or paper, one start and large steps"},
+    [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: Markov chains at a time, at most (default: 524288)"},
+    [OPTION_STEPS] = {"steps", 0, "N", "mmlt: steps of a chain between two pools (default: 64)"},
+    [OPTION_POOL] = {"pool", 0, "N", "mmlt: samples from which chains begin (default: as long as the steps take)"},
+    [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
+    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
+    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order of their pool, not by depth and strategy"},
+    [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
@@ -104,6 +113,74 @@ static bool film_set(RenderCommand *command, const char *value, Error *error)
     return error_fix(error, "use host or device");
 }
 
+static bool scheme_set(ChainOptions *chains, const char *value, Error *error)
+{
+    chains->paper = strcmp(value, "paper") == 0;
+    if (chains->paper || strcmp(value, "generations") == 0)
+        return true;
+    error_set(error, "--mlt-scheme=%s: there is no such scheme", value);
+    return error_fix(error, "use generations or paper");
+}
+
+/* Names with commas between. */
+static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
+{
+    static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
+    chains->mutations = 0;
+    for (const char *name = value;; ++name) {
+        size_t length = strcspn(name, ",");
+        unsigned found = 0;
+        for (unsigned i = 0; i < sizeof NAMES / sizeof NAMES[0]; ++i)
+            if (strlen(NAMES[i]) == length && strncmp(NAMES[i], name, length) == 0)
+                found = 1u << i;
+        if (!found) {
+            error_set(error, "--mutations=%s: %.*s is no kind of mutation", value, (int)length, name);
+            return error_fix(error, "use all, light and camera, with commas between");
+        }
+        chains->mutations |= found;
+        name += length;
+        if (*name == '\0')
+            return true;
+    }
+}
+
+static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)
+{
+    uint64_t whole;
+    if (!option_whole(name, value, 1, high, &whole, error))
+        return false;
+    *number = (unsigned)whole;
+    return true;
+}
+
+/* Options of Markov chains. */
+static bool chain_option_set(RenderCommand *command, int option, const char *value, Error *error)
+{
+    ChainOptions *chains = &command->chains;
+    const char *name = SPECS[option].name;
+    command->chain_option = name;
+    switch (option) {
+    case OPTION_MLT_SCHEME:
+        return scheme_set(chains, value, error);
+    case OPTION_CHAINS:
+        return chain_number_set(name, value, 1u << 26, &chains->chains, error);
+    case OPTION_STEPS:
+        return chain_number_set(name, value, 1u << 14, &chains->steps, error);
+    case OPTION_POOL:
+        return chain_number_set(name, value, 1u << 30, &chains->pool, error);
+    case OPTION_MUTATIONS:
+        return mutations_set(chains, value, error);
+    case OPTION_NO_SORT:
+        chains->unsorted = true;
+        return true;
+    case OPTION_NO_GROUP:
+        chains->ungrouped = true;
+        return true;
+    default:
+        return option_number(name, value, 1e-6, 1.0, &chains->large_step, error);
+    }
+}
+
 static bool option_set(void *context, int index, const char *value, Error *error)
 {
     Parse *parse = context;
@@ -159,6 +236,15 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_QUIET:
         command->quiet = true;
         return true;
+    case OPTION_MLT_SCHEME:
+    case OPTION_CHAINS:
+    case OPTION_STEPS:
+    case OPTION_POOL:
+    case OPTION_LARGE_STEP:
+    case OPTION_MUTATIONS:
+    case OPTION_NO_SORT:
+    case OPTION_NO_GROUP:
+        return chain_option_set(command, option, value, error);
     default:
         return number_set(parse, option, value, error);
     }

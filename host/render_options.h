@@ -3,6 +3,7 @@
 #define TWINLIGHT_RENDER_OPTIONS_H
 
 #include "backend_choice.h"
+#include "render.h"
 
 /* Strings are borrowed from argv. */
 typedef struct RenderCommand {
@@ -15,6 +16,8 @@ typedef struct RenderCommand {
     bool balance; /* balance heuristic */
     bool only_strategy, unweighted;
     unsigned strategy[2]; /* s, t */
+    ChainOptions chains;
+    const char *chain_option; /* the last one given; NULL: none */
     BackendChoices backends; /* at least one */
     bool verify; /* compare them with `reference` instead of rendering */
     const BackendInterface *reference;
@@ -48,6 +51,14 @@ typedef enum RenderOption {
     OPTION_DEVICE,
     OPTION_BATCH,
     OPTION_FILM,
+    OPTION_MLT_SCHEME,
+    OPTION_CHAINS,
+    OPTION_STEPS,
+    OPTION_POOL,
+    OPTION_LARGE_STEP,
+    OPTION_MUTATIONS,
+    OPTION_NO_SORT,
+    OPTION_NO_GROUP,
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_MAX_DEPTH,

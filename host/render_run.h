@@ -14,6 +14,7 @@ typedef struct RenderRun {
     uint64_t crop_pixels;
     uint64_t done; /* samples in the film */
     double start, last_save;
+    ChainStatistics chains;
 } RenderRun;
 
 /* Adds splats to the film; frame.film_exponent must be its quantum_exponent. */

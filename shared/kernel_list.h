@@ -8,12 +8,6 @@
 
 /* X(name, number of arguments, the BufferId of each in order) */
 #define KERNEL_LIST_PATHS(X)                                                                                           \
-    X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
-    X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
-    X(film_add, 3, BUFFER_FRAME, BUFFER_SPLATS, BUFFER_FILM)                                                           \
-    X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
-      BUFFER_HITS)                                                                                                     \
-    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
     X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
       BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
     X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
@@ -22,7 +16,16 @@
     X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
     X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_DIAGNOSTICS)                                                                                              \
-    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+
+/* Rays, sums, and the walks of tests. */
+#define KERNEL_LIST_OTHERS(X)                                                                                          \
+    X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
+    X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
+    X(film_add, 3, BUFFER_FRAME, BUFFER_SPLATS, BUFFER_FILM)                                                           \
+    X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
+      BUFFER_HITS)                                                                                                     \
+    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
     X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
     X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
       BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
@@ -69,7 +72,7 @@
     X(mlt_end, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SPLATS,            \
       BUFFER_PASS, BUFFER_DIAGNOSTICS)
 
-#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
+#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths ...: what Step.kernel holds. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,
