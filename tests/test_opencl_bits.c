@@ -98,7 +98,7 @@ START_TEST(test_bits_of_clamped_sums)
     fixture_render(&setup, &image);
     ck_assert_uint_gt(image.film.saturated, 1000);
     fixture_destroy(&image);
-    if (device_promises())
+    if (test_device_promises())
         backends_agree("clamped", setup);
 }
 END_TEST
