@@ -35,7 +35,8 @@ static void compare(const char *name, const char *placed, const char *flat)
     RenderedImage images[2];
     for (int i = 0; i < 2; ++i)
         analytic_picture(&images[i], 64, 6, STAGE "%s", i ? flat : placed);
-    double difference = fixture_block_difference((PictureView){images[0].rgb, 32, 24}, (PictureView){images[1].rgb, 32, 24}, 8);
+    double difference =
+        fixture_block_difference((PictureView){images[0].rgb, 32, 24}, (PictureView){images[1].rgb, 32, 24}, 8);
     analytic_check(name, fixture_mean(&images[0]), fixture_mean(&images[1]), ANALYTIC_TOLERANCE);
     fprintf(stderr, "    blocks differ by %.3f %%\n", 100.0 * difference);
     ck_assert_double_le(difference, 0.01);
