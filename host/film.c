@@ -167,7 +167,7 @@ void film_clear(Film *film)
     film->light_samples = film->saturated = film->not_finite = 0;
 }
 
-void film_resolve(const Film *film, float scale, float *rgb)
+void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
 {
     const double unit = ldexp((double)scale, film->quantum_exponent);
     size_t pixels = film_pixels(film);
@@ -179,10 +179,15 @@ void film_resolve(const Film *film, float scale, float *rgb)
         uint32_t count = film->counts[i];
         for (size_t c = 0; c < 3; ++c) {
             int64_t sum = film->sums[3 * i + c];
-            double value = count ? (double)sum * unit / count : 0.0;
-            if (film->light_sums)
+            double value = count && part != FILM_LIGHT ? (double)sum * unit / count : 0.0;
+            if (film->light_sums && part != FILM_OWN)
                 value += (double)film->light_sums[3 * i + c] * light_unit;
             rgb[3 * i + c] = (float)value;
         }
     }
+}
+
+void film_resolve(const Film *film, float scale, float *rgb)
+{
+    film_resolve_part(film, FILM_ALL, scale, rgb);
 }

@@ -48,6 +48,10 @@ bool film_merge(Film *film, const Film *from, Error *error);
 /* Empties the film; size and quantum stay. */
 void film_clear(Film *film);
 
+/* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
+typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;
+void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb);
+
 /* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the first
  * is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
 void film_resolve(const Film *film, float scale, float *rgb);

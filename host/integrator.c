@@ -12,7 +12,7 @@ void step_list_destroy(StepList *list)
 
 const Integrator *integrator_find(const char *name, Error *error)
 {
-    const Integrator *const integrators[] = {integrator_mmlt(), integrator_pt(), integrator_ibpt(), integrator_bdpt()};
+    const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
     char names[256] = "";
     for (size_t i = 0; i < sizeof integrators / sizeof integrators[0]; ++i) {
         if (strcmp(integrators[i]->name, name) == 0)

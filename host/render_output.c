@@ -85,6 +85,14 @@ bool render_output_distinct(const RenderOutput *output, const char *stats, const
     return true;
 }
 
+/* Layers of an image of chains: what path tracing saw, and what the chains brought. Together they are the picture. */
+#define LAYER_COUNT 2
+#define LAYER_CHANNELS(name, rgb)                                                                                      \
+    {name ".B", (rgb) + 2, 3, false}, {name ".G", (rgb) + 1, 3, false},                                                \
+    {                                                                                                                  \
+        name ".R", rgb, 3, false                                                                                       \
+    }
+
 static bool exr_output_write(const RenderOutput *output, const Film *film, const float *rgb, double samples_per_pixel,
                              Error *error)
 {
@@ -101,19 +109,30 @@ static bool exr_output_write(const RenderOutput *output, const Film *film, const
         {"scene", path_file_name(output->scene_file)},
         {"seed", seed},
     };
-    const ExrChannel channels[] = {{"B", rgb + 2, 3, false}, {"G", rgb + 1, 3, false}, {"R", rgb, 3, false}};
-    return exr_write(output->exr, channels, 3, film->width, film->height, film->crop, attributes,
+    size_t floats = 3 * film_pixels(film);
+    const ExrChannel channels[] = {{"B", rgb + 2, 3, false},
+                                   {"G", rgb + 1, 3, false},
+                                   {"R", rgb, 3, false},
+                                   LAYER_CHANNELS("direct", rgb + floats),
+                                   LAYER_CHANNELS("indirect", rgb + 2 * floats)};
+    size_t count = film->light_samples > 0 ? 3 * (1 + LAYER_COUNT) : 3;
+    return exr_write(output->exr, channels, count, film->width, film->height, film->crop, attributes,
                      sizeof attributes / sizeof attributes[0], error);
 }
 
 bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
 {
     int width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
-    size_t bytes = 3 * sizeof(float) * (size_t)width * (size_t)height;
+    size_t floats = 3 * (size_t)width * (size_t)height;
+    size_t bytes = (film->light_samples > 0 ? 1 + LAYER_COUNT : 1) * floats * sizeof(float);
     float *rgb = malloc(bytes);
     if (!rgb)
         return error_memory(error, bytes, "the picture");
     film_resolve(film, output->film_scale, rgb);
+    if (film->light_samples > 0) {
+        film_resolve_part(film, FILM_OWN, output->film_scale, rgb + floats);
+        film_resolve_part(film, FILM_LIGHT, output->film_scale, rgb + 2 * floats);
+    }
     bool written = exr_output_write(output, film, rgb, samples_per_pixel, error) &&
                    (!output->png[0] || png_write(output->png, rgb, width, height, output->exposure, error));
     free(rgb);

@@ -51,6 +51,32 @@ static void stats_rays(JsonWriter *json, const RenderResult *result)
     json_object_end(json);
 }
 
+/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
+static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
+{
+    static const char *const KINDS[CHAIN_KINDS] = {"all", "light", "camera", "large"};
+    json_object_begin(json, "chains");
+    json_unsigned(json, "pool_samples", chains->pool_samples);
+    json_unsigned(json, "seeds", chains->seeds);
+    json_unsigned(json, "mutations", chains->steps);
+    json_number(json, "pool_seconds", chains->pool_seconds);
+    json_number(json, "chain_seconds", chains->chain_seconds);
+    json_number(json, "direct_seconds", chains->direct_seconds);
+    json_object_begin(json, "acceptance");
+    for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
+        json_object_begin(json, KINDS[kind]);
+        for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+            char name[16];
+            snprintf(name, sizeof name, "%d", depth);
+            if (chains->proposals[kind][depth] > 0)
+                json_number(json, name, (double)chains->accepted[kind][depth] / (double)chains->proposals[kind][depth]);
+        }
+        json_object_end(json);
+    }
+    json_object_end(json);
+    json_object_end(json);
+}
+
 static void stats_diagnostics(JsonWriter *json, const RenderStats *stats)
 {
     const RenderResult *result = stats->result;
@@ -89,6 +115,8 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_bool(&json, "stopped", result->stopped);
     stats_seconds(&json, stats);
     stats_rays(&json, result);
+    if (result->chains.steps > 0)
+        stats_chains(&json, &result->chains);
     json_unsigned(&json, "peak_memory_bytes", timing_peak_memory());
     json_unsigned(&json, "backend_bytes", result->backend.bytes);
     stats_diagnostics(&json, stats);

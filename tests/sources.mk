@@ -8,6 +8,7 @@ check_PROGRAMS += \
 	tests/test_bidirectional \
 	tests/test_bsdf \
 	tests/test_bvh \
+	tests/test_chain_seeds \
 	tests/test_emit \
 	tests/test_film \
 	tests/test_geometry \
