@@ -2,4 +2,7 @@
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA = \
 	scenes/cornell.pbrt \
+	scenes/door.pbrt \
+	scenes/lamp.pbrt \
+	scenes/pool.pbrt \
 	scenes/showcase.pbrt
