@@ -18,25 +18,40 @@
 #define CHAIN_KEY BD_HEADER_WORDS /* chain_key of the current path; 0: the chain never began */
 #define CHAIN_PROPOSED_KEY (BD_HEADER_WORDS + 1u)
 #define CHAIN_STEP (BD_HEADER_WORDS + 2u) /* number of the proposal, for its random numbers */
-#define CHAIN_MUTATION (BD_HEADER_WORDS + 3u) /* of the proposal: MUTATION_* */
-#define CHAIN_CHANGED (BD_HEADER_WORDS + 4u) /* halves that the proposal has of its own: HALF_* */
-#define CHAIN_REACHED (BD_HEADER_WORDS + 5u) /* halves of the proposal whose last vertex is there */
-#define CHAIN_BANKS (BD_HEADER_WORDS + 6u) /* HALF_*: the current path's is in bank 1 */
-#define CHAIN_LUMINANCE (BD_HEADER_WORDS + 7u) /* f of the current path */
-#define CHAIN_COLOR (BD_HEADER_WORDS + 8u) /* its contribution over f, 3 */
-#define CHAIN_FILM (BD_HEADER_WORDS + 11u) /* where the film sees it, 2 */
-#define CHAIN_PENDING (BD_HEADER_WORDS + 13u) /* expected visits of the current path that the film has not got yet */
-#define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 14u) /* 2 */
-#define CHAIN_TALLY (BD_HEADER_WORDS + 16u) /* proposals | accepted << 16 of each kind of mutation, 4 */
+#define CHAIN_MOVE (BD_HEADER_WORDS + 3u) /* MOVE_*, four bits each */
+#define CHAIN_LUMINANCE (BD_HEADER_WORDS + 4u) /* f of the current path */
+#define CHAIN_COLOR (BD_HEADER_WORDS + 5u) /* its contribution over f, 3 */
+#define CHAIN_FILM (BD_HEADER_WORDS + 8u) /* where the film sees it, 2 */
+#define CHAIN_PENDING (BD_HEADER_WORDS + 10u) /* expected visits of the current path that the film has not got yet */
+#define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 11u) /* 2 */
+#define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
 /* What the connection has to know of a half of the path, twice for each side: chain_half. */
-#define CHAIN_HALVES (BD_HEADER_WORDS + 20u)
-#define CHAIN_NUMBERS (CHAIN_HALVES + 4u * CHAIN_HALF_WORDS)
+#define CHAIN_HALVES (BD_HEADER_WORDS + 17u)
+#define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_HALF_WORDS + CHAIN_CAMERA_HALF_WORDS))
+
+/* Places in CHAIN_MOVE. */
+#define MOVE_MUTATION 0u /* of the proposal: MUTATION_* */
+#define MOVE_CHANGED 4u /* halves that the proposal has of its own: HALF_* */
+#define MOVE_REACHED 8u /* halves of the proposal whose last vertex is there */
+#define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
+
+SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint t, uint place)
+{
+    return state_load(paths, stride, CHAIN_MOVE, t) >> place & 0xfu;
+}
+
+SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, uint place, uint value)
+{
+    uint word = state_load(paths, stride, CHAIN_MOVE, t);
+    state_store(paths, stride, CHAIN_MOVE, t, (word & ~(0xfu << place)) | value << place);
+}
 
 #define CHAIN_HALF_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
 #define CHAIN_HALF_BACK 1u /* BD_BACK of the last vertex */
 #define CHAIN_HALF_EMITTER_FLAGS 2u
 #define CHAIN_HALF_CONNECT 3u
-#define CHAIN_HALF_WORDS 4u
+#define CHAIN_LIGHT_HALF_WORDS 4u
+#define CHAIN_CAMERA_HALF_WORDS 2u /* without the last two */
 
 #define HALF_LIGHT 0x1u
 #define HALF_CAMERA 0x2u
@@ -45,13 +60,14 @@
 /* Fields of half `side` (SIDE_*) in bank 0 or 1. */
 SHARED_FUNCTION uint chain_half(uint side, uint bank)
 {
-    return CHAIN_HALVES + (2u * side + bank) * CHAIN_HALF_WORDS;
+    return CHAIN_HALVES + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_HALF_WORDS
+                                              : 2u * CHAIN_LIGHT_HALF_WORDS + bank * CHAIN_CAMERA_HALF_WORDS);
 }
 
 /* The bank of a half of the proposal: the one that the current path does not have where the half is its own. */
 SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint t, uint side)
 {
-    uint banks = state_load(paths, stride, CHAIN_BANKS, t) ^ state_load(paths, stride, CHAIN_CHANGED, t);
+    uint banks = chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED);
     return banks >> side & 1u;
 }
 
@@ -156,11 +172,11 @@ SHARED_FUNCTION uint mutation_offset(uint bits)
 SHARED_FUNCTION Random4 chain_proposed(__global const FrameParams *frame, __global const uint *paths, uint t,
                                        uint first, uint count, uint part, uint block)
 {
-    uint stride = frame->stride, mutation = state_load(paths, stride, CHAIN_MUTATION, t);
+    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
     Random4 numbers;
     for (uint i = 0u; i < 4u; ++i)
         numbers.x[i] = i < count ? state_load(paths, stride, CHAIN_NUMBERS + first + i, t) : 0u;
-    if (mutation == MUTATION_REPLAY || (state_load(paths, stride, CHAIN_CHANGED, t) & part) == 0u)
+    if (mutation == MUTATION_REPLAY || (chain_move(paths, stride, t, MOVE_CHANGED) & part) == 0u)
         return numbers;
     Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), block);
     bool large = mutation == MUTATION_LARGE;
@@ -204,7 +220,7 @@ SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint
 /* The proposal's coordinates become the chain's. */
 SHARED_FUNCTION void chain_take_numbers(__global const FrameParams *frame, __global uint *paths, uint t)
 {
-    uint stride = frame->stride, changed = state_load(paths, stride, CHAIN_CHANGED, t);
+    uint stride = frame->stride, changed = chain_move(paths, stride, t, MOVE_CHANGED);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), count = chain_vertex_numbers(frame);
     uint d = chain_key_depth(key), s = chain_key_s(key);
     if ((changed & HALF_CAMERA) != 0u)

@@ -44,14 +44,13 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     uint words = NUMBER_VERTICES + (chain_key_depth(key) - 1u) * chain_vertex_numbers(frame);
     state_store(paths, stride, CHAIN_KEY, t, key);
     state_store(paths, stride, CHAIN_STEP, t, pass_load(frame, pass, CHAIN_PASS_STEP, t));
-    state_store(paths, stride, CHAIN_BANKS, t, 0u);
+    state_store(paths, stride, CHAIN_MOVE, t, MUTATION_REPLAY << MOVE_MUTATION);
     state_store_float(paths, stride, CHAIN_LUMINANCE, t, 0.0f);
     state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
         state_store(paths, stride, CHAIN_TALLY + i, t, 0u);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     walk_end(paths, rays, stride, t);
-    state_store(paths, stride, CHAIN_MUTATION, t, MUTATION_REPLAY);
     if (item != NONE)
         chain_numbers_of_pool(frame, paths, t, key, item);
     else
@@ -74,8 +73,8 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
     walk_end(paths, rays, stride, t);
-    uint kept = HALF_BOTH & ~state_load(paths, stride, CHAIN_CHANGED, t);
-    state_store(paths, stride, CHAIN_REACHED, t, s < 2u ? kept | HALF_LIGHT : kept);
+    uint kept = HALF_BOTH & ~chain_move(paths, stride, t, MOVE_CHANGED);
+    chain_move_set(paths, stride, t, MOVE_REACHED, s < 2u ? kept | HALF_LIGHT : kept);
     if ((kept & HALF_LIGHT) != 0u || s < 2u)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -95,12 +94,12 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), reached = state_load(paths, stride, CHAIN_REACHED, t);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), reached = chain_move(paths, stride, t, MOVE_REACHED);
     walk_end(paths, rays, stride, t);
     if (reached != HALF_LIGHT)
         return;
     if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
-        state_store(paths, stride, CHAIN_REACHED, t, HALF_BOTH);
+        chain_move_set(paths, stride, t, MOVE_REACHED, HALF_BOTH);
         return;
     }
     SceneView scene = scene_view(frame, geometry, tables, texels);
@@ -118,7 +117,7 @@ SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride
         state_store(paths, stride, part + CHAIN_HALF_EMITTER_FLAGS, t, state_load(paths, stride, BD_EMITTER_FLAGS, t));
         state_store(paths, stride, part + CHAIN_HALF_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
     }
-    state_store(paths, stride, CHAIN_REACHED, t, state_load(paths, stride, CHAIN_REACHED, t) | flag);
+    chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
 }
 
 /* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
@@ -267,7 +266,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, position.x);
         state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, position.y);
     }
-    if (s == 0u || state_load(paths, stride, CHAIN_REACHED, t) != HALF_BOTH)
+    if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != HALF_BOTH)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};

@@ -54,8 +54,8 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
         uint bits = chain_random(frame, t, step, CHAIN_BLOCK_SELECT).x[2];
         key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
     }
-    state_store(paths, stride, CHAIN_MUTATION, t, mutation);
-    state_store(paths, stride, CHAIN_CHANGED, t, changed);
+    chain_move_set(paths, stride, t, MOVE_MUTATION, mutation);
+    chain_move_set(paths, stride, t, MOVE_CHANGED, changed);
     state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
 }
 
@@ -102,11 +102,11 @@ SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint
 {
     uint stride = frame->stride;
     Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
-    if (state_load(paths, stride, CHAIN_MUTATION, t) != MUTATION_REPLAY)
+    if (chain_move(paths, stride, t, MOVE_MUTATION) != MUTATION_REPLAY)
         chain_take_numbers(frame, paths, t);
     state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
-    state_store(paths, stride, CHAIN_BANKS, t,
-                state_load(paths, stride, CHAIN_BANKS, t) ^ state_load(paths, stride, CHAIN_CHANGED, t));
+    chain_move_set(paths, stride, t, MOVE_BANKS,
+                   chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED));
     state_store_float(paths, stride, CHAIN_LUMINANCE, t, f);
     state_store_vec3(paths, stride, CHAIN_COLOR, t, vec3_scale(color, 1.0f / f));
     state_store_float(paths, stride, CHAIN_FILM, t, film.x);
@@ -121,7 +121,7 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
                                   __global uint *restrict diagnostics, uint t, Vec3 color)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, mutation = state_load(paths, stride, CHAIN_MUTATION, t);
+    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
     float f = rgb_luminance(color), current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
     if (!float_finite(f)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);

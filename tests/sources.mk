@@ -8,6 +8,7 @@ check_PROGRAMS += \
 	tests/test_bidirectional \
 	tests/test_bsdf \
 	tests/test_bvh \
+	tests/test_chain \
 	tests/test_chain_seeds \
 	tests/test_emit \
 	tests/test_film \
@@ -36,7 +37,7 @@ EFFORT = 8
 .PHONY: check-long
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
-	  TESTS='tests/test_bidirectional tests/test_opencl tests/test_reference'
+	  TESTS='tests/test_bidirectional tests/test_mmlt tests/test_opencl tests/test_reference'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;

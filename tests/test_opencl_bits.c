@@ -88,6 +88,23 @@ START_TEST(test_bits_of_bidirectional_paths)
 }
 END_TEST
 
+/* The same by chains, in both schemes; pools and chains begin and end in words of the host's. */
+START_TEST(test_bits_of_chains)
+{
+    RenderSetup setup = {.text = _i < 2 ? OPENCL_TEST_SCENE : OPENCL_MATERIALS_SCENE,
+                         .samples = 48,
+                         .max_depth = 6,
+                         .seed = 7,
+                         .integrator = integrator_mmlt(),
+                         .chains = {.chains = 1500, .steps = 9, .pool = 3000, .paper = _i % 2 == 1}};
+    if (test_device_promises())
+        backends_agree("chains", setup);
+    setup.chains.ungrouped = setup.chains.unsorted = true;
+    if (test_device_promises())
+        backends_agree("chains, neither sorted nor grouped", setup);
+}
+END_TEST
+
 /* Units so small that most contributions are clamped. */
 START_TEST(test_bits_of_clamped_sums)
 {
@@ -165,6 +182,7 @@ TCase *opencl_bits_tests(void)
     tcase_add_test(bits, test_bits_of_materials);
     tcase_add_test(bits, test_bits_of_clamped_sums);
     tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
+    tcase_add_loop_test(bits, test_bits_of_chains, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;
