@@ -19,4 +19,8 @@ typedef struct ChainWords {
 
 ChainWords chain_words(const FrameParams *frame);
 
+/* Chains at a time where nobody asks for a number. */
+#define CHAINS_DEFAULT 524288u
+#define PAPER_CHAINS_DEFAULT 16384u
+
 #endif

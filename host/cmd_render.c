@@ -1,6 +1,7 @@
 /* `twinlight render`: scene in, picture out. */
 #include "command.h"
 
+#include "chain_list.h"
 #include "interrupt.h"
 #include "log.h"
 #include "pbrt_import.h"
@@ -326,6 +327,28 @@ static int job_verify(RenderJob *job, Error *error)
     return *options.stop ? EXIT_STOPPED : EXIT_OK;
 }
 
+/* What chains take, on standard output. */
+static int job_memory(const RenderJob *job)
+{
+    const ChainOptions *options = &job->command->chains;
+    FrameParams frame = job->scene.frame;
+    frame.max_depth = (uint)job->scene.settings.max_depth;
+    ChainWords words = chain_words(&frame);
+    unsigned chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    const struct {
+        const char *what;
+        uint words;
+    } rows[] = {{"state", words.state},
+                {"densities", words.densities},
+                {"walk, vertices, rays", words.all - words.state - words.densities},
+                {"all", words.all}};
+    printf("%u chains of up to %u segments\n", chains, frame.max_depth);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i)
+        printf("%-22s %5zu bytes a chain %10.1f MB\n", rows[i].what, rows[i].words * sizeof(uint),
+               1e-6 * (double)chains * (double)(rows[i].words * sizeof(uint)));
+    return EXIT_OK;
+}
+
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -338,6 +361,8 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     if (!settings_override(job, error) || !depth_check(job, error))
         return EXIT_USAGE;
+    if (command->memory)
+        return job_memory(job);
     if (command->verify && !job->integrator->list) {
         error_set(error, "--verify compares the steps of pt, ibpt and bdpt; chains are compared by their images");
         error_fix(error, "render with --backend=cpu and --backend=opencl, and compare the files");

@@ -24,12 +24,10 @@
 /* Paths of fewer segments are left to path tracing. */
 #define CHAIN_DEPTH_MIN 3
 
-#define CHAINS_DEFAULT 524288u
 #define CHAINS_FIRST 4096u
 #define STEPS_DEFAULT 64u
 
-/* Chains of `paper`, and what one of them is chosen from. */
-#define PAPER_CHAINS_DEFAULT 16384u
+/* What a chain of `paper` is chosen from. */
 #define PAPER_POOL_PER_CHAIN 8u
 
 /* Chain steps that take about as long as a sample of the pool. */

@@ -28,6 +28,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_POOL] = {"pool", 0, "N", "mmlt: samples from which chains begin (default: as long as the steps take)"},
     [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
     [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
+    [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
     [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order of their pool, not by depth and strategy"},
     [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
@@ -170,6 +171,9 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
         return chain_number_set(name, value, 1u << 30, &chains->pool, error);
     case OPTION_MUTATIONS:
         return mutations_set(chains, value, error);
+    case OPTION_MEMORY:
+        command->memory = true;
+        return true;
     case OPTION_NO_SORT:
         chains->unsorted = true;
         return true;
@@ -242,6 +246,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_POOL:
     case OPTION_LARGE_STEP:
     case OPTION_MUTATIONS:
+    case OPTION_MEMORY:
     case OPTION_NO_SORT:
     case OPTION_NO_GROUP:
         return chain_option_set(command, option, value, error);

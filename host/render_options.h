@@ -17,6 +17,7 @@ typedef struct RenderCommand {
     bool only_strategy, unweighted;
     unsigned strategy[2]; /* s, t */
     ChainOptions chains;
+    bool memory; /* print what chains take, instead of rendering */
     const char *chain_option; /* the last one given; NULL: none */
     BackendChoices backends; /* at least one */
     bool verify; /* compare them with `reference` instead of rendering */
@@ -57,6 +58,7 @@ typedef enum RenderOption {
     OPTION_POOL,
     OPTION_LARGE_STEP,
     OPTION_MUTATIONS,
+    OPTION_MEMORY,
     OPTION_NO_SORT,
     OPTION_NO_GROUP,
     OPTION_THREADS,
