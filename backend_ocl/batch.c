@@ -65,13 +65,21 @@ static const struct KernelArguments {
 static cl_mem argument(const Launch *launch, BufferId id)
 {
     const DeviceMemory *memory = launch->launcher->memory;
-    if (id == BUFFER_FRAME)
+    switch (id) {
+    case BUFFER_FRAME:
         return launch->batch->memory->frame;
-    if (id == BUFFER_SPLATS)
+    case BUFFER_SPLATS:
         return launch->batch->memory->splats;
-    if (id == BUFFER_FILM)
+    case BUFFER_FILM:
         return memory->film;
-    return id <= BUFFER_BVH ? memory->scene[id] : memory->state[id];
+    case BUFFER_GEOMETRY:
+    case BUFFER_TABLES:
+    case BUFFER_TEXELS:
+    case BUFFER_BVH:
+        return memory->scene[id];
+    default:
+        return memory->state[id];
+    }
 }
 
 /* Enqueues `kernel` for `items` items, rounded up to whole work-groups; kernels look after the rest themselves. */

@@ -275,7 +275,7 @@ SHARED_FUNCTION WalkMeeting walk_meet(const SceneView *scene, __global const uin
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
     bool first = side == SIDE_CAMERA && depth == 1u;
     Hit hit = hit_load(hits, stride, t);
-    WalkMeeting meeting;
+    WalkMeeting meeting = {0};
     meeting.ray = ray_load(rays, stride, t);
     meeting.missed = hit.primitive == NONE;
     meeting.own = state_load_float(paths, stride, BD_PDF, t);
