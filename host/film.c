@@ -103,7 +103,8 @@ static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
         bool fits = true;
         for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
             fits = word_add(film->sums + c, from->sums[c]) && fits;
-            fits = (!film->light_sums || word_add(film->light_sums + c, from->light_sums[c])) && fits;
+            fits =
+                (!film->light_sums || !from->light_sums || word_add(film->light_sums + c, from->light_sums[c])) && fits;
         }
         if (from->counts[i] > 0)
             atomic_count_add(film->counts + i, from->counts[i]);

@@ -62,7 +62,7 @@ static void options_refuse(const OptionTable *table, int code, const char *word,
 {
     int index = optopt ? spec_index(table, optopt) : -1;
     const OptionSpec *spec = index < 0 ? NULL : spec_at(table, index);
-    if (code == ':') {
+    if (code == ':' && spec) {
         error_set(error, "option --%s needs a value", spec->name);
         error_fix(error, "write --%s=%s", spec->name, spec->argument);
         return;
