@@ -30,7 +30,8 @@
 /* What a chain of `paper` is chosen from. */
 #define PAPER_POOL_PER_CHAIN 8u
 
-/* Chain steps that take about as long as a sample of the pool. */
+/* Chain steps for every sample of a pool. On a Cornell box a sample takes as long as four or five steps, so pools take
+ * about a quarter of the time. */
 #define STEPS_PER_POOL_SAMPLE 12u
 #define LARGE_STEP_DEFAULT 0.3
 

@@ -25,7 +25,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                            "how mmlt runs its chains: generations (default) or paper, one start and large steps"},
     [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: Markov chains at a time, at most (default: 524288)"},
     [OPTION_STEPS] = {"steps", 0, "N", "mmlt: steps of a chain between two pools (default: 64)"},
-    [OPTION_POOL] = {"pool", 0, "N", "mmlt: samples from which chains begin (default: as long as the steps take)"},
+    [OPTION_POOL] = {"pool", 0, "N", "mmlt: samples from which chains begin (default: one for every 12 steps of chains)"},
     [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
     [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
     [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
