@@ -22,9 +22,6 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
-    connection.target = NONE;
-    connection.ends.connect = 1.0f;
-    bool possible;
     Vertex y = {0}, z = {0};
     float back_y = 0.0f, back_z = 0.0f;
     if (s > 1u) {
@@ -38,13 +35,9 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
                                   vertex_base(frame, SIDE_CAMERA, t - 2u), z.p);
     }
     Random4 random = bd_random_connection(frame, paths, item, s, t);
-    if (t == 1u)
-        possible = connect_camera(&scene, &y, back_y, random, &connection) &&
-                   (connection_aim(&scene, random, &connection) || frame->pool != 0u);
-    else if (s == 1u)
-        possible = connect_light(&scene, &z, back_z, random, &connection);
-    else
-        possible = connect_surfaces(&scene, &y, back_y, &z, back_z, &connection);
+    bool possible = connect_ends(&scene, s, t, &y, back_y, &z, back_z, random, &connection);
+    if (possible && t == 1u)
+        possible = connection_aim(&scene, random, &connection) || frame->pool != 0u;
     if (!possible || !connection_traceable(&connection))
         return;
     if (s >= 2u)

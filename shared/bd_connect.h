@@ -112,6 +112,20 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, f
     return true;
 }
 
+/* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not read.
+ * random: of whichever it is. */
+SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, float back_y,
+                                  const Vertex *z, float back_z, Random4 random, Connection *connection)
+{
+    connection->target = NONE;
+    connection->ends.connect = 1.0f;
+    if (t == 1u)
+        return connect_camera(scene, y, back_y, random, connection);
+    if (s == 1u)
+        return connect_light(scene, z, back_z, random, connection);
+    return connect_surfaces(scene, y, back_y, z, back_z, connection);
+}
+
 /* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */
 SHARED_FUNCTION bool connection_aim(const SceneView *scene, Random4 random, Connection *connection)
 {

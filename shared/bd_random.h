@@ -45,26 +45,33 @@ SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
     return BD_RANDOM_VERTICES + (2u * i + side) * 2u + what;
 }
 
+/* A chain has one point of the lens and one light for whatever they are connected with: its coordinates (camera: film,
+ * lens) as numbers of a connection to the lens, `random` having those of the pixel ... */
+SHARED_FUNCTION Random4 connection_random_lens(Random4 random, Random4 camera)
+{
+    random.x[0] = camera.x[2];
+    random.x[1] = camera.x[3];
+    return random;
+}
+
+/* ... and (choice: which light; emit: point on it, direction) of one to a light. */
+SHARED_FUNCTION Random4 connection_random_light(Random4 choice, Random4 emit)
+{
+    choice.x[2] = emit.x[0];
+    choice.x[3] = emit.x[1];
+    return choice;
+}
+
 /* Numbers of the connection (s, t). s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
 SHARED_FUNCTION Random4 bd_random_connection(__global const FrameParams *frame, __global const uint *paths, uint item,
                                              uint s, uint t)
 {
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CONNECTIONS + s * 64u + t);
-    if (frame->pool == 0u)
-        return random;
-    /* A chain has one light and one point of the lens for whatever it is connected with. */
-    if (t == 1u) {
-        Random4 camera = bd_random(frame, paths, item, BD_RANDOM_CAMERA);
-        random.x[0] = camera.x[2];
-        random.x[1] = camera.x[3];
-    } else if (s == 1u) {
-        Random4 choice = bd_random(frame, paths, item, BD_RANDOM_LIGHT);
-        Random4 emit = bd_random(frame, paths, item, BD_RANDOM_EMIT);
-        random.x[0] = choice.x[0];
-        random.x[1] = choice.x[1];
-        random.x[2] = emit.x[0];
-        random.x[3] = emit.x[1];
-    }
+    if (frame->pool != 0u && t == 1u)
+        return connection_random_lens(random, bd_random(frame, paths, item, BD_RANDOM_CAMERA));
+    if (frame->pool != 0u && s == 1u)
+        return connection_random_light(bd_random(frame, paths, item, BD_RANDOM_LIGHT),
+                                       bd_random(frame, paths, item, BD_RANDOM_EMIT));
     return random;
 }
 

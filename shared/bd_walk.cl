@@ -126,9 +126,7 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     WalkStep step;
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
         return;
-    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
-    if (step.delta != 0u)
-        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+    walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u)
         state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t,
                           step.reverse * state_load_float(paths, stride, BD_BACK, t));

@@ -251,6 +251,15 @@ SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uin
     ray_store(rays, stride, t, step->ray);
 }
 
+/* Keeps in mind that vertex `depth` of a side scatters by a delta lobe, if it does. */
+SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint t, uint side, uint depth,
+                               const WalkStep *step)
+{
+    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    if (step->delta != 0u)
+        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+}
+
 /* ---- what a ray has met ------------------------------------------------------------------------------------------- */
 
 typedef struct WalkMeeting {

@@ -197,9 +197,7 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
                     chain_vertex(frame, paths, t, side, depth), &step))
         return;
-    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
-    if (step.delta != 0u)
-        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+    walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u) {
         uint before = chain_density(frame, side, bank, s, depth - 1u);
         float other = step.reverse * state_load_float(paths, stride, BD_BACK, t);
@@ -227,20 +225,12 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
         z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), t);
         back_z = state_load_float(paths, stride, camera_half + CHAIN_HALF_BACK, t);
     }
-    bool possible;
-    if (camera == 1u) {
-        Random4 lens = chain_camera(frame, paths, t);
-        lens.x[0] = lens.x[2];
-        lens.x[1] = lens.x[3];
-        possible = connect_camera(scene, &y, back_y, lens, connection);
-    } else if (s == 1u) {
-        Random4 random = chain_select(frame, paths, t), emit = chain_emit(frame, paths, t);
-        random.x[2] = emit.x[0];
-        random.x[3] = emit.x[1];
-        possible = connect_light(scene, &z, back_z, random, connection);
-    } else {
-        possible = connect_surfaces(scene, &y, back_y, &z, back_z, connection);
-    }
+    Random4 random = chain_camera(frame, paths, t);
+    if (camera == 1u)
+        random = connection_random_lens(random, random);
+    else if (s == 1u)
+        random = connection_random_light(chain_select(frame, paths, t), chain_emit(frame, paths, t));
+    bool possible = connect_ends(scene, s, camera, &y, back_y, &z, back_z, random, connection);
     if (s >= 2u) {
         uint flags = state_load(paths, stride, light_half + CHAIN_HALF_EMITTER_FLAGS, t);
         connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;
@@ -270,8 +260,6 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
-    connection.target = NONE;
-    connection.ends.connect = 1.0f;
     if (!chain_connect(&scene, paths, vertices, t, s, camera, &connection))
         return;
     if (camera == 1u) {
