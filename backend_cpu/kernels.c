@@ -1,4 +1,5 @@
-/* Before any shared header: everything is inlined into the loops of this file, those of path tracing. */
+/* Before any shared header: everything is inlined into the loops of this file, those of path tracing and what starts like
+ * it. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif
@@ -7,6 +8,7 @@
 
 #include "kernel_loop.h"
 
+#include "aov.cl"
 #include "pt.cl"
 
 #include <assert.h>

@@ -53,7 +53,7 @@ printf 'cpu rays/s\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
     # The kernels are built before anything is timed.
-    "$twinlight" render --quiet --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
+    "$twinlight" render --quiet --integrator=pt --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
     for run in $(seq "$RUNS"); do
         run opencl "$scene" --backend=opencl --device="$DEVICE"
         TWINLIGHT_OVERLAP=0

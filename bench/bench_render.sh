@@ -61,7 +61,7 @@ Shape "plymesh" "string filename" "million.ply"
 TXT
 run=1
 while [ "$run" -le "$RUNS" ]; do
-    "$twinlight" render --quiet --samples=1 --no-png -o "$folder/out.exr" --stats="$folder/run.$run.json" \
+    "$twinlight" render --quiet --integrator=pt --samples=1 --no-png -o "$folder/out.exr" --stats="$folder/run.$run.json" \
         "$folder/million.pbrt" 2>/dev/null
     run=$((run + 1))
 done

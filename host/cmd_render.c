@@ -34,6 +34,7 @@ typedef struct RenderJob {
     const Integrator *integrator;
     Scene scene;
     Film film;
+    RenderLayers layers;
     BackendMember backend;
     RenderOutput output;
     Progress progress;
@@ -111,6 +112,21 @@ static bool strategy_check(const RenderJob *job, Error *error)
                      s + t == 2 ? "lights are seen directly by 0,2 alone" : "use --integrator=bdpt, which has all");
 }
 
+/* Which layers the image will have. */
+static bool layers_check(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    bool chains = job->integrator == integrator_mmlt();
+    job->layers.wanted = command->has_layers ? command->layers : chains ? LAYERS_ALL : 0;
+    if (chains || command->layers == LAYERS_ALL)
+        job->layers.wanted &= chains ? LAYERS_ALL : LAYERS_AOV;
+    else if ((command->layers & ~LAYERS_AOV) != 0) {
+        error_set(error, "--layers: the image of %s has no layers of light", job->integrator->name);
+        return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");
+    }
+    return true;
+}
+
 /* What is longer than the integrator can make or the user wants is said, not dropped. */
 static bool depth_check(RenderJob *job, Error *error)
 {
@@ -141,6 +157,8 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->scene_file = command->scene;
     output->integrator = command->integrator;
     output->seed = command->seed;
+    output->despeckle = command->despeckle;
+    output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
     return render_output_distinct(output, command->stats, command->trace, error) &&
            render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
@@ -179,7 +197,7 @@ static bool job_save(void *context, const Film *film, Error *error)
     return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
 }
 
-static RenderOptions render_settings(const RenderJob *job)
+static RenderOptions render_settings(RenderJob *job)
 {
     const RenderCommand *command = job->command;
     const SceneSettings *settings = &job->scene.settings;
@@ -188,6 +206,7 @@ static RenderOptions render_settings(const RenderJob *job)
         .seconds = command->seconds,
         .max_depth = settings->max_depth,
         .chains = command->chains,
+        .layers = job->layers.wanted != 0 ? &job->layers : NULL,
         .balance = command->balance,
         .only_strategy = command->only_strategy,
         .strategy = {command->strategy[0], command->strategy[1]},
@@ -353,7 +372,7 @@ static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     job->integrator = integrator_find(command->integrator, error);
-    if (!job->integrator || !strategy_check(job, error))
+    if (!job->integrator || !strategy_check(job, error) || !layers_check(job, error))
         return EXIT_USAGE;
     if (command->output && !render_output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */
@@ -387,10 +406,12 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command = {.png = true, .integrator = "pt"};
+    RenderCommand command = {.png = true};
     OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
     if (end != OPTIONS_READ)
         return options_status(end);
+    if (!command.integrator)
+        command.integrator = command.verify ? "pt" : "mmlt";
     log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
     RenderJob job;
     memset(&job, 0, sizeof job);
@@ -400,6 +421,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     int status = job_run(&job, error);
     if (job.backend.backend)
         job.backend.interface->close(job.backend.backend);
+    render_layers_destroy(&job.layers);
     film_destroy(&job.film);
     scene_destroy(&job.scene);
     return status;

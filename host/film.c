@@ -55,6 +55,14 @@ void film_destroy(Film *film)
     *film = (Film){0};
 }
 
+bool film_init_like(Film *film, const Film *model, Error *error)
+{
+    if (!film_init(film, model->width, model->height, model->crop, error))
+        return false;
+    film->quantum_exponent = model->quantum_exponent;
+    return !model->light_sums || film_light_reserve(film, error);
+}
+
 void film_quantum_set(Film *film, double mean)
 {
     int exponent = 0;

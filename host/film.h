@@ -23,6 +23,9 @@ typedef struct Film {
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
 void film_destroy(Film *film);
 
+/* An empty film of the same size, crop and quantum as `model`, with room for splats from the light where that has it. */
+bool film_init_like(Film *film, const Film *model, Error *error);
+
 /* Makes room for splats that paths from the light bring (SPLAT_FROM_LIGHT). Only while the film is empty. */
 bool film_light_reserve(Film *film, Error *error);
 

@@ -7,21 +7,27 @@
 
 #include <assert.h>
 
-/* Two steps around the loop, seven in it, two in its last turn. */
-static void steps_record(Recorder *recorder, uint max_depth)
+/* Two steps around the loop, seven in it, two in its last turn. Where direct light is split off there are two more in the
+ * second turn, which is never left out. */
+static void steps_record(Recorder *recorder, uint max_depth, bool split)
 {
-    size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2;
+    size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2 + (split ? 1 : 0);
     recorder_kernel(recorder, KERNEL_pt_start_paths, false);
     for (uint depth = 1;; ++depth) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
         recorder_kernel(recorder, KERNEL_pt_shade_hits, true);
+        if (split && depth == 2) {
+            recorder_kernel(recorder, KERNEL_pt_splat_direct, false);
+            recorder_step(recorder, STEP_SPLAT);
+        }
         if (depth == max_depth)
             break;
         recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
         recorder_step(recorder, STEP_TRACE_SHADOW);
         recorder_kernel(recorder, KERNEL_pt_add_lights, true);
         recorder_kernel(recorder, KERNEL_pt_extend_paths, true);
-        recorder_skip(recorder, last);
+        if (!split || depth > 1)
+            recorder_skip(recorder, last);
     }
     assert(recorder->count == last);
     recorder_kernel(recorder, KERNEL_pt_splat, false);
@@ -61,9 +67,9 @@ static const StateField PATH_FIELDS[] = {
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 4 + (size_t)frame->max_depth * 7, error))
+    if (!recorder_init(&recorder, 6 + (size_t)frame->max_depth * 7, error))
         return false;
-    steps_record(&recorder, frame->max_depth);
+    steps_record(&recorder, frame->max_depth, frame->split_direct != 0);
     *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
     return true;
 }

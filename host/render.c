@@ -1,5 +1,6 @@
 #include "render.h"
 
+#include "render_layers.h"
 #include "render_run.h"
 
 #include "diagnostics.h"
@@ -157,6 +158,13 @@ bool render_run_save_if_due(RenderRun *run, Error *error)
     return true;
 }
 
+bool render_run_aov(RenderRun *run, uint64_t samples, Error *error)
+{
+    uint64_t every = samples / run->crop_pixels;
+    return !run->options->layers ||
+           render_layers_aov(run->options->layers, run, every < AOV_SAMPLES ? (uint)every : AOV_SAMPLES, error);
+}
+
 /* One pass of `items` items. The first sample of every pixel is finished even when a stop is wanted, unless the stop
  * is repeated (the signal handler then ends the program): an image without holes is worth a moment. */
 static bool pass_run(PassLoop *loop, uint items, Error *error)
@@ -204,7 +212,7 @@ static bool passes_run(PassLoop *loop, Error *error)
         if (!pass_run(loop, pass_items(loop, elapsed), error))
             return false;
         render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
-        if (!render_run_save_if_due(run, error))
+        if (!render_run_aov(run, run->done, error) || !render_run_save_if_due(run, error))
             return false;
     }
     return true;
@@ -286,8 +294,11 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
     if (from_light && !film_light_reserve(film, error))
         return false;
     run.start = run.last_save = timing_now();
-    bool done = (keep_quantum || film_prepare(&run, error)) &&
-                (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
+    RenderLayers *layers = options->layers;
+    bool done =
+        (keep_quantum || film_prepare(&run, error)) &&
+        (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.world_radius, error)) &&
+        (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     return done;
 }

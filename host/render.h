@@ -19,6 +19,7 @@ typedef struct ChainOptions {
     unsigned mutations; /* bit MUTATION_* */
     bool unsorted; /* chains in the order of their pool, not by depth and strategy */
     bool ungrouped; /* every chain its own kind of mutation */
+    bool unblended; /* the pool's samples are not shown (blend.h) */
 } ChainOptions;
 
 typedef struct RenderOptions {
@@ -32,6 +33,7 @@ typedef struct RenderOptions {
     unsigned strategy[2]; /* s, t */
     bool unweighted; /* its weights taken for 1 */
     ChainOptions chains;
+    struct RenderLayers *layers; /* .wanted says what; filled in besides the film, to be destroyed. NULL: nothing */
     double save_every; /* seconds between calls of `save`; 0: never */
     const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */
 } RenderOptions;
@@ -57,6 +59,7 @@ typedef struct ChainStatistics {
     uint64_t pool_samples, seeds, steps;
     uint64_t proposals[CHAIN_KINDS][CHAIN_DEPTHS], accepted[CHAIN_KINDS][CHAIN_DEPTHS]; /* by depth */
     double pool_seconds, chain_seconds, direct_seconds;
+    double shares[3]; /* of chains, pool and path tracing in the latest generation (blend.h); 0: not blended */
 } ChainStatistics;
 
 /* What happened inside the kernels: names from diagnostics.h. */

@@ -9,12 +9,12 @@
 static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
-                           "algorithm: pt, path tracing (default), bdpt or ibpt, bidirectional, or mmlt, Metropolis"},
+                           "algorithm: mmlt, Metropolis (default), pt, path tracing, or bdpt or ibpt, bidirectional"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
     [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: as if there were no other"},
-    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel (default: the scene's)"},
+    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel, or of mmlt as much work (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
     [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
@@ -32,12 +32,19 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
     [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order of their pool, not by depth and strategy"},
     [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
+    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
+    [OPTION_LAYERS] =
+        {"layers", 0, "NAME,...",
+         "what the image holds besides: direct, indirect, halves, variance (mmlt), albedo, normal, depth; "
+         "all or none (default: mmlt all, else none)"},
+    [OPTION_DESPECKLE] = {"despeckle", 0, "T",
+                          "add a layer without pixels that are T times as bright as the median around them"},
     [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
     [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
     [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
@@ -124,26 +131,48 @@ static bool scheme_set(ChainOptions *chains, const char *value, Error *error)
     return error_fix(error, "use generations or paper");
 }
 
-/* Names with commas between. */
-static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
+/* Names with commas between as bits: name i of `names` as bit i. False when `value` has another, which is *other. */
+static bool names_set(const char *value, const char *const *names, unsigned count, unsigned *bits, const char **other)
 {
-    static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
-    chains->mutations = 0;
+    *bits = 0;
     for (const char *name = value;; ++name) {
         size_t length = strcspn(name, ",");
         unsigned found = 0;
-        for (unsigned i = 0; i < sizeof NAMES / sizeof NAMES[0]; ++i)
-            if (strlen(NAMES[i]) == length && strncmp(NAMES[i], name, length) == 0)
+        for (unsigned i = 0; i < count; ++i)
+            if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0)
                 found = 1u << i;
-        if (!found) {
-            error_set(error, "--mutations=%s: %.*s is no kind of mutation", value, (int)length, name);
-            return error_fix(error, "use all, light and camera, with commas between");
-        }
-        chains->mutations |= found;
+        *other = name;
+        if (!found)
+            return false;
+        *bits |= found;
         name += length;
         if (*name == '\0')
             return true;
     }
+}
+
+static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
+{
+    static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
+    const char *other;
+    if (names_set(value, NAMES, sizeof NAMES / sizeof NAMES[0], &chains->mutations, &other))
+        return true;
+    error_set(error, "--mutations=%s: %.*s is no kind of mutation", value, (int)strcspn(other, ","), other);
+    return error_fix(error, "use all, light and camera, with commas between");
+}
+
+static bool layers_set(RenderCommand *command, const char *value, Error *error)
+{
+    static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
+                                                   "albedo", "normal",   "depth"};
+    const char *other;
+    command->has_layers = true;
+    command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
+    if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
+        return true;
+    error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
+    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal and depth, with commas between, "
+                            "or all or none");
 }
 
 static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)
@@ -180,6 +209,9 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
         return true;
     case OPTION_NO_GROUP:
         chains->ungrouped = true;
+        return true;
+    case OPTION_NO_BLEND:
+        chains->unblended = true;
         return true;
     default:
         return option_number(name, value, 1e-6, 1.0, &chains->large_step, error);
@@ -232,6 +264,10 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_CROP:
         command->has_crop = true;
         return option_crop("crop", value, command->crop, error);
+    case OPTION_LAYERS:
+        return layers_set(command, value, error);
+    case OPTION_DESPECKLE:
+        return option_number("despeckle", value, 1.0, 1e6, &command->despeckle, error);
     case OPTION_VERIFY:
         command->verify = true;
         return true;
@@ -250,6 +286,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_MEMORY:
     case OPTION_NO_SORT:
     case OPTION_NO_GROUP:
+    case OPTION_NO_BLEND:
         return chain_option_set(command, option, value, error);
     default:
         return number_set(parse, option, value, error);
@@ -266,6 +303,8 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->stats            ? "stats"
                          : command->trace            ? "trace"
                          : command->film             ? "film"
+                         : command->has_layers       ? "layers"
+                         : command->despeckle > 0.0  ? "despeckle"
                                                      : NULL;
     if (!command->verify || !option)
         return true;

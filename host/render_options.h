@@ -3,6 +3,7 @@
 #define TWINLIGHT_RENDER_OPTIONS_H
 
 #include "backend_choice.h"
+#include "render_layers.h"
 #include "render.h"
 
 /* Strings are borrowed from argv. */
@@ -12,11 +13,14 @@ typedef struct RenderCommand {
     bool png; /* write a PNG */
     const char *png_path;
     double exposure; /* stops */
-    const char *integrator;
+    const char *integrator; /* NULL: not given */
     bool balance; /* balance heuristic */
     bool only_strategy, unweighted;
     unsigned strategy[2]; /* s, t */
     ChainOptions chains;
+    unsigned layers; /* LAYER_BIT (render_layers.h) */
+    bool has_layers; /* --layers was given */
+    double despeckle; /* threshold; 0: no such layer */
     bool memory; /* print what chains take, instead of rendering */
     const char *chain_option; /* the last one given; NULL: none */
     BackendChoices backends; /* at least one */
@@ -61,12 +65,15 @@ typedef enum RenderOption {
     OPTION_MEMORY,
     OPTION_NO_SORT,
     OPTION_NO_GROUP,
+    OPTION_NO_BLEND,
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_MAX_DEPTH,
     OPTION_RESOLUTION,
     OPTION_CROP,
     OPTION_SAVE_EVERY,
+    OPTION_LAYERS,
+    OPTION_DESPECKLE,
     OPTION_PNG,
     OPTION_NO_PNG,
     OPTION_EXPOSURE,

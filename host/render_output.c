@@ -2,6 +2,7 @@
 
 #include "config.h"
 
+#include "despeckle.h"
 #include "exr.h"
 #include "output_file.h"
 #include "path_name.h"
@@ -85,16 +86,69 @@ bool render_output_distinct(const RenderOutput *output, const char *stats, const
     return true;
 }
 
-/* Layers of an image of chains: what path tracing saw, and what the chains brought. Together they are the picture. */
-#define LAYER_COUNT 2
-#define LAYER_CHANNELS(name, rgb)                                                                                      \
-    {name ".B", (rgb) + 2, 3, false}, {name ".G", (rgb) + 1, 3, false},                                                \
-    {                                                                                                                  \
-        name ".R", rgb, 3, false                                                                                       \
-    }
+/* ---- layers ------------------------------------------------------------------------------------------------------ */
 
-static bool exr_output_write(const RenderOutput *output, const Film *film, const float *rgb, double samples_per_pixel,
-                             Error *error)
+/* Everything that goes into the file. */
+#define CHANNELS_MAX 32
+
+typedef struct Picture {
+    size_t pixels;
+    float *values;
+    size_t used; /* values */
+    ExrChannel channels[CHANNELS_MAX];
+    size_t count;
+} Picture;
+
+/* Room for three values a pixel, which are the channels `red`, `green` and `blue`. */
+static float *picture_rgb(Picture *picture, const char *red, const char *green, const char *blue, bool half)
+{
+    const char *const names[3] = {red, green, blue};
+    float *rgb = picture->values + picture->used;
+    for (size_t c = 0; c < 3; ++c)
+        picture->channels[picture->count++] = (ExrChannel){names[c], rgb + c, 3, half};
+    picture->used += 3 * picture->pixels;
+    return rgb;
+}
+
+/* The picture's own layers: of light alone, so everything but the variables. */
+static void picture_parts(Picture *picture, const RenderOutput *output, const Film *film)
+{
+    unsigned wanted = output->layers ? output->layers->wanted : 0;
+    float scale = output->film_scale;
+    if (film->light_samples == 0)
+        return;
+    if ((wanted & LAYER_BIT(LAYER_DIRECT)) != 0)
+        film_resolve_part(film, FILM_OWN, scale, picture_rgb(picture, "direct.R", "direct.G", "direct.B", false));
+    if ((wanted & LAYER_BIT(LAYER_INDIRECT)) != 0)
+        film_resolve_part(film, FILM_LIGHT, scale,
+                          picture_rgb(picture, "indirect.R", "indirect.G", "indirect.B", false));
+    if ((wanted & LAYER_BIT(LAYER_HALVES)) != 0) {
+        const Film *halves = output->layers->halves;
+        film_resolve(&halves[0], scale, picture_rgb(picture, "halfA.R", "halfA.G", "halfA.B", false));
+        film_resolve(&halves[1], scale, picture_rgb(picture, "halfB.R", "halfB.G", "halfB.B", false));
+    }
+    if ((wanted & LAYER_BIT(LAYER_VARIANCE)) != 0)
+        render_layers_variance(output->layers, scale,
+                               picture_rgb(picture, "variance.R", "variance.G", "variance.B", false));
+}
+
+static void picture_aovs(Picture *picture, const RenderOutput *output)
+{
+    if (!output->layers)
+        return;
+    const RenderLayers *layers = output->layers;
+    if ((layers->wanted & LAYER_BIT(LAYER_ALBEDO)) != 0)
+        film_resolve(&layers->aovs[AOV_ALBEDO], 1.0f, picture_rgb(picture, "albedo.R", "albedo.G", "albedo.B", true));
+    if ((layers->wanted & LAYER_BIT(LAYER_NORMAL)) != 0)
+        film_resolve(&layers->aovs[AOV_NORMAL], 1.0f, picture_rgb(picture, "normal.X", "normal.Y", "normal.Z", true));
+    if ((layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0) {
+        film_resolve(&layers->aovs[AOV_DEPTH], 1.0f, picture_rgb(picture, "Z", "", "", false));
+        picture->count -= 2; /* all three are the same */
+    }
+}
+
+static bool exr_output_write(const RenderOutput *output, const Film *film, const Picture *picture,
+                             double samples_per_pixel, Error *error)
 {
     char samples[32], seed[32], depth[32];
     snprintf(samples, sizeof samples, "%.9g", samples_per_pixel);
@@ -109,32 +163,27 @@ static bool exr_output_write(const RenderOutput *output, const Film *film, const
         {"scene", path_file_name(output->scene_file)},
         {"seed", seed},
     };
-    size_t floats = 3 * film_pixels(film);
-    const ExrChannel channels[] = {{"B", rgb + 2, 3, false},
-                                   {"G", rgb + 1, 3, false},
-                                   {"R", rgb, 3, false},
-                                   LAYER_CHANNELS("direct", rgb + floats),
-                                   LAYER_CHANNELS("indirect", rgb + 2 * floats)};
-    size_t count = film->light_samples > 0 ? 3 * (1 + LAYER_COUNT) : 3;
-    return exr_write(output->exr, channels, count, film->width, film->height, film->crop, attributes,
+    return exr_write(output->exr, picture->channels, picture->count, film->width, film->height, film->crop, attributes,
                      sizeof attributes / sizeof attributes[0], error);
 }
 
 bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
 {
     int width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
-    size_t floats = 3 * (size_t)width * (size_t)height;
-    size_t bytes = (film->light_samples > 0 ? 1 + LAYER_COUNT : 1) * floats * sizeof(float);
-    float *rgb = malloc(bytes);
-    if (!rgb)
+    Picture picture = {.pixels = film_pixels(film)};
+    size_t bytes = CHANNELS_MAX * picture.pixels * sizeof *picture.values;
+    picture.values = malloc(bytes); /* pages that no layer touches take no memory */
+    if (!picture.values)
         return error_memory(error, bytes, "the picture");
+    float *rgb = picture_rgb(&picture, "R", "G", "B", false);
     film_resolve(film, output->film_scale, rgb);
-    if (film->light_samples > 0) {
-        film_resolve_part(film, FILM_OWN, output->film_scale, rgb + floats);
-        film_resolve_part(film, FILM_LIGHT, output->film_scale, rgb + 2 * floats);
-    }
-    bool written = exr_output_write(output, film, rgb, samples_per_pixel, error) &&
+    picture_parts(&picture, output, film);
+    picture_aovs(&picture, output);
+    if (output->despeckle > 0.0)
+        despeckle(rgb, width, height, (float)output->despeckle,
+                  picture_rgb(&picture, "despeckled.R", "despeckled.G", "despeckled.B", false));
+    bool written = exr_output_write(output, film, &picture, samples_per_pixel, error) &&
                    (!output->png[0] || png_write(output->png, rgb, width, height, output->exposure, error));
-    free(rgb);
+    free(picture.values);
     return written;
 }

@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_RENDER_OUTPUT_H
 #define TWINLIGHT_RENDER_OUTPUT_H
 
-#include "film.h"
+#include "render_layers.h"
 #include "scene.h"
 
 #include <limits.h>
@@ -13,6 +13,8 @@ typedef struct RenderOutput {
     char png[PATH_MAX]; /* "": none */
     float film_scale; /* factor on every pixel */
     float exposure; /* stops, PNG only */
+    double despeckle; /* threshold of the layer `despeckled`; 0: none */
+    const RenderLayers *layers; /* NULL: none */
     /* What the EXR header says besides the picture. */
     const char *scene_file;
     const char *integrator;

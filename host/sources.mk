@@ -5,6 +5,7 @@ libtwinlight_host_la_SOURCES = \
 	host/backend.h \
 	host/backend_choice.c host/backend_choice.h \
 	host/backend_group.c host/backend_group.h \
+	host/blend.c host/blend.h \
 	host/bvh.c host/bvh.h \
 	host/bvh_tree.c host/bvh_tree.h \
 	host/camera_setup.c host/camera_setup.h \
@@ -21,6 +22,7 @@ libtwinlight_host_la_SOURCES = \
 	host/color_named.c \
 	host/color_tables.h \
 	host/command.h \
+	host/despeckle.c host/despeckle.h \
 	host/distribution_build.c host/distribution_build.h \
 	host/error.c host/error.h \
 	host/error_image.c host/error_image.h \
@@ -46,6 +48,8 @@ libtwinlight_host_la_SOURCES = \
 	host/log.c host/log.h \
 	host/matrix.c host/matrix.h \
 	host/metrics.c host/metrics.h \
+	host/mmlt.h \
+	host/mmlt_generation.c \
 	host/name_table.c host/name_table.h \
 	host/option_values.c host/option_values.h \
 	host/options.c host/options.h \
@@ -68,12 +72,14 @@ libtwinlight_host_la_SOURCES = \
 	host/pbrt_state.c host/pbrt_state.h \
 	host/pbrt_textures.c \
 	host/pbrt_values.c host/pbrt_values.h \
+	host/pixel_series.c host/pixel_series.h \
 	host/ply.c host/ply.h \
 	host/ply_header.c \
 	host/ply_internal.h \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
 	host/render.c host/render.h \
+	host/render_layers.c host/render_layers.h \
 	host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \

@@ -62,6 +62,11 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "pool_seconds", chains->pool_seconds);
     json_number(json, "chain_seconds", chains->chain_seconds);
     json_number(json, "direct_seconds", chains->direct_seconds);
+    json_object_begin(json, "shares");
+    json_number(json, "chains", chains->shares[0]);
+    json_number(json, "pool", chains->shares[1]);
+    json_number(json, "paths", chains->shares[2]);
+    json_object_end(json);
     json_object_begin(json, "acceptance");
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
         json_object_begin(json, KINDS[kind]);

@@ -70,9 +70,12 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
         return;
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     bool visible = shadow_take(shadows, stride, item);
+    if (frame->pool != 0u && visible) {
+        Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
+        candidate_offer(frame, paths, item, s, t, contribution);
+        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, pool_limited(frame, contribution));
+    }
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
-    if (frame->pool != 0u && visible)
-        candidate_offer(frame, paths, item, s, t, state_load_vec3(paths, stride, BD_CONTRIBUTION, item));
     connection_advance(paths, stride, item, frame->max_depth);
 }
 

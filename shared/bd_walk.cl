@@ -57,9 +57,9 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
 SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 contribution)
 {
-    bd_add_radiance(paths, frame->stride, t, contribution);
     if (frame->pool != 0u)
         candidate_offer(frame, paths, t, 0u, depth + 1u, contribution);
+    bd_add_radiance(paths, frame->stride, t, frame->pool != 0u ? pool_limited(frame, contribution) : contribution);
 }
 
 /* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss

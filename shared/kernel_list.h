@@ -16,7 +16,10 @@
     X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
     X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_DIAGNOSTICS)                                                                                              \
-    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+    X(pt_splat_direct, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                               \
+    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
+      BUFFER_HITS, BUFFER_SPLATS)
 
 /* Rays, sums, and the walks of tests. */
 #define KERNEL_LIST_OTHERS(X)                                                                                          \

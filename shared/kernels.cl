@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_KERNELS_CL
 #define TWINLIGHT_KERNELS_CL
 
+#include "aov.cl"
 #include "bd_connect.cl"
 #include "bd_walk.cl"
 #include "count.cl"

@@ -61,22 +61,24 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-/* A path at `film` whose contribution over f is `color` is visited `visits` times. */
+/* A path at `film` whose contribution is f times `color` is visited `visits` times. What a path has above the limit is kept
+ * apart (blend.h): all of a visit or nothing of it, by chance. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global const uint *restrict paths,
                                  __global uint *restrict splats, __global uint *restrict diagnostics, uint t, Vec2 film,
-                                 Vec3 color, float visits)
+                                 float f, Vec3 color, float visits)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, pixel = NONE;
+    uint stride = frame->stride, pixel = NONE, flags = SPLAT_FROM_LIGHT;
     float weight = 0.0f;
     if (visits > 0.0f) {
         Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
+        flags = random_float(random.x[3]) * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
     }
     if (pixel == NONE)
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
     else
-        splat_store(splats, diagnostics, stride, t, SPLAT_FROM_LIGHT | pixel,
+        splat_store(splats, diagnostics, stride, t, flags | pixel,
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
 
@@ -91,7 +93,8 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
 {
     uint stride = scene->frame->stride;
     chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_FILM, t),
-                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits);
+                state_load_float(paths, stride, CHAIN_LUMINANCE, t), state_load_vec3(paths, stride, CHAIN_COLOR, t),
+                visits);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
@@ -148,8 +151,8 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color,
-                    accept);
+        chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f,
+                    color, accept);
         state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
     }
 }

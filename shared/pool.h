@@ -48,6 +48,13 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
 }
 
+/* The part of a pool's path that the film is shown. */
+SHARED_FUNCTION Vec3 pool_limited(__global const FrameParams *frame, Vec3 contribution)
+{
+    float luminance = rgb_luminance(contribution);
+    return luminance > frame->limit ? vec3_scale(contribution, frame->limit / luminance) : contribution;
+}
+
 /* The path of the strategy (s, t) carries `contribution`: it becomes the candidate with the probability of its share in
  * all so far. */
 SHARED_FUNCTION void candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,

@@ -250,21 +250,38 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store(paths, stride, PATH_DEPTH, t, depth + 1u);
 }
 
-/* From: the finished path. To: what it adds to its pixel. A sum that is not finite counts as zero and is counted. */
-__kernel void pt_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths,
-                       __global uint *restrict splats, __global uint *restrict diagnostics)
+/* What the path has gathered goes to its pixel, and is gone. A sum that is not finite counts as zero and is counted. */
+SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *restrict splats,
+                                __global uint *restrict diagnostics, uint stride, uint t, uint flags)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
-        return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, t), state_load_float(paths, stride, PATH_WEIGHT, t));
     if (!vec3_finite(radiance)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
         radiance = vec3_splat(0.0f);
     }
-    state_store(splats, stride, SPLAT_PIXEL, t, state_load(paths, stride, PATH_PIXEL, t));
+    state_store(splats, stride, SPLAT_PIXEL, t, flags | state_load(paths, stride, PATH_PIXEL, t));
     state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
+}
+
+/* From: paths of two segments. To: their light, as a sample of the pixel; frame->split_direct. */
+__kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                              __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0);
+    if (t < frame->item_count)
+        path_splat(paths, splats, diagnostics, frame->stride, t, 0u);
+}
+
+/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what is
+ * no sample of it. */
+__kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                       __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0);
+    if (t < frame->item_count)
+        path_splat(paths, splats, diagnostics, frame->stride, t, frame->split_direct != 0u ? SPLAT_FROM_LIGHT : 0u);
 }
 
 #endif

@@ -302,6 +302,12 @@ typedef struct SceneLayout {
 #define PATH_STREAM_CHAIN 3u /* mutations */
 #define PATH_STREAM_MUTATION 4u /* which kind of them */
 
+/* Variables of a pixel besides light (aov.cl). */
+#define AOV_ALBEDO 0u
+#define AOV_NORMAL 1u
+#define AOV_DEPTH 2u
+#define AOV_COUNT 3u
+
 typedef struct FrameParams {
     SceneLayout layout;
     uint features;
@@ -311,6 +317,8 @@ typedef struct FrameParams {
     PixelFilter filter;
     uint width, height; /* of the whole film, pixels */
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
+    uint aov; /* AOV_*: the variable that a pass of aov.cl is for */
+    uint split_direct; /* 1: path tracing keeps light of up to two segments apart (pt.cl) */
     uint max_depth; /* path segments, >= 1 */
     uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
@@ -323,6 +331,7 @@ typedef struct FrameParams {
     uint group_mutations; /* 1: at a step all chains make the same kind */
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
+    float limit; /* a pool shows no more luminance of a path; what chains see above it they keep apart (blend.h) */
     float brightness; /* what a chain's step carries to the film: mean luminance of a pool's sample */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */

@@ -1,5 +1,6 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/aov.cl \
 	shared/bd_connect.cl \
 	shared/bd_connect.h \
 	shared/bd_random.h \

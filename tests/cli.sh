@@ -40,9 +40,9 @@ expect() {
     fi
 }
 
-# A small rendering.
+# A small rendering, by path tracing unless an argument says otherwise.
 render() {
-    "$program" render --resolution=16x12 --samples=1 --threads=2 "$@" >out 2>err
+    "$program" render --integrator=pt --resolution=16x12 --samples=1 --threads=2 "$@" >out 2>err
 }
 
 file_exists() {

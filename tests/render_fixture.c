@@ -64,6 +64,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
                              .chains = setup->chains,
+                             .layers = setup->layers,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},

@@ -22,6 +22,7 @@ typedef struct RenderSetup {
     bool balance, only_strategy, unweighted; /* RenderOptions */
     unsigned strategy[2];
     ChainOptions chains;
+    struct RenderLayers *layers; /* RenderOptions; to be destroyed by the test */
     const Film *quantum_of; /* takes the quantum of this film; NULL: of a pilot */
 } RenderSetup;
 

@@ -6,6 +6,7 @@ if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_analytic \
 	tests/test_bidirectional \
+	tests/test_blend \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_chain \
@@ -16,6 +17,7 @@ check_PROGRAMS += \
 	tests/test_mmlt \
 	tests/test_group \
 	tests/test_import \
+	tests/test_layers \
 	tests/test_light \
 	tests/test_math \
 	tests/test_metrics \

@@ -54,16 +54,19 @@ expect 2 '--device is for devices' render --device=0 "$scene"
 expect 2 '--trace is for devices' render --trace=trace.json --backend=cpu "$scene"
 expect 2 '--batch=0: out of range' render --batch=0 "$scene"
 expect 2 'devices takes no file' devices "$scene"
-expect 2 '--chains is for mmlt' render --chains=64 "$scene"
+expect 2 '--chains is for mmlt' render --integrator=pt --chains=64 "$scene"
 expect 2 '--large-step is for --mlt-scheme=paper' render --integrator=mmlt --large-step=0.5 "$scene"
 expect 2 '--mutations=all,lens: lens is no kind of mutation' render --integrator=mmlt --mutations=all,lens "$scene"
 expect 2 '--mlt-scheme=best: there is no such scheme' render --integrator=mmlt --mlt-scheme=best "$scene"
 expect 2 '--heuristic is not for mmlt' render --integrator=mmlt --heuristic=balance "$scene"
 expect 0 '524288 chains of up to 8 segments' render --integrator=mmlt --memory "$scene"
 expect 2 'use one of: pt' render --integrator=bpt "$scene"
+expect 2 '--layers=normals: there is no layer normals' render --layers=normals "$scene"
+expect 2 'the image of pt has no layers of light' render --integrator=pt --layers=albedo,halves "$scene"
+expect 2 '--despeckle=0: out of range' render --despeckle=0 "$scene"
 expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
-expect 2 '--heuristic is for bidirectional integrators' render --heuristic=balance "$scene"
-expect 2 '--strategy is for bidirectional integrators' render --strategy=1,2 "$scene"
+expect 2 '--heuristic is for bidirectional integrators' render --integrator=pt --heuristic=balance "$scene"
+expect 2 '--strategy is for bidirectional integrators' render --integrator=pt --strategy=1,2 "$scene"
 for strategy in 1 '1,' ',2' 1,0 0,1 1,2,3 -1,2 a,b 1.5,2; do
     expect 2 "--strategy=$strategy: not a strategy" render --integrator=bdpt "--strategy=$strategy" "$scene"
 done
@@ -232,8 +235,9 @@ elif "$program" devices | grep -A1 '^opencl' | grep -q 'no device'; then
 else
     for other in "$scene" "${scene%/*}/showcase.pbrt"; do
         for integrator in pt ibpt bdpt; do
-            render --integrator=$integrator --samples=3 -o cpu.exr "$other"
-            opencl --integrator=$integrator --samples=3 -o opencl.exr "$other"
+            layers=$([ $integrator = pt ] && echo all || echo none)
+            render --integrator=$integrator --layers=$layers --samples=3 -o cpu.exr "$other"
+            opencl --integrator=$integrator --layers=$layers --samples=3 -o opencl.exr "$other"
             result "$other on OpenCL by $integrator: exit status" $?
             cmp cpu.exr opencl.exr
             result "$other by $integrator: OpenCL's image is not the CPU's" $?
@@ -265,7 +269,7 @@ else
 
     # A device that fails on its way: batches 0 ... 63 are the pilot's 4096 paths, three of 64 paths each follow.
     TWINLIGHT_TEST_FAIL_BATCH=66 expect 1 'what was finished, 0.666667 samples per pixel, is in fail.exr' \
-        render --backend=opencl --batch=64 --resolution=16x12 --samples=1 -o fail.exr "$scene"
+        render --integrator=pt --backend=opencl --batch=64 --resolution=16x12 --samples=1 -o fail.exr "$scene"
     file_exists fail.exr
     file_exists fail.png
 

@@ -27,11 +27,11 @@ done
 (
     OCL_ICD_VENDORS=$work/nothing
     export OCL_ICD_VENDORS
-    expect 1 'there is no OpenCL device' render --backend=opencl "$scene"
-    expect 1 'there is no OpenCL device' render --backend=opencl --device=0,1 "$scene"
-    expect 1 'there is no OpenCL device' render --backend=all --device=0 "$scene"
+    expect 1 'there is no OpenCL device' render --integrator=pt --backend=opencl "$scene"
+    expect 1 'there is no OpenCL device' render --integrator=pt --backend=opencl --device=0,1 "$scene"
+    expect 1 'there is no OpenCL device' render --integrator=pt --backend=all --device=0 "$scene"
     expect 1 'there is no OpenCL device' render --verify "$scene"
-    expect 0 'opencl has no device here' render --backend=all --resolution=16x12 --samples=1 -o alone.exr "$scene"
+    expect 0 'opencl has no device here' render --integrator=pt --backend=all --resolution=16x12 --samples=1 -o alone.exr "$scene"
     expect 0 'no device' devices
     [ "$failures" -eq 0 ]
 )
@@ -47,13 +47,13 @@ fi
 # ---- lists of devices ---------------------------------------------------------------------------------------------
 
 for list in '0,,1' ',0' '0,'; do
-    expect 2 'missing between the commas' render --backend=opencl --device="$list" "$scene"
+    expect 2 'missing between the commas' render --integrator=pt --backend=opencl --device="$list" "$scene"
 done
-expect 2 '--device names 0 twice' render --backend=opencl --device=0,1,0 "$scene"
-expect 1 '0 and basic are the same device' render --backend=opencl --device=0,basic "$scene"
-expect 1 'PTHREAD and 1 are the same device' render --backend=all --device=PTHREAD,1 "$scene"
-expect 1 '--device=7: there is no OpenCL device of that number' render --backend=opencl --device=0,7 "$scene"
-expect 1 'more than one OpenCL device has that' render --backend=opencl --device=c "$scene"
+expect 2 '--device names 0 twice' render --integrator=pt --backend=opencl --device=0,1,0 "$scene"
+expect 1 '0 and basic are the same device' render --integrator=pt --backend=opencl --device=0,basic "$scene"
+expect 1 'PTHREAD and 1 are the same device' render --integrator=pt --backend=all --device=PTHREAD,1 "$scene"
+expect 1 '--device=7: there is no OpenCL device of that number' render --integrator=pt --backend=opencl --device=0,7 "$scene"
+expect 1 'more than one OpenCL device has that' render --integrator=pt --backend=opencl --device=c "$scene"
 
 # ---- the same image -----------------------------------------------------------------------------------------------
 
@@ -62,7 +62,7 @@ same() {
     same_scene=$1
     same_ways=$2
     shift 2
-    "$program" render --quiet --no-png -o cpu.exr "$@" "$same_scene" >out 2>err
+    "$program" render --quiet --integrator=pt --no-png -o cpu.exr "$@" "$same_scene" >out 2>err
     result "twinlight render $* $same_scene on the CPU" $?
     for way in $same_ways; do
         case $way in
@@ -71,7 +71,7 @@ same() {
         film_all) way='all --film=device' ;;
         esac
         # shellcheck disable=SC2086 # a way is several options
-        "$program" render --quiet --no-png -o device.exr "$@" --backend=$way "$same_scene" >out 2>err &&
+        "$program" render --quiet --integrator=pt --no-png -o device.exr "$@" --backend=$way "$same_scene" >out 2>err &&
             cmp cpu.exr device.exr
         result "twinlight render $* --backend=$way $same_scene: not the CPU's image" $?
         rm -f device.exr
@@ -93,8 +93,8 @@ for integrator in bdpt ibpt; do
 done
 for other in environment.pbrt instances.pbrt; do
     for batch in 1 63 100000; do
-        "$program" render --quiet --no-png -o cpu.exr --samples=3 $other >out 2>err &&
-            "$program" render --quiet --no-png -o batch.exr --samples=3 --backend=opencl --batch=$batch $other \
+        "$program" render --quiet --integrator=pt --no-png -o cpu.exr --samples=3 $other >out 2>err &&
+            "$program" render --quiet --integrator=pt --no-png -o batch.exr --samples=3 --backend=opencl --batch=$batch $other \
                 >out 2>err && cmp cpu.exr batch.exr
         result "$other: --batch=$batch changes the image" $?
     done
@@ -131,13 +131,13 @@ result '--verify does not name field and values' $?
 # ---- failures and signals -----------------------------------------------------------------------------------------
 
 # Batches 0 ... 31 of each of two devices are the pilot's.
-TWINLIGHT_TEST_FAIL_BATCH=40 expect 1 'CL_OUT_OF_RESOURCES; what was finished, ' render --backend=opencl --device=0,1 \
-    --batch=64 --resolution=64x64 --samples=50 -o failed.exr "$scene"
+TWINLIGHT_TEST_FAIL_BATCH=40 expect 1 'CL_OUT_OF_RESOURCES; what was finished, ' render --integrator=pt \
+    --backend=opencl --device=0,1 --batch=64 --resolution=64x64 --samples=50 -o failed.exr "$scene"
 file_exists failed.exr
 file_exists failed.png
-TWINLIGHT_TEST_FAIL_BATCH=0 expect 1 'CL_OUT_OF_RESOURCES' render --backend=all -o none.exr "$scene"
+TWINLIGHT_TEST_FAIL_BATCH=0 expect 1 'CL_OUT_OF_RESOURCES' render --integrator=pt --backend=all -o none.exr "$scene"
 file_missing none.exr
-POCL_MEMORY_LIMIT=1 expect 1 'use --batch=' render --backend=all --batch=67108864 -o none.exr "$scene"
+POCL_MEMORY_LIMIT=1 expect 1 'use --batch=' render --integrator=pt --backend=all --batch=67108864 -o none.exr "$scene"
 file_missing none.exr
 
 "$program" render --quiet --resolution=32x32 --time=60s --save-every=0.2s --backend=all --stats=stop.json -o stop.exr \
@@ -155,12 +155,12 @@ result 'SIGINT with --backend=all: the statistics do not say so' $?
 
 # ---- the trace of several devices ---------------------------------------------------------------------------------
 
-expect 0 '' render --backend=all --film=device --trace=film.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
+expect 0 '' render --integrator=pt --backend=all --film=device --trace=film.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
 for name in film_add 'copy sums' 'add to film'; do
     grep -qF "\"$name\"" film.json
     result "--film=device: no \"$name\" in the trace" $?
 done
-expect 0 '' render --backend=all --trace=trace.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
+expect 0 '' render --integrator=pt --backend=all --trace=trace.json --resolution=64x48 --samples=4 -o traced.exr "$scene"
 ! grep -q film_add trace.json
 result '--film=host: the device adds' $?
 if command -v python3 >/dev/null 2>&1; then
@@ -182,21 +182,21 @@ fi
 TWINLIGHT_KERNELS=$work/nowhere expect 1 'nowhere/kernels.cl' render --verify "$scene"
 # PoCL keeps files of its own there, and has no device when it cannot.
 touch file
-XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --backend=opencl "$scene"
+XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --integrator=pt --backend=opencl "$scene"
 # Root may write anywhere.
 if [ "$(id -u)" -ne 0 ]; then
     mkdir sealed
     chmod a-w sealed
-    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to one' render --backend=opencl \
+    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to one' render --integrator=pt --backend=opencl \
         "$scene"
 fi
 POCL_CACHE_DIR=$work/pocl
 export POCL_CACHE_DIR
-XDG_CACHE_HOME=$work/file expect 0 'cannot be kept in' render --backend=opencl --resolution=8x6 --samples=1 \
+XDG_CACHE_HOME=$work/file expect 0 'cannot be kept in' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
     -o unkept.exr environment.pbrt
 (
     unset XDG_CACHE_HOME HOME
-    expect 0 'neither XDG_CACHE_HOME nor HOME is set' render --backend=opencl --resolution=8x6 --samples=1 \
+    expect 0 'neither XDG_CACHE_HOME nor HOME is set' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
         -o homeless.exr environment.pbrt
     [ "$failures" -eq 0 ]
 )

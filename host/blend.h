@@ -1,0 +1,60 @@
+/* Several estimates of the same picture in one: what the chains of a generation show, what the pool's samples show from
+ * which they began, and what path tracing sees. In easy light path tracing is the best of them, in hard light the chains,
+ * and which it is changes from place to place.
+ *
+ * Each tile of the picture takes a share of every stream, in inverse proportion to its variance (Graybill and Deal 1959),
+ * which is estimated from the generations before: a share that depends on nothing of the generation it is applied to
+ * leaves the mean right. A path that carries more than a limit is a bright dot where a pool has met it by chance; pools show
+ * as much of it as the limit, and the rest is left to the chains, which come by many of its like. The same variances say how much of the time path tracing should have. */
+#ifndef TWINLIGHT_BLEND_H
+#define TWINLIGHT_BLEND_H
+
+#include "film.h"
+#include "pixel_series.h"
+
+#define BLEND_TILE 8 /* pixels a side */
+
+typedef enum BlendStream { BLEND_CHAINS, BLEND_POOL, BLEND_PATHS, BLEND_STREAMS } BlendStream;
+
+/* A series of pictures more: what chains see of paths above the limit. */
+#define BLEND_EXCESS BLEND_STREAMS
+#define BLEND_SERIES (BLEND_STREAMS + 1)
+
+typedef struct BlendTile {
+    double spread[BLEND_SERIES]; /* variance of one sample, summed over the pixels */
+    double direct; /* the same of direct light */
+    double light, indirect; /* sums of luminances */
+    double share[BLEND_STREAMS]; /* of the latest generation */
+} BlendTile;
+
+typedef struct Blend {
+    int size[2], tiles[2];
+    PixelSeries pixels[BLEND_SERIES], sums[BLEND_SERIES]; /* luminances of pixels, and summed over tiles */
+    PixelSeries direct; /* of pixels */
+    BlendTile *known; /* a tile */
+    bool ready[BLEND_SERIES]; /* the stream's variances are there */
+    double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
+} Blend;
+
+/* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not those of
+ * the machine, so that the image does not depend on it. */
+double blend_work(const double samples[BLEND_STREAMS]);
+
+/* For films like `film`. */
+bool blend_init(Blend *blend, const Film *film, Error *error);
+void blend_destroy(Blend *blend);
+
+/* The streams of one generation: light_sums from light_samples paths each (0: the stream has nothing this time). The
+ * film of the paths has direct light in `sums`. Makes the film of the chains the blend of all, with that direct light, then
+ * learns from what they were. */
+bool blend_generation(Blend *blend, Film *const films[BLEND_STREAMS], Error *error);
+
+/* How many samples for every step of a chain. */
+typedef struct BlendPlan {
+    double paths_per_step, pool_per_step;
+} BlendPlan;
+
+/* The plan that makes the relative error of the whole picture smallest in a given time; zeros before enough is known. */
+BlendPlan blend_plan(const Blend *blend);
+
+#endif

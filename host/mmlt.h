@@ -1,0 +1,40 @@
+/* Metropolis light transport under way: what its loop (integrator_mmlt.c) and a generation (mmlt_generation.c) share. */
+#ifndef TWINLIGHT_MMLT_H
+#define TWINLIGHT_MMLT_H
+
+#include "blend.h"
+#include "chain_list.h"
+#include "integrator.h"
+#include "render_run.h"
+
+/* Paths of fewer segments are left to path tracing. */
+#define CHAIN_DEPTH_MIN 3
+
+/* Samples of a pool for every step of a chain, at least. On a Cornell box a sample takes as long as four or five steps, so
+ * pools take about a quarter of the time. */
+#define POOL_PER_STEP (1.0 / 12.0)
+
+typedef struct Mmlt {
+    RenderRun *run;
+    ChainOptions options;
+    FrameParams paths_frame;
+    StepList paths, pool, chains;
+    uint64_t paths_done; /* whole samples of path tracing, of every pixel */
+    double paths_wanted; /* as many, in all */
+    double paths_per_step, pool_per_step; /* samples of path tracing and of pools for a step of a chain */
+    uint64_t work_done, work_last; /* blend_work: what --samples and progress count; of the latest generation */
+    uint next_sample; /* of the pool: numbers below it are used */
+    uint pool_sample; /* the first of the latest pool */
+    uint generation;
+    uint pool_count, chain_count; /* of the buffers */
+    uint *pool_words, *chain_words;
+    Film film, pool_film, paths_film; /* of the generation under way */
+    Blend blend;
+    double brightness, brightness_sum; /* of the latest pool, of all */
+} Mmlt;
+
+/* A pool, `count` chains from it, path tracing, and what they show to the film. Counts only as a whole: when it is stopped
+ * before its end nothing of it is kept. */
+bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *error);
+
+#endif

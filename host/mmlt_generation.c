@@ -1,0 +1,249 @@
+/* A generation: a pool of independent samples, chains that begin with some of them, path tracing, and what all show. */
+#include "mmlt.h"
+
+#include "chain_seeds.h"
+#include "render_layers.h"
+#include "rng.h"
+#include "timing.h"
+
+#include "chain.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A path may show so many times the mean luminance of a pool's sample. */
+#define LIMIT_FACTOR 16.0
+
+/* Items of one pass of path tracing. */
+#define PATHS_MAX (1u << 24)
+
+static bool words_reserve(uint **words, uint *count, uint wanted, uint fields, Error *error)
+{
+    if (*words && wanted <= *count)
+        return true;
+    free(*words);
+    *count = wanted;
+    *words = malloc((size_t)wanted * fields * sizeof **words);
+    return *words || error_memory(error, (size_t)wanted * fields * sizeof **words, "chains");
+}
+
+/* Sample numbers that `items` items of a pool take up. */
+static uint samples_of(const RenderRun *run, uint items)
+{
+    return (uint)((items + run->crop_pixels - 1) / run->crop_pixels);
+}
+
+/* Of what a path shows before it becomes an excess: that of a usual one many times, as earlier pools have it. */
+static float limit_of(const Mmlt *mmlt)
+{
+    if (mmlt->options.unblended)
+        return FLT_MAX;
+    return mmlt->generation > 0 ? (float)(LIMIT_FACTOR * mmlt->brightness_sum / mmlt->generation) : 0.0f;
+}
+
+static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    FrameParams frame = run->frame;
+    uint64_t delivered = 0;
+    if (!words_reserve(&mmlt->pool_words, &mmlt->pool_count, count, POOL_WORDS, error))
+        return false;
+    mmlt->pool.pass_words = mmlt->pool_words;
+    mmlt->pool.pass_fields = POOL_WORDS;
+    mmlt->pool.pass_stride = count;
+    frame.pool = 1;
+    frame.sample_index = mmlt->next_sample;
+    frame.item_count = count;
+    frame.limit = limit_of(mmlt);
+    frame.film_exponent = mmlt->pool_film.quantum_exponent;
+    film_clear(&mmlt->pool_film);
+    const SplatSink sink = render_run_sink(&mmlt->pool_film);
+    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, stop, &delivered, error);
+    *whole = delivered == count;
+    mmlt->pool_film.light_samples = *whole ? count : 0;
+    return done;
+}
+
+/* Uniform numbers of the host's own, one for each generation. */
+static double offset_of(const Mmlt *mmlt)
+{
+    const FrameParams *frame = &mmlt->run->frame;
+    Random4 random = random_four(mmlt->generation, 0, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
+    return ((double)random.x[0] + 0.5) / 4294967296.0;
+}
+
+static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
+{
+    if (!words_reserve(&mmlt->chain_words, &mmlt->chain_count, count, mmlt->chains.pass_fields, error))
+        return false;
+    uint *words = mmlt->chain_words;
+    memset(words, 0, (size_t)count * mmlt->chains.pass_fields * sizeof *words);
+    return chain_seeds_choose(mmlt->pool_words, pool_count, !mmlt->options.unsorted, offset_of(mmlt), count,
+                              words + (size_t)CHAIN_PASS_ITEM * count, words + (size_t)CHAIN_PASS_KEY * count,
+                              &mmlt->brightness, error);
+}
+
+static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    FrameParams frame = run->frame;
+    uint64_t delivered = 0;
+    if (!(mmlt->brightness > 0.0))
+        return true; /* a dark pool: what the chains would have shown is dark, too, on average */
+    mmlt->chains.pass_words = mmlt->chain_words;
+    mmlt->chains.pass_stride = count;
+    frame.film_exponent = mmlt->film.quantum_exponent;
+    frame.limit = limit_of(mmlt);
+    frame.brightness = (float)mmlt->brightness;
+    frame.sample_index = mmlt->pool_sample;
+    frame.roulette_depth = NONE;
+    frame.item_count = count;
+    const SplatSink sink = render_run_sink(&mmlt->film);
+    bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
+    *whole = delivered == count;
+    if (frame.keep_chains) /* their coordinates are there */
+        for (uint i = 0; i < count; ++i)
+            mmlt->chain_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
+    return done;
+}
+
+/* A pool, and where `count` chains begin. *whole: not stopped before its end. */
+static bool seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+{
+    uint64_t wanted = mmlt->options.pool
+                          ? mmlt->options.pool
+                          : (uint64_t)(mmlt->pool_per_step * (double)count * (double)mmlt->options.steps);
+    uint pool_count = wanted < 1 ? 1 : wanted < 1u << 30 ? (uint)wanted : 1u << 30;
+    if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
+        return false;
+    mmlt->pool_sample = mmlt->next_sample;
+    mmlt->next_sample += samples_of(mmlt->run, pool_count);
+    mmlt->run->chains.pool_samples += pool_count;
+    mmlt->run->chains.seeds += count;
+    return true;
+}
+
+/* How often chains of each depth took what they proposed. */
+static void tally_chains(Mmlt *mmlt, uint count)
+{
+    ChainStatistics *statistics = &mmlt->run->chains;
+    const uint *words = mmlt->chain_words;
+    for (uint i = 0; i < count; ++i) {
+        uint depth = chain_key_depth(words[(size_t)CHAIN_PASS_KEY * count + i]) % CHAIN_DEPTHS;
+        for (uint kind = 0; kind < MUTATION_COUNT; ++kind) {
+            uint tally = words[(size_t)(CHAIN_PASS_TALLY + kind) * count + i];
+            statistics->proposals[kind][depth] += tally & 0xffffu;
+            statistics->accepted[kind][depth] += tally >> 16;
+        }
+    }
+    statistics->steps += (uint64_t)count * mmlt->options.steps;
+}
+
+/* ---- path tracing ------------------------------------------------------------------------------------------------ */
+
+/* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one of either half of the
+ * image. */
+static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *whole, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    FrameParams *frame = &mmlt->paths_frame;
+    double begin = timing_now();
+    mmlt->paths_wanted += mmlt->paths_per_step * (double)steps / (double)run->crop_pixels;
+    uint64_t target = (uint64_t)mmlt->paths_wanted, first = (uint64_t)mmlt->generation + 1;
+    if (mmlt->generation < 2 && target < first)
+        target = first;
+    film_clear(&mmlt->paths_film);
+    const SplatSink sink = render_run_sink(&mmlt->paths_film);
+    frame->film_exponent = mmlt->paths_film.quantum_exponent;
+    uint64_t items = target > mmlt->paths_done ? (target - mmlt->paths_done) * run->crop_pixels : 0;
+    for (uint64_t next = 0; next < items && *whole; next += frame->item_count) {
+        uint64_t delivered = 0, left = items - next;
+        frame->sample_index = run->options->first_sample + (uint)(mmlt->paths_done + next / run->crop_pixels);
+        frame->first_item = (uint)(next % run->crop_pixels);
+        frame->item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
+        if (!run->interface->run(run->backend, frame, &mmlt->paths, &sink, stop, &delivered, error))
+            return false;
+        *whole = delivered == frame->item_count;
+    }
+    mmlt->paths_done = target > mmlt->paths_done ? target : mmlt->paths_done;
+    mmlt->paths_film.light_samples = items;
+    run->chains.direct_seconds += timing_now() - begin;
+    return true;
+}
+
+/* ---- all of it --------------------------------------------------------------------------------------------------- */
+
+/* What the generation showed, to the picture and the layers. */
+static bool generation_take(Mmlt *mmlt, Error *error)
+{
+    RenderLayers *layers = mmlt->run->options->layers;
+    Film *const streams[BLEND_STREAMS] = {
+        [BLEND_CHAINS] = &mmlt->film, [BLEND_POOL] = &mmlt->pool_film, [BLEND_PATHS] = &mmlt->paths_film};
+    if (mmlt->options.unblended) {
+        mmlt->paths_film.light_samples = 0; /* direct light alone */
+        if (!film_merge(&mmlt->film, &mmlt->paths_film, error))
+            return false;
+    } else {
+        if (!blend_generation(&mmlt->blend, streams, error))
+            return false;
+        mmlt->brightness_sum += mmlt->brightness;
+        BlendPlan plan = blend_plan(&mmlt->blend);
+        if (plan.paths_per_step > 0.0) {
+            mmlt->paths_per_step = plan.paths_per_step;
+            mmlt->pool_per_step = fmax(plan.pool_per_step, POOL_PER_STEP);
+        }
+    }
+    return film_merge(mmlt->run->film, &mmlt->film, error) &&
+           (!layers || render_layers_add(layers, &mmlt->film, mmlt->generation % 2, error));
+}
+
+static bool chains_follow(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    double begin = timing_now();
+    bool anew = !mmlt->options.paper || mmlt->generation == 0;
+    if (anew && !seeds_run(mmlt, count, stop, whole, error))
+        return false;
+    double seeded = timing_now();
+    if (*whole && !chains_run(mmlt, count, stop, whole, error))
+        return false;
+    run->chains.pool_seconds += seeded - begin;
+    run->chains.chain_seconds += timing_now() - seeded;
+    return true;
+}
+
+/* Of the generation that has run: steps of its chains, its pool where it had one of its own, and its path tracing. */
+static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
+{
+    bool pool = steps > 0 && (!mmlt->options.paper || mmlt->generation == 0);
+    const double samples[BLEND_STREAMS] = {[BLEND_CHAINS] = (double)steps,
+                                           [BLEND_POOL] = pool ? (double)mmlt->pool_film.light_samples : 0.0,
+                                           [BLEND_PATHS] = (double)mmlt->paths_film.light_samples};
+    double work = blend_work(samples);
+    return work > 1.0 ? (uint64_t)work : 1;
+}
+
+bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    uint64_t steps = (uint64_t)count * mmlt->options.steps;
+    bool whole = true, chains = run->frame.max_depth >= CHAIN_DEPTH_MIN;
+    film_clear(&mmlt->film);
+    if ((chains && !chains_follow(mmlt, count, stop, &whole, error)) ||
+        (whole && !paths_run(mmlt, steps, stop, &whole, error)))
+        return false;
+    if (whole) {
+        mmlt->film.light_samples = steps;
+        uint64_t work = generation_work(mmlt, chains ? steps : 0);
+        if (!generation_take(mmlt, error))
+            return false;
+        if (chains)
+            tally_chains(mmlt, count);
+        mmlt->work_last = work;
+        run->done = mmlt->work_done += work;
+    }
+    ++mmlt->generation;
+    return true;
+}

@@ -1,0 +1,177 @@
+/* Shares of chains, pool and path tracing, on generations made up of noise. */
+#include "blend.h"
+#include "rng.h"
+
+#include "test_util.h"
+
+#include <string.h>
+
+#define SIDE 32
+#define PIXELS ((size_t)SIDE * SIDE)
+
+typedef struct Streams {
+    Film films[BLEND_STREAMS];
+    Blend blend;
+    uint draws;
+} Streams;
+
+static void streams_init(Streams *streams)
+{
+    const int crop[4] = {0, 0, SIDE, SIDE};
+    Error error = {0};
+    *streams = (Streams){0};
+    for (int s = 0; s < BLEND_STREAMS; ++s) {
+        ck_assert(film_init(&streams->films[s], SIDE, SIDE, crop, &error));
+        ck_assert(film_light_reserve(&streams->films[s], &error));
+    }
+    ck_assert(blend_init(&streams->blend, &streams->films[0], &error));
+}
+
+static void streams_destroy(Streams *streams)
+{
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        film_destroy(&streams->films[s]);
+    blend_destroy(&streams->blend);
+}
+
+/* Uniform with mean 0 and variance 1. */
+static double noise(Streams *streams)
+{
+    Random4 random = random_four(streams->draws++, 1, 2, 3, 4, 5);
+    return (((double)random.x[0] + 0.5) / 4294967296.0 - 0.5) * sqrt(12.0);
+}
+
+/* Every pixel of the stream shows `mean` + noise: `deviation` for one sample a pixel. */
+static void stream_set(Streams *streams, int s, double samples, double mean, double deviation)
+{
+    Film *film = &streams->films[s];
+    film_clear(film);
+    film->light_samples = (uint64_t)(samples * (double)PIXELS);
+    for (size_t i = 0; i < PIXELS; ++i) {
+        double value = mean + deviation * noise(streams) / sqrt(samples);
+        for (size_t c = 0; c < 3; ++c)
+            film->light_sums[3 * i + c] = llrint(value * samples * 0x1p30);
+    }
+}
+
+static double generation(Streams *streams)
+{
+    Film *const films[BLEND_STREAMS] = {&streams->films[0], &streams->films[1], &streams->films[2]};
+    Error error = {0};
+    double sum = 0.0;
+    ck_assert(blend_generation(&streams->blend, films, &error));
+    for (size_t i = 0; i < 3 * PIXELS; ++i)
+        sum += (double)films[BLEND_CHAINS]->light_sums[i];
+    return sum * 0x1p-30 / 3.0 / (double)films[BLEND_CHAINS]->light_samples;
+}
+
+/* Shares go as samples over variance. */
+START_TEST(test_shares)
+{
+    Streams streams;
+    streams_init(&streams);
+    for (int g = 0; g < 60; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_POOL, 1.0, 1.0, 0.5);
+        stream_set(&streams, BLEND_PATHS, 2.0, 1.0, 2.0);
+        double mean = generation(&streams);
+        ck_assert_double_eq_tol(mean, 1.0, 0.08);
+    }
+    /* 4 / 1, 1 / 0.25, 2 / 4 */
+    const double *share = streams.blend.share;
+    printf("shares %.3f %.3f %.3f\n", share[0], share[1], share[2]);
+    ck_assert_double_eq_tol(share[BLEND_CHAINS], 4.0 / 8.5, 0.02);
+    ck_assert_double_eq_tol(share[BLEND_POOL], 4.0 / 8.5, 0.02);
+    ck_assert_double_eq_tol(share[BLEND_PATHS], 0.5 / 8.5, 0.02);
+    streams_destroy(&streams);
+}
+END_TEST
+
+/* A stream that never sees the light has no variance, and yet no share worth speaking of. */
+START_TEST(test_blind)
+{
+    Streams streams;
+    streams_init(&streams);
+    for (int g = 0; g < 30; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_POOL, 1.0, _i == BLEND_POOL ? 0.0 : 1.0, _i == BLEND_POOL ? 0.0 : 1.0);
+        stream_set(&streams, BLEND_PATHS, 2.0, _i == BLEND_PATHS ? 0.0 : 1.0, _i == BLEND_PATHS ? 0.0 : 1.0);
+        generation(&streams);
+    }
+    printf("a blind stream's share: %.5f\n", streams.blend.share[_i]);
+    ck_assert_double_lt(streams.blend.share[_i], 0.01);
+    streams_destroy(&streams);
+}
+END_TEST
+
+/* A stream without samples this time has no share, and the others have all. */
+START_TEST(test_absent)
+{
+    Streams streams;
+    streams_init(&streams);
+    for (int g = 0; g < 6; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_POOL, 1.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_PATHS, 2.0, 1.0, 1.0);
+        if (g == _i) {
+            film_clear(&streams.films[BLEND_PATHS]);
+            streams.films[BLEND_PATHS].light_samples = 0;
+        }
+        ck_assert_double_eq_tol(generation(&streams), 1.0, 0.08);
+        const double *share = streams.blend.share;
+        ck_assert_double_eq_tol(share[0] + share[1] + share[2], 1.0, 1e-12);
+        ck_assert_int_eq(share[BLEND_PATHS] == 0.0, g == _i);
+    }
+    streams_destroy(&streams);
+}
+END_TEST
+
+/* What chains keep apart counts with chains and pool, not with path tracing. */
+START_TEST(test_excess)
+{
+    Streams streams;
+    streams_init(&streams);
+    for (int g = 0; g < 6; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 0.1);
+        stream_set(&streams, BLEND_POOL, 1.0, 1.0, 0.1);
+        stream_set(&streams, BLEND_PATHS, 2.0, 3.0, 0.1);
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            streams.films[BLEND_CHAINS].sums[i] = llrint(4.0 * 2.0 * 0x1p30);
+        ck_assert_double_eq_tol(generation(&streams), 3.0, 0.02);
+    }
+    streams_destroy(&streams);
+}
+END_TEST
+
+/* The plan gives the time to what is good: nothing but path tracing is, or nothing but chains. */
+START_TEST(test_plan)
+{
+    Streams streams;
+    streams_init(&streams);
+    ck_assert_double_eq(blend_plan(&streams.blend).paths_per_step, 0.0);
+    for (int g = 0; g < 20; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, _i == 0 ? 10.0 : 1.0);
+        stream_set(&streams, BLEND_POOL, 1.0, 1.0, 10.0);
+        stream_set(&streams, BLEND_PATHS, 2.0, 1.0, _i == 0 ? 1.0 : 10.0);
+        generation(&streams);
+    }
+    BlendPlan plan = blend_plan(&streams.blend);
+    printf("plan: %.3f paths, %.3f samples of a pool for a step\n", plan.paths_per_step, plan.pool_per_step);
+    ck_assert_int_eq(plan.paths_per_step > 10.0, _i == 0);
+    ck_assert_int_eq(plan.paths_per_step < 0.2, _i == 1);
+    streams_destroy(&streams);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("blend");
+    TCase *tcase = tcase_create("blend");
+    tcase_add_test(tcase, test_shares);
+    tcase_add_loop_test(tcase, test_blind, BLEND_POOL, BLEND_STREAMS);
+    tcase_add_loop_test(tcase, test_absent, 0, 6);
+    tcase_add_test(tcase, test_excess);
+    tcase_add_loop_test(tcase, test_plan, 0, 2);
+    suite_add_tcase(suite, tcase);
+    return test_run(suite);
+}
