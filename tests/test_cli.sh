@@ -236,8 +236,8 @@ else
     for other in "$scene" "${scene%/*}/showcase.pbrt"; do
         for integrator in pt ibpt bdpt; do
             layers=$([ $integrator = pt ] && echo all || echo none)
-            render --integrator=$integrator --layers=$layers --samples=3 -o cpu.exr "$other"
-            opencl --integrator=$integrator --layers=$layers --samples=3 -o opencl.exr "$other"
+            render --integrator=$integrator "--layers=$layers" --samples=3 -o cpu.exr "$other"
+            opencl --integrator=$integrator "--layers=$layers" --samples=3 -o opencl.exr "$other"
             result "$other on OpenCL by $integrator: exit status" $?
             cmp cpu.exr opencl.exr
             result "$other by $integrator: OpenCL's image is not the CPU's" $?
