@@ -3,7 +3,8 @@
 #   bench_bvh        rays/s of Embree, of the devices' hierarchy walked in C, and of it on OpenCL, on BENCH_SCENES
 #   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
 #   bench_opencl.sh  samples/s of a device with overlap, without, with its own film, and of the CPU; rays/s of both
-#   bench_bidirectional.sh  error against time of path tracing, IBPT and BDPT on BENCH_SCENES, and a plot of it
+#   bench_mmlt.sh    what sorting and grouping of chains bring, acceptance by depth, on the CPU and the first device
+#   bench_error.sh   error against time of all integrators on BENCH_SCENES, and a plot of it
 # Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
@@ -18,7 +19,7 @@ bench_bench_bvh_SOURCES = bench/bench_bvh.c $(OPENCL_PROBE)
 bench_bench_bvh_CPPFLAGS = $(AM_CPPFLAGS) -I$(srcdir)/tests
 bench_bench_bvh_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) -lm
 CLEANFILES += bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/bench.sh bench/bench_util.h bench/bench_bidirectional.sh bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_DIST += bench/bench.sh bench/bench_util.h bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)
@@ -28,4 +29,5 @@ bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) benc
 if HAVE_OPENCL
 	$(srcdir)/bench/bench_opencl.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
 endif
-	$(srcdir)/bench/bench_bidirectional.sh ./twinlight$(EXEEXT) bench/bidirectional.svg $(BENCH_SCENES)
+	$(srcdir)/bench/bench_mmlt.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
+	$(srcdir)/bench/bench_error.sh ./twinlight$(EXEEXT) bench/error.svg $(BENCH_SCENES)

@@ -322,7 +322,7 @@ static double error_of(const Blend *blend, const double samples[BLEND_STREAMS])
 BlendPlan blend_plan(const Blend *blend)
 {
     BlendPlan best = {0};
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int s = 0; s < BLEND_STREAMS; ++s)
         if (!blend->ready[s])
             return best;

@@ -19,6 +19,9 @@ typedef struct ChainWords {
 
 ChainWords chain_words(const FrameParams *frame);
 
+/* The bytes of `chains` of them, on standard output. */
+void chain_memory_print(const FrameParams *frame, unsigned chains);
+
 /* Chains at a time where nobody asks for a number. */
 #define CHAINS_DEFAULT 524288u
 #define PAPER_CHAINS_DEFAULT 16384u

@@ -1,6 +1,7 @@
 /* `twinlight render`: scene in, picture out. */
 #include "command.h"
 
+#include "bad_chains.h"
 #include "chain_list.h"
 #include "interrupt.h"
 #include "log.h"
@@ -35,6 +36,7 @@ typedef struct RenderJob {
     Scene scene;
     Film film;
     RenderLayers layers;
+    BadChains bad_chains;
     BackendMember backend;
     RenderOutput output;
     Progress progress;
@@ -160,10 +162,11 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->despeckle = command->despeckle;
     output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
-    return render_output_distinct(output, command->stats, command->trace, error) &&
+    return render_output_distinct(output, command->stats, command->trace, command->dump_bad, error) &&
            render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
            (!command->stats || render_output_check(command->stats, error)) &&
-           (!command->trace || render_output_check(command->trace, error));
+           (!command->trace || render_output_check(command->trace, error)) &&
+           (!command->dump_bad || render_output_check(command->dump_bad, error));
 }
 
 static bool scene_load(RenderJob *job, Error *error)
@@ -206,6 +209,7 @@ static RenderOptions render_settings(RenderJob *job)
         .seconds = command->seconds,
         .max_depth = settings->max_depth,
         .chains = command->chains,
+        .bad_chains = job->bad_chains.stream,
         .layers = job->layers.wanted != 0 ? &job->layers : NULL,
         .balance = command->balance,
         .only_strategy = command->only_strategy,
@@ -346,25 +350,13 @@ static int job_verify(RenderJob *job, Error *error)
     return *options.stop ? EXIT_STOPPED : EXIT_OK;
 }
 
-/* What chains take, on standard output. */
-static int job_memory(const RenderJob *job)
+static int memory_print(const RenderJob *job)
 {
     const ChainOptions *options = &job->command->chains;
     FrameParams frame = job->scene.frame;
     frame.max_depth = (uint)job->scene.settings.max_depth;
-    ChainWords words = chain_words(&frame);
-    unsigned chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
-    const struct {
-        const char *what;
-        uint words;
-    } rows[] = {{"state", words.state},
-                {"densities", words.densities},
-                {"walk, vertices, rays", words.all - words.state - words.densities},
-                {"all", words.all}};
-    printf("%u chains of up to %u segments\n", chains, frame.max_depth);
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i)
-        printf("%-22s %5zu bytes a chain %10.1f MB\n", rows[i].what, rows[i].words * sizeof(uint),
-               1e-6 * (double)chains * (double)(rows[i].words * sizeof(uint)));
+    unsigned usual = options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    chain_memory_print(&frame, options->chains ? options->chains : usual);
     return EXIT_OK;
 }
 
@@ -381,15 +373,11 @@ static int job_run(RenderJob *job, Error *error)
     if (!settings_override(job, error) || !depth_check(job, error))
         return EXIT_USAGE;
     if (command->memory)
-        return job_memory(job);
-    if (command->verify && !job->integrator->list) {
-        error_set(error, "--verify compares the steps of pt, ibpt and bdpt; chains are compared by their images");
-        error_fix(error, "render with --backend=cpu and --backend=opencl, and compare the files");
-        return EXIT_USAGE;
-    }
+        return memory_print(job);
     if (command->verify)
         return job_verify(job, error);
-    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error))
+    if (!outputs_name(job, error) || !bad_chains_begin(&job->bad_chains, command->dump_bad, error) ||
+        !stage_run(backend_build, job, &job->build, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
         film_rescue(job, error);
@@ -399,7 +387,8 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     diagnostics_report(job);
     summary_report(job);
-    if ((command->stats && !stats_output(job, error)) || (command->trace && !trace_output(job, error)))
+    if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !stats_output(job, error)) ||
+        (command->trace && !trace_output(job, error)))
         return EXIT_FAILED;
     return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
 }
@@ -411,7 +400,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     if (end != OPTIONS_READ)
         return options_status(end);
     if (!command.integrator)
-        command.integrator = command.verify ? "pt" : "mmlt";
+        command.integrator = "mmlt";
     log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
     RenderJob job;
     memset(&job, 0, sizeof job);
@@ -421,6 +410,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     int status = job_run(&job, error);
     if (job.backend.backend)
         job.backend.interface->close(job.backend.backend);
+    bad_chains_cancel(&job.bad_chains);
     render_layers_destroy(&job.layers);
     film_destroy(&job.film);
     scene_destroy(&job.scene);

@@ -136,7 +136,16 @@ static bool films_init(Mmlt *mmlt, Error *error)
     return mmlt->options.unblended || blend_init(&mmlt->blend, mmlt->run->film, error);
 }
 
-static void mmlt_destroy(Mmlt *mmlt)
+bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
+{
+    *mmlt = (Mmlt){.run = run, .options = run->options->chains, .next_sample = run->options->first_sample};
+    options_complete(&mmlt->options, run->frame.max_depth);
+    mmlt->pool_per_step = POOL_PER_STEP;
+    mmlt->paths_per_step = mmlt->options.unblended ? PATHS_DIRECT : PATHS_FIRST;
+    return films_init(mmlt, error) && lists_make(mmlt, error);
+}
+
+void mmlt_destroy(Mmlt *mmlt)
 {
     step_list_destroy(&mmlt->paths);
     step_list_destroy(&mmlt->pool);
@@ -151,15 +160,11 @@ static void mmlt_destroy(Mmlt *mmlt)
 
 static bool mmlt_render(RenderRun *run, Error *error)
 {
-    Mmlt mmlt = {.run = run, .options = run->options->chains};
+    Mmlt mmlt;
     const uint64_t limit = UINT64_MAX / 2;
-    options_complete(&mmlt.options, run->frame.max_depth);
-    mmlt.pool_per_step = POOL_PER_STEP;
-    mmlt.paths_per_step = mmlt.options.unblended ? PATHS_DIRECT : PATHS_FIRST;
     run->start = run->last_save = timing_now();
     uint64_t total = run->options->samples > 0 ? run->crop_pixels * run->options->samples : limit;
-    mmlt.next_sample = run->options->first_sample;
-    bool done = films_init(&mmlt, error) && lists_make(&mmlt, error) && generations_run(&mmlt, total, error);
+    bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, total, error);
     for (int s = 0; s < BLEND_STREAMS; ++s)
         run->chains.shares[s] = mmlt.blend.share[s];
     mmlt_destroy(&mmlt);

@@ -33,6 +33,18 @@ typedef struct Mmlt {
     double brightness, brightness_sum; /* of the latest pool, of all */
 } Mmlt;
 
+/* The lists of steps, films, and options as they are meant; run->film must have its quantum. To be destroyed whether it
+ * fails or not. */
+bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error);
+void mmlt_destroy(Mmlt *mmlt);
+
+/* What passes of the latest pool and of chains from it are given. */
+FrameParams mmlt_pool_frame(const Mmlt *mmlt);
+FrameParams mmlt_chain_frame(const Mmlt *mmlt);
+
+/* A pool, and where `count` chains begin (the words of mmlt->chains). *whole: not stopped before its end. */
+bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error);
+
 /* A pool, `count` chains from it, path tracing, and what they show to the film. Counts only as a whole: when it is stopped
  * before its end nothing of it is kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *error);

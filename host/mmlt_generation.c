@@ -43,21 +43,38 @@ static float limit_of(const Mmlt *mmlt)
     return mmlt->generation > 0 ? (float)(LIMIT_FACTOR * mmlt->brightness_sum / mmlt->generation) : 0.0f;
 }
 
+FrameParams mmlt_pool_frame(const Mmlt *mmlt)
+{
+    FrameParams frame = mmlt->run->frame;
+    frame.pool = 1;
+    frame.sample_index = mmlt->pool_sample;
+    frame.limit = limit_of(mmlt);
+    frame.film_exponent = mmlt->pool_film.quantum_exponent;
+    return frame;
+}
+
+FrameParams mmlt_chain_frame(const Mmlt *mmlt)
+{
+    FrameParams frame = mmlt->run->frame;
+    frame.limit = limit_of(mmlt);
+    frame.brightness = (float)mmlt->brightness;
+    frame.sample_index = mmlt->pool_sample;
+    frame.roulette_depth = NONE;
+    frame.film_exponent = mmlt->film.quantum_exponent;
+    return frame;
+}
+
 static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
-    FrameParams frame = run->frame;
+    FrameParams frame = mmlt_pool_frame(mmlt);
     uint64_t delivered = 0;
     if (!words_reserve(&mmlt->pool_words, &mmlt->pool_count, count, POOL_WORDS, error))
         return false;
     mmlt->pool.pass_words = mmlt->pool_words;
     mmlt->pool.pass_fields = POOL_WORDS;
     mmlt->pool.pass_stride = count;
-    frame.pool = 1;
-    frame.sample_index = mmlt->next_sample;
     frame.item_count = count;
-    frame.limit = limit_of(mmlt);
-    frame.film_exponent = mmlt->pool_film.quantum_exponent;
     film_clear(&mmlt->pool_film);
     const SplatSink sink = render_run_sink(&mmlt->pool_film);
     bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, stop, &delivered, error);
@@ -79,6 +96,8 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
     if (!words_reserve(&mmlt->chain_words, &mmlt->chain_count, count, mmlt->chains.pass_fields, error))
         return false;
     uint *words = mmlt->chain_words;
+    mmlt->chains.pass_words = words;
+    mmlt->chains.pass_stride = count;
     memset(words, 0, (size_t)count * mmlt->chains.pass_fields * sizeof *words);
     return chain_seeds_choose(mmlt->pool_words, pool_count, !mmlt->options.unsorted, offset_of(mmlt), count,
                               words + (size_t)CHAIN_PASS_ITEM * count, words + (size_t)CHAIN_PASS_KEY * count,
@@ -88,17 +107,10 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
 static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
-    FrameParams frame = run->frame;
+    FrameParams frame = mmlt_chain_frame(mmlt);
     uint64_t delivered = 0;
     if (!(mmlt->brightness > 0.0))
         return true; /* a dark pool: what the chains would have shown is dark, too, on average */
-    mmlt->chains.pass_words = mmlt->chain_words;
-    mmlt->chains.pass_stride = count;
-    frame.film_exponent = mmlt->film.quantum_exponent;
-    frame.limit = limit_of(mmlt);
-    frame.brightness = (float)mmlt->brightness;
-    frame.sample_index = mmlt->pool_sample;
-    frame.roulette_depth = NONE;
     frame.item_count = count;
     const SplatSink sink = render_run_sink(&mmlt->film);
     bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
@@ -109,17 +121,16 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
     return done;
 }
 
-/* A pool, and where `count` chains begin. *whole: not stopped before its end. */
-static bool seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
     uint64_t wanted = mmlt->options.pool
                           ? mmlt->options.pool
                           : (uint64_t)(mmlt->pool_per_step * (double)count * (double)mmlt->options.steps);
     uint pool_count = wanted < 1 ? 1 : wanted < 1u << 30 ? (uint)wanted : 1u << 30;
-    if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
-        return false;
     mmlt->pool_sample = mmlt->next_sample;
     mmlt->next_sample += samples_of(mmlt->run, pool_count);
+    if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
+        return false;
     mmlt->run->chains.pool_samples += pool_count;
     mmlt->run->chains.seeds += count;
     return true;
@@ -139,6 +150,22 @@ static void tally_chains(Mmlt *mmlt, uint count)
         }
     }
     statistics->steps += (uint64_t)count * mmlt->options.steps;
+}
+
+/* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). */
+static void bad_chains_write(const Mmlt *mmlt, uint count)
+{
+    const RenderOptions *options = mmlt->run->options;
+    const uint *words = mmlt->chain_words;
+    for (uint i = 0; options->bad_chains && i < count; ++i) {
+        uint step = words[(size_t)CHAIN_PASS_BAD * count + i], key = words[(size_t)CHAIN_PASS_KEY * count + i];
+        if (step != NONE)
+            fprintf(options->bad_chains,
+                    "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, \"pool_item\": %u, \"chain\": %u, "
+                    "\"step\": %u, \"depth\": %u, \"s\": %u}\n",
+                    (unsigned long long)options->seed, mmlt->generation, mmlt->pool_sample,
+                    words[(size_t)CHAIN_PASS_ITEM * count + i], i, step, chain_key_depth(key), chain_key_s(key));
+    }
 }
 
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
@@ -204,7 +231,7 @@ static bool chains_follow(Mmlt *mmlt, uint count, const atomic_int *stop, bool *
     RenderRun *run = mmlt->run;
     double begin = timing_now();
     bool anew = !mmlt->options.paper || mmlt->generation == 0;
-    if (anew && !seeds_run(mmlt, count, stop, whole, error))
+    if (anew && !mmlt_seeds_run(mmlt, count, stop, whole, error))
         return false;
     double seeded = timing_now();
     if (*whole && !chains_run(mmlt, count, stop, whole, error))
@@ -239,8 +266,10 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
         uint64_t work = generation_work(mmlt, chains ? steps : 0);
         if (!generation_take(mmlt, error))
             return false;
-        if (chains)
+        if (chains && mmlt->brightness > 0.0) {
             tally_chains(mmlt, count);
+            bad_chains_write(mmlt, count);
+        }
         mmlt->work_last = work;
         run->done = mmlt->work_done += work;
     }

@@ -6,6 +6,8 @@
 #include "integrator.h"
 #include "scene.h"
 
+#include <stdio.h>
+
 #define DIAGNOSTIC_NAMES_MAX 16
 
 /* How chains are run (integrator_mmlt.c). Zeros: the defaults. */
@@ -33,6 +35,7 @@ typedef struct RenderOptions {
     unsigned strategy[2]; /* s, t */
     bool unweighted; /* its weights taken for 1 */
     ChainOptions chains;
+    FILE *bad_chains; /* gets a line of JSON for every chain that met something not finite; NULL: nobody does */
     struct RenderLayers *layers; /* .wanted says what; filled in besides the film, to be destroyed. NULL: nothing */
     double save_every; /* seconds between calls of `save`; 0: never */
     const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */

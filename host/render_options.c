@@ -33,6 +33,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order of their pool, not by depth and strategy"},
     [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
     [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
+    [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
@@ -213,6 +214,8 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
     case OPTION_NO_BLEND:
         chains->unblended = true;
         return true;
+    case OPTION_DUMP_BAD:
+        return path_set(&command->dump_bad, option, value, NULL, error);
     default:
         return option_number(name, value, 1e-6, 1.0, &chains->large_step, error);
     }
@@ -287,6 +290,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_NO_SORT:
     case OPTION_NO_GROUP:
     case OPTION_NO_BLEND:
+    case OPTION_DUMP_BAD:
         return chain_option_set(command, option, value, error);
     default:
         return number_set(parse, option, value, error);
@@ -302,6 +306,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->save_every > 0.0 ? "save-every"
                          : command->stats            ? "stats"
                          : command->trace            ? "trace"
+                         : command->dump_bad         ? "dump-bad"
                          : command->film             ? "film"
                          : command->has_layers       ? "layers"
                          : command->despeckle > 0.0  ? "despeckle"

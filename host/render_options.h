@@ -21,6 +21,7 @@ typedef struct RenderCommand {
     unsigned layers; /* LAYER_BIT (render_layers.h) */
     bool has_layers; /* --layers was given */
     double despeckle; /* threshold; 0: no such layer */
+    const char *dump_bad; /* file of chains that met something not finite; NULL: none */
     bool memory; /* print what chains take, instead of rendering */
     const char *chain_option; /* the last one given; NULL: none */
     BackendChoices backends; /* at least one */
@@ -66,6 +67,7 @@ typedef enum RenderOption {
     OPTION_NO_SORT,
     OPTION_NO_GROUP,
     OPTION_NO_BLEND,
+    OPTION_DUMP_BAD,
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_MAX_DEPTH,

@@ -68,20 +68,20 @@ static bool path_same(const char *a, const char *b)
     return strcmp(a, b) == 0;
 }
 
-bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, Error *error)
+bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, const char *bad,
+                            Error *error)
 {
     const struct {
         const char *what, *path;
-    } files[] = {{"the scene", output->scene_file},
-                 {"the image", output->exr},
-                 {"the PNG", output->png[0] ? output->png : NULL},
-                 {"the statistics", stats},
-                 {"the trace", trace}};
+    } files[] = {
+        {"the scene", output->scene_file}, {"the image", output->exr}, {"the PNG", output->png[0] ? output->png : NULL},
+        {"the statistics", stats},         {"the trace", trace},       {"the list of chains", bad}};
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
         for (size_t j = 0; j < i; ++j)
             if (files[i].path && files[j].path && path_same(files[i].path, files[j].path)) {
                 error_set(error, "%s would overwrite %s: %s", files[i].what, files[j].what, files[i].path);
-                return error_fix(error, "give each its own name, with --output, --png, --stats and --trace");
+                return error_fix(error,
+                                 "give each its own name, with --output, --png, --stats, --trace and --dump-bad");
             }
     return true;
 }

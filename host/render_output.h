@@ -27,8 +27,9 @@ typedef struct RenderOutput {
 bool render_output_name(RenderOutput *output, const Scene *scene, const char *scene_file, const char *exr,
                         bool want_png, const char *png, double exposure, Error *error);
 
-/* Fails when scene, image, PNG and statistics (NULL: none) are not all different files. */
-bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, Error *error);
+/* Fails when scene, image, PNG, statistics, trace and list of bad chains (NULL: none) are not all different files. */
+bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, const char *bad,
+                            Error *error);
 
 /* Fails when a file of this name could not be created: its folder is missing or not writable, or it is a folder. */
 bool render_output_check(const char *path, Error *error);

@@ -3,6 +3,7 @@ libtwinlight_host_la_SOURCES = \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \
+	host/bad_chains.c host/bad_chains.h \
 	host/backend_choice.c host/backend_choice.h \
 	host/backend_group.c host/backend_group.h \
 	host/blend.c host/blend.h \

@@ -52,7 +52,13 @@ typedef struct Verifier {
     FrameParams frame; /* the block's */
     uint words_per_item;
     BlockState state[2];
+    uint *pass; /* the list's pass_words as every run is to find them; NULL: none */
 } Verifier;
+
+static size_t pass_bytes(const StepList *list)
+{
+    return list->pass_words ? (size_t)list->pass_fields * list->pass_stride * sizeof(uint) : 0;
+}
 
 static bool verifier_init(Verifier *verifier, const BackendMember sides[2], const FrameParams *frame,
                           const StepList *list, Error *error)
@@ -70,6 +76,12 @@ static bool verifier_init(Verifier *verifier, const BackendMember sides[2], cons
         if (!verifier->state[side].words)
             return error_memory(error, words * sizeof(uint), "the state of two backends");
     }
+    size_t bytes = pass_bytes(list);
+    verifier->pass = bytes > 0 ? malloc(bytes) : NULL;
+    if (bytes > 0 && !verifier->pass)
+        return error_memory(error, bytes, "a copy of a pass's words");
+    if (bytes > 0)
+        memcpy(verifier->pass, list->pass_words, bytes);
     return true;
 }
 
@@ -77,6 +89,7 @@ static void verifier_destroy(Verifier *verifier)
 {
     for (int side = 0; side < 2; ++side)
         free(verifier->state[side].words);
+    free(verifier->pass);
 }
 
 /* What a StateSink gets as its context. */
@@ -102,6 +115,8 @@ static bool block_run(Verifier *verifier, size_t steps, Error *error)
     for (int side = 0; side < 2; ++side) {
         BlockWriter writer = {verifier, &verifier->state[side]};
         const BackendMember *member = &verifier->sides[side];
+        if (verifier->pass)
+            memcpy(list.pass_words, verifier->pass, pass_bytes(&list));
         if (!member->interface->inspect(member->backend, &verifier->frame, &list, block_write, &writer, error))
             return false;
     }

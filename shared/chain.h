@@ -25,8 +25,9 @@
 #define CHAIN_PENDING (BD_HEADER_WORDS + 10u) /* expected visits of the current path that the film has not got yet */
 #define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 11u) /* 2 */
 #define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
+#define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* number of the first proposal whose f was not finite; NONE: all were */
 /* What the connection has to know of a half of the path, twice for each side: chain_half. */
-#define CHAIN_HALVES (BD_HEADER_WORDS + 17u)
+#define CHAIN_HALVES (BD_HEADER_WORDS + 18u)
 #define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_HALF_WORDS + CHAIN_CAMERA_HALF_WORDS))
 
 /* Places in CHAIN_MOVE. */
@@ -110,7 +111,8 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
 #define CHAIN_PASS_LUMINANCE 2u /* after the pass */
 #define CHAIN_PASS_TALLY 3u /* after the pass, 4 */
 #define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
-#define CHAIN_PASS_NUMBERS 8u /* the coordinates, where the pass keeps them */
+#define CHAIN_PASS_BAD 8u /* after the pass: CHAIN_BAD */
+#define CHAIN_PASS_NUMBERS 9u /* the coordinates, where the pass keeps them */
 
 /* ---- coordinates ------------------------------------------------------------------------------------------------- */
 

@@ -128,6 +128,8 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     float f = rgb_luminance(color), current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
     if (!float_finite(f)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        if (state_load(paths, stride, CHAIN_BAD, t) == NONE)
+            state_store(paths, stride, CHAIN_BAD, t, state_load(paths, stride, CHAIN_STEP, t));
         f = 0.0f;
     }
     f = float_max(f, 0.0f);

@@ -74,6 +74,9 @@ double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, in
 /* All tests of a run fail together with probability 0.01 when nothing is wrong: fewer than 40,000 values are compared. */
 #define P_LIMIT 2.5e-7
 
+/* Mean square distance of one group's pixels from the mean of another picture, less the variance of that. */
+double groups_square_error(const PictureGroups *picture, const PictureGroups *reference);
+
 /* Compares the mean, a grid of blocks and (pixels = true) every pixel; fails with name and place. Prints a line with
  * the smallest p-value and the ratio of means. */
 void groups_compare(const char *name, const PictureGroups *got, const PictureGroups *expected, int grid, bool pixels);

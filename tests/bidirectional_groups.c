@@ -115,6 +115,23 @@ void groups_block(const PictureGroups *picture, int x0, int y0, int x1, int y1, 
     *error = sqrt(variance / picture->groups);
 }
 
+double groups_square_error(const PictureGroups *picture, const PictureGroups *reference)
+{
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    double sum = 0.0, uncertain = 0.0;
+    for (size_t i = 0; i < pixels; ++i) {
+        double mean = 0.0, squares = 0.0;
+        for (int g = 0; g < reference->groups; ++g)
+            mean += reference->values[(size_t)g * pixels + i] / reference->groups;
+        for (int g = 0; g < reference->groups; ++g)
+            squares += pow(reference->values[(size_t)g * pixels + i] - mean, 2.0);
+        uncertain += squares / (reference->groups - 1) / reference->groups;
+        for (int g = 0; g < picture->groups; ++g)
+            sum += pow(picture->values[(size_t)g * pixels + i] - mean, 2.0) / picture->groups;
+    }
+    return (sum - uncertain) / (double)pixels;
+}
+
 /* Regularised incomplete beta function by its continued fraction (Abramowitz and Stegun 26.5.8), for x below the
  * mean. */
 static double incomplete_beta(double a, double b, double x)

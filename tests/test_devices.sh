@@ -108,13 +108,14 @@ same instances.pbrt opencl --max-depth=65535 --samples=1
 
 # ---- verify -------------------------------------------------------------------------------------------------------
 
-expect 0 'agrees with the CPU: 192 paths' render --verify --resolution=16x12 --samples=1 "$scene"
-expect 0 'agrees with the CPU: 663 paths' render --verify --batch=63 --device=1 --samples=3 instances.pbrt
-"$program" render --verify --backend=all --resolution=16x12 --samples=1 "$scene" >out 2>err
+expect 0 'agrees with the CPU: 192 paths' render --verify --integrator=pt --resolution=16x12 --samples=1 "$scene"
+expect 0 'agrees with the CPU: chains, 192 paths' render --verify --resolution=16x12 --samples=1 --max-depth=4 "$scene"
+expect 0 'agrees with the CPU: 663 paths' render --verify --integrator=pt --batch=63 --device=1 --samples=3 instances.pbrt
+"$program" render --verify --integrator=pt --backend=all --resolution=16x12 --samples=1 "$scene" >out 2>err
 result '--verify --backend=all: exit status' $?
 [ "$(grep -c 'agrees with the CPU' err)" -eq 2 ]
 result '--verify --backend=all does not compare both devices' $?
-TWINLIGHT_TEST_FAIL_BATCH=3 expect 1 'CL_OUT_OF_RESOURCES' render --verify --resolution=16x12 --samples=1 "$scene"
+TWINLIGHT_TEST_FAIL_BATCH=3 expect 1 'CL_OUT_OF_RESOURCES' render --verify --integrator=pt --resolution=16x12 --samples=1 "$scene"
 
 # One constant of one kernel's source: the kernel that uses it first, a path and a field are named.
 mkdir wrong
@@ -123,10 +124,29 @@ sed -i 's/value.pdf_w = float_abs(wi.z) \* INV_PI;/value.pdf_w = float_abs(wi.z)
     wrong/bsdf_diffuse.h
 ! cmp -s wrong/bsdf_diffuse.h "$sources/bsdf_diffuse.h"
 result 'no fault was planted' $?
-TWINLIGHT_KERNELS=$work/wrong expect 1 'kernel pt_sample_lights (segment 1), item ' render --verify \
+TWINLIGHT_KERNELS=$work/wrong expect 1 'kernel pt_sample_lights (segment 1), item ' render --verify --integrator=pt \
     --resolution=8x6 --samples=1 "$scene"
 grep -qE 'light sample\.x is [0-9.e+-]+ \(0x[0-9a-f]{8}\) on cpu.* but [0-9.e+-]+ \(0x[0-9a-f]{8}\) on opencl' err
 result '--verify does not name field and values' $?
+
+# A kernel that sometimes divides by zero: chains that meet that are listed, and the image knows nothing of it.
+mkdir nan
+cp "$sources"/*.h "$sources"/*.cl nan/
+sed -i 's/vec3_scale(bsdf->color0, value.pdf_w);/vec3_scale(bsdf->color0, value.pdf_w \/ (wi.z > 0.99f ? 0.0f : 1.0f));/' \
+    nan/bsdf_diffuse.h
+! cmp -s nan/bsdf_diffuse.h "$sources/bsdf_diffuse.h"
+result 'no fault was planted' $?
+TWINLIGHT_KERNELS=$work/nan expect 0 'not_finite' render --no-blend --backend=opencl --resolution=16x12 --samples=40 \
+    --max-depth=3 --dump-bad=bad.jsonl --layers=none -o nan.exr "$scene"
+grep -qE '^\{"seed": 0, "generation": [0-9]+, "pool_sample": [0-9]+, .*"depth": 3, "s": [0-3]\}$' bad.jsonl
+result '--dump-bad names no chain' $?
+"$program" compare --json nan.exr nan.exr >out 2>err
+grep -q '"not_finite": 0' out
+result 'a value that is not finite came into the image' $?
+expect 0 '' render --backend=cpu --resolution=16x12 --samples=20 --max-depth=4 --dump-bad=none.jsonl --layers=none \
+    -o good.exr "$scene"
+[ -e none.jsonl ] && [ ! -s none.jsonl ]
+result '--dump-bad lists chains where there are none' $?
 
 # ---- failures and signals -----------------------------------------------------------------------------------------
 

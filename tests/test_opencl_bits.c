@@ -178,6 +178,7 @@ TCase *opencl_bits_tests(void)
 {
     TCase *bits = tcase_create("bits");
     tcase_set_timeout(bits, 600); /* the first time, kernels are built */
+    tcase_set_tags(bits, "pictures");
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
     tcase_add_test(bits, test_bits_of_clamped_sums);
@@ -192,6 +193,7 @@ TCase *opencl_bidirectional_tests(void)
 {
     TCase *scenes = tcase_create("bits of bidirectional scenes");
     tcase_set_timeout(scenes, 300);
+    tcase_set_tags(scenes, "pictures");
     tcase_add_unchecked_fixture(scenes, bidirectional_files_make, bidirectional_files_remove);
     tcase_add_loop_test(scenes, test_bits_of_bidirectional_scenes, 0, BIDIRECTIONAL_SCENE_COUNT);
     return scenes;

@@ -1,0 +1,77 @@
+#!/bin/sh
+# What sorting chains and grouping their mutations bring (Frolov 2018, tables 1 to 3): mutations per second without
+# either, with one, with both, of the published scheme and of generations, on the CPU and on the first OpenCL device; then
+# how often proposals of each kind are taken, by depth. Tab separated, on standard output. Figures are medians of RUNS runs;
+# the ways take turns, so that what else the machine does meets all of them. Only chains count: neither pools nor direct
+# light. usage: bench_mmlt.sh TWINLIGHT SCENE...
+set -eu
+# shellcheck source=bench/bench.sh
+. "$(dirname "$0")/bench.sh"
+
+RUNS=${RUNS:-3}
+SECONDS_EACH=${SECONDS_EACH:-4}
+DEPTH=${DEPTH:-10}
+RESOLUTION=${RESOLUTION:-128x128}
+CHAINS=${CHAINS:-32768}
+twinlight=$1
+shift
+
+backends=cpu
+if "$twinlight" devices --json | grep -q '"index": *0'; then
+    backends='cpu opencl'
+fi
+
+# run NAME SCENE OPTION...: renders once, statistics in $folder/NAME.$run.json
+run() {
+    run_name=$1
+    run_scene=$2
+    shift 2
+    "$twinlight" render --quiet --integrator=mmlt --max-depth="$DEPTH" --resolution="$RESOLUTION" --seed="$run" \
+        --time="${SECONDS_EACH}s" --chains="$CHAINS" --layers=none --no-png -o "$folder/out.exr" \
+        --stats="$folder/$run_name.$run.json" "$@" "$run_scene" 2>/dev/null
+}
+
+# rate NAME: median of mutations per second of chains
+rate() {
+    for file in "$folder/$1".*.json; do
+        echo "$(number mutations "$file") $(number chain_seconds "$file")"
+    done | awk '{ print $1 / $2 }' | median
+}
+
+head_print
+printf '# setting\t%s segments, %s pixels, %s chains at most, %s s a run, median of %s runs\n' "$DEPTH" "$RESOLUTION" \
+    "$CHAINS" "$SECONDS_EACH" "$RUNS"
+printf 'scene\tbackend\tscheme\tneither\tsorted\tgrouped\tboth\tgain of sorting\tgain of grouping\tgain of both\n'
+for scene in "$@"; do
+    name=$(scene_name "$scene")
+    for backend in $backends; do
+        # Kernels are built before anything is timed.
+        "$twinlight" render --quiet --samples=1 --resolution=16x16 --layers=none --no-png --backend="$backend" \
+            -o "$folder/out.exr" "$scene" 2>/dev/null
+        for scheme in paper generations; do
+            rm -f "$folder"/*.json
+            for run in $(seq "$RUNS"); do
+                blend=$([ $scheme = paper ] || echo --no-blend)
+                # shellcheck disable=SC2086 # an option or none
+                {
+                    run neither "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-sort --no-group
+                    run sorted "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-group
+                    run grouped "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-sort
+                    run both "$scene" --backend="$backend" --mlt-scheme=$scheme $blend
+                }
+            done
+            echo "$(rate neither) $(rate sorted) $(rate grouped) $(rate both)" |
+                awk -v head="$name	$backend	$scheme" '{ printf "%s\t%.0f\t%.0f\t%.0f\t%.0f\t%+.0f %%\t%+.0f %%\t%+.0f %%\n", head,
+                    $1, $2, $3, $4, 100 * ($2 / $1 - 1), 100 * ($3 / $1 - 1), 100 * ($4 / $1 - 1) }'
+            # The acceptance of the last run, as the statistics have it: kind, depth, part.
+            [ "$backend" = opencl ] || awk -v head="$name	$scheme" '
+                /"acceptance"/ { found = 1; next }
+                found && /\{/ { gsub(/[":{ ]/, ""); kind = $0; next }
+                found && /"[0-9]+":/ { gsub(/[",]/, ""); split($0, part, ":"); gsub(/ /, "", part[1])
+                    printf "%s\t%s\t%s\t%.3f\n", head, kind, part[1], part[2]; next }
+                found && /\}/ { if (kind == "") exit; kind = "" }' "$folder/both.1.json" >>"$folder/acceptance"
+        done
+    done
+done
+printf '\nscene\tscheme\tmutation\tdepth\taccepted\n'
+cat "$folder/acceptance"
