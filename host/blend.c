@@ -288,17 +288,20 @@ static void films_join(Blend *blend, Film *const films[])
 
 bool blend_generation(Blend *blend, Film *const films[BLEND_STREAMS], Error *error)
 {
-    size_t pixels = film_pixels(films[BLEND_CHAINS]), bytes = (pixels + tile_count(blend)) * sizeof(float);
-    size_t ratio_bytes = tile_count(blend) * sizeof(double);
-    double *ratios = malloc(ratio_bytes + bytes);
-    if (!ratios)
-        return error_memory(error, ratio_bytes + bytes, "a generation's pictures");
-    float *picture = (float *)(ratios + tile_count(blend));
-    films_learn(blend, films, picture, picture + pixels);
-    films_join(blend, films);
-    spreads_update(blend, ratios);
+    size_t pixels = film_pixels(films[BLEND_CHAINS]), values = pixels + tile_count(blend);
+    double *ratios = malloc(tile_count(blend) * sizeof *ratios);
+    float *picture = malloc(values * sizeof *picture);
+    if (ratios && picture) {
+        films_learn(blend, films, picture, picture + pixels);
+        films_join(blend, films);
+        spreads_update(blend, ratios);
+    } else {
+        error_memory(error, values * sizeof *picture, "a generation's pictures");
+    }
+    bool done = ratios && picture;
     free(ratios);
-    return true;
+    free(picture);
+    return done;
 }
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */

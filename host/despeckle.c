@@ -12,7 +12,7 @@ static float luminance(const float *pixel)
 /* The pixel around (x, y) of median luminance, the lower one of an even number. */
 static const float *median_around(const float *rgb, int width, int height, int x, int y)
 {
-    const float *sorted[9];
+    const float *sorted[9] = {rgb};
     int count = 0;
     for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < height; ++j)
         for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < width; ++i) {
