@@ -23,6 +23,9 @@
 #define CHUNK_ITEMS 512u
 #endif
 
+#define CHUNK_ITEMS_MIN 32u
+#define CHUNKS_PER_THREAD 8u
+
 /* Fields are one cache line more than a chunk apart. Were they a power of two apart, as CHUNK_ITEMS is, all fields of an
  * item would fall into the same two sets of the first-level cache and evict one another. */
 #define CHUNK_STRIDE (CHUNK_ITEMS + 16u)
@@ -187,10 +190,17 @@ static void worker_show_state(Worker *worker, const Job *job, uint first, uint c
             job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
 }
 
+/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. */
+static uint chunk_items(const Job *job, const Backend *backend)
+{
+    uint part = job->frame->item_count / (CHUNKS_PER_THREAD * backend->worker_count);
+    return part < CHUNK_ITEMS_MIN ? CHUNK_ITEMS_MIN : part < CHUNK_ITEMS ? part : CHUNK_ITEMS;
+}
+
 static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
 {
-    uint first = chunk * CHUNK_ITEMS, left = job->frame->item_count - first;
-    uint count = left < CHUNK_ITEMS ? left : CHUNK_ITEMS;
+    uint size = chunk_items(job, worker->backend), first = chunk * size, left = job->frame->item_count - first;
+    uint count = left < size ? left : size;
     void *arguments[BUFFER_COUNT];
     worker->frame = *job->frame;
     worker->frame.first_item = job->frame->first_item + first;
@@ -216,7 +226,8 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
 static void worker_run_job(Worker *worker, const Job *job)
 {
     Backend *backend = worker->backend;
-    uint chunks = job->frame->item_count / CHUNK_ITEMS + (job->frame->item_count % CHUNK_ITEMS != 0);
+    uint size = chunk_items(job, backend),
+         chunks = job->frame->item_count / size + (job->frame->item_count % size != 0);
     if (!worker_reserve(worker, job->list)) {
         atomic_store(&backend->out_of_memory, true);
         return;
