@@ -190,9 +190,12 @@ static void worker_show_state(Worker *worker, const Job *job, uint first, uint c
             job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
 }
 
-/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. */
+/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. Not
+ * where states are compared: a chunk of few items is idle, and leaves out what only clears, before a device's batch is. */
 static uint chunk_items(const Job *job, const Backend *backend)
 {
+    if (job->inspect)
+        return CHUNK_ITEMS;
     uint part = job->frame->item_count / (CHUNKS_PER_THREAD * backend->worker_count);
     return part < CHUNK_ITEMS_MIN ? CHUNK_ITEMS_MIN : part < CHUNK_ITEMS ? part : CHUNK_ITEMS;
 }
