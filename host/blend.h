@@ -5,7 +5,8 @@
  * Each tile of the picture takes a share of every stream, in inverse proportion to its variance (Graybill and Deal 1959),
  * which is estimated from the generations before: a share that depends on nothing of the generation it is applied to
  * leaves the mean right. A path that carries more than a limit is a bright dot where a pool has met it by chance; pools show
- * as much of it as the limit, and the rest is left to the chains, which come by many of its like. The same variances say how much of the time path tracing should have. */
+ * as much of it as the limit, and the rest is left to the chains, which come by many of its like. The same variances say
+ * how the time is divided. */
 #ifndef TWINLIGHT_BLEND_H
 #define TWINLIGHT_BLEND_H
 
@@ -36,8 +37,8 @@ typedef struct Blend {
     double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
 } Blend;
 
-/* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not those of
- * the machine, so that the image does not depend on it. */
+/* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not
+ * those of the machine, so that the image does not depend on it. */
 double blend_work(const double samples[BLEND_STREAMS]);
 
 /* For films like `film`. */

@@ -106,6 +106,15 @@ same instances.pbrt "opencl two film" --crop=16,12,17,13 --samples=50
 same instances.pbrt opencl --max-depth=1 --samples=3
 same instances.pbrt opencl --max-depth=65535 --samples=1
 
+# plant FOLDER EDIT: the kernels' sources with one of bsdf_diffuse.h, an edit for sed, that is not as it should be.
+plant() {
+    mkdir "$1"
+    cp "$sources"/*.h "$sources"/*.cl "$1/"
+    sed -i "$2" "$1/bsdf_diffuse.h"
+    ! cmp -s "$1/bsdf_diffuse.h" "$sources/bsdf_diffuse.h"
+    result 'no fault was planted' $?
+}
+
 # ---- verify -------------------------------------------------------------------------------------------------------
 
 expect 0 'agrees with the CPU: 192 paths' render --verify --integrator=pt --resolution=16x12 --samples=1 "$scene"
@@ -118,24 +127,14 @@ result '--verify --backend=all does not compare both devices' $?
 TWINLIGHT_TEST_FAIL_BATCH=3 expect 1 'CL_OUT_OF_RESOURCES' render --verify --integrator=pt --resolution=16x12 --samples=1 "$scene"
 
 # One constant of one kernel's source: the kernel that uses it first, a path and a field are named.
-mkdir wrong
-cp "$sources"/*.h "$sources"/*.cl wrong/
-sed -i 's/value.pdf_w = float_abs(wi.z) \* INV_PI;/value.pdf_w = float_abs(wi.z) * (INV_PI * 1.000001f);/' \
-    wrong/bsdf_diffuse.h
-! cmp -s wrong/bsdf_diffuse.h "$sources/bsdf_diffuse.h"
-result 'no fault was planted' $?
+plant wrong 's/value.pdf_w = float_abs(wi.z) \* INV_PI;/value.pdf_w = float_abs(wi.z) * (INV_PI * 1.000001f);/'
 TWINLIGHT_KERNELS=$work/wrong expect 1 'kernel pt_sample_lights (segment 1), item ' render --verify --integrator=pt \
     --resolution=8x6 --samples=1 "$scene"
 grep -qE 'light sample\.x is [0-9.e+-]+ \(0x[0-9a-f]{8}\) on cpu.* but [0-9.e+-]+ \(0x[0-9a-f]{8}\) on opencl' err
 result '--verify does not name field and values' $?
 
 # A kernel that sometimes divides by zero: chains that meet that are listed, and the image knows nothing of it.
-mkdir nan
-cp "$sources"/*.h "$sources"/*.cl nan/
-sed -i 's/vec3_scale(bsdf->color0, value.pdf_w);/vec3_scale(bsdf->color0, value.pdf_w \/ (wi.z > 0.99f ? 0.0f : 1.0f));/' \
-    nan/bsdf_diffuse.h
-! cmp -s nan/bsdf_diffuse.h "$sources/bsdf_diffuse.h"
-result 'no fault was planted' $?
+plant nan 's/vec3_scale(bsdf->color0, value.pdf_w);/vec3_scale(bsdf->color0, value.pdf_w \/ (wi.z > 0.99f ? 0.0f : 1.0f));/'
 TWINLIGHT_KERNELS=$work/nan expect 0 'not_finite' render --no-blend --backend=opencl --resolution=16x12 --samples=40 \
     --max-depth=3 --dump-bad=bad.jsonl --layers=none -o nan.exr "$scene"
 grep -qE '^\{"seed": 0, "generation": [0-9]+, "pool_sample": [0-9]+, .*"depth": 3, "s": [0-3]\}$' bad.jsonl
