@@ -1,5 +1,7 @@
 #include "blend.h"
 
+#include "vec.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,7 +226,8 @@ static void shares_set(Blend *blend, BlendTile *tile, Film *const films[])
 
 static float luminance_of(const int64_t *sums, double scale)
 {
-    return (float)(scale * (0.2126 * (double)sums[0] + 0.7152 * (double)sums[1] + 0.0722 * (double)sums[2]));
+    return rgb_luminance(
+        vec3((float)(scale * (double)sums[0]), (float)(scale * (double)sums[1]), (float)(scale * (double)sums[2])));
 }
 
 /* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */

@@ -1,12 +1,14 @@
 #include "despeckle.h"
 
+#include "vec.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <string.h>
 
 static float luminance(const float *pixel)
 {
-    return 0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2];
+    return rgb_luminance(vec3(pixel[0], pixel[1], pixel[2]));
 }
 
 /* The pixel around (x, y) of median luminance, the lower one of an even number. */
