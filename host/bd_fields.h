@@ -27,13 +27,16 @@
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
         {BUFFER_PATHS, BD_SPLAT, 1, false, "pixel of the splat"},                                                      \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
+        {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \
+        {BUFFER_PATHS, BD_CANDIDATE_LUMINANCE, 1, true, "luminance of the candidate"},                                 \
+        {BUFFER_PATHS, BD_CONNECTION_SURVIVAL, 1, true, "survival of the connection"},                                 \
     {                                                                                                                  \
-        BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"                                                              \
+        BUFFER_PATHS, BD_SURVIVAL, 1, true, "survival of the walk"                                                     \
     }
 
 /* Those behind the first BD_FIELD_COUNT are IBPT's. */
-#define BD_FIELD_COUNT 25
-#define IB_FIELD_COUNT 31
+#define BD_FIELD_COUNT 28
+#define IB_FIELD_COUNT 34
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 
 /* The list of BDPT; with frame->pool that of a pool's samples, which end in BUFFER_PASS (pool.h). */

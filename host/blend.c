@@ -289,14 +289,14 @@ static void films_join(Blend *blend, Film *const films[])
     }
 }
 
-bool blend_generation(Blend *blend, Film *const films[BLEND_STREAMS], Error *error)
+bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error)
 {
     size_t pixels = film_pixels(films[BLEND_CHAINS]), values = pixels + tile_count(blend);
     double *ratios = malloc(tile_count(blend) * sizeof *ratios);
     float *picture = malloc(values * sizeof *picture);
     if (ratios && picture) {
         films_learn(blend, films, picture, picture + pixels);
-        films_join(blend, films);
+        films_join(teacher, films);
         spreads_update(blend, ratios);
     } else {
         error_memory(error, values * sizeof *picture, "a generation's pictures");

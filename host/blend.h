@@ -46,9 +46,10 @@ bool blend_init(Blend *blend, const Film *film, Error *error);
 void blend_destroy(Blend *blend);
 
 /* The streams of one generation: light_sums from light_samples paths each (0: the stream has nothing this time). The
- * film of the paths has direct light in `sums`. Makes the film of the chains the blend of all, with that direct light, then
- * learns from what they were. */
-bool blend_generation(Blend *blend, Film *const films[BLEND_STREAMS], Error *error);
+ * film of the paths has direct light in `sums`. Makes the film of the chains the blend of all, with that direct light, in the
+ * shares that `teacher` has learnt, then teaches `blend` what they were. Both may be the same where generations know
+ * nothing of each other. */
+bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error);
 
 /* How many samples for every step of a chain. */
 typedef struct BlendPlan {

@@ -119,7 +119,7 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     frame->mutations = mmlt->options.mutations;
     frame->group_mutations = !mmlt->options.ungrouped;
     frame->large_step = mmlt->options.paper ? (float)mmlt->options.large_step : 0.0f;
-    frame->keep_chains = mmlt->options.paper;
+    frame->keep_chains = 1;
     pool_frame = *frame;
     pool_frame.pool = 1;
     return integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
@@ -133,7 +133,10 @@ static bool films_init(Mmlt *mmlt, Error *error)
     for (size_t i = 0; i < sizeof films / sizeof films[0]; ++i)
         if (!film_init_like(films[i], mmlt->run->film, error))
             return false;
-    return mmlt->options.unblended || blend_init(&mmlt->blend, mmlt->run->film, error);
+    for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half)
+        if (!blend_init(&mmlt->blends[half], mmlt->run->film, error))
+            return false;
+    return true;
 }
 
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
@@ -142,7 +145,11 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     options_complete(&mmlt->options, run->frame.max_depth);
     mmlt->pool_per_step = POOL_PER_STEP;
     mmlt->paths_per_step = mmlt->options.unblended ? PATHS_DIRECT : PATHS_FIRST;
-    return films_init(mmlt, error) && lists_make(mmlt, error);
+    if (!films_init(mmlt, error) || !lists_make(mmlt, error))
+        return false;
+    for (int half = 0; half < MMLT_HALVES; ++half)
+        chain_population_init(&mmlt->populations[half], mmlt->chains.pass_fields);
+    return true;
 }
 
 void mmlt_destroy(Mmlt *mmlt)
@@ -153,9 +160,12 @@ void mmlt_destroy(Mmlt *mmlt)
     film_destroy(&mmlt->film);
     film_destroy(&mmlt->pool_film);
     film_destroy(&mmlt->paths_film);
-    blend_destroy(&mmlt->blend);
+    for (int half = 0; half < MMLT_HALVES; ++half) {
+        blend_destroy(&mmlt->blends[half]);
+        chain_population_destroy(&mmlt->populations[half]);
+    }
     free(mmlt->pool_words);
-    free(mmlt->chain_words);
+    free(mmlt->begun);
 }
 
 static bool mmlt_render(RenderRun *run, Error *error)
@@ -166,7 +176,7 @@ static bool mmlt_render(RenderRun *run, Error *error)
     uint64_t total = run->options->samples > 0 ? run->crop_pixels * run->options->samples : limit;
     bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, total, error);
     for (int s = 0; s < BLEND_STREAMS; ++s)
-        run->chains.shares[s] = mmlt.blend.share[s];
+        run->chains.shares[s] = mmlt.blends[0].share[s];
     mmlt_destroy(&mmlt);
     return done;
 }

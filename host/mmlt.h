@@ -4,6 +4,7 @@
 
 #include "blend.h"
 #include "chain_list.h"
+#include "chain_population.h"
 #include "integrator.h"
 #include "render_run.h"
 
@@ -13,6 +14,11 @@
 /* Samples of a pool for every step of a chain, at least. On a Cornell box a sample takes as long as four or five steps, so
  * pools take about a quarter of the time. */
 #define POOL_PER_STEP (1.0 / 12.0)
+
+/* Even generations and odd ones are two renderings that know of each other only what they have found out about the scene:
+ * shares, plans and limits of one follow from what the other has seen. So neither weighs its own errors, which its chains
+ * carry on from one generation to the next, and the images of both can be compared. */
+#define MMLT_HALVES 2
 
 typedef struct Mmlt {
     RenderRun *run;
@@ -26,11 +32,14 @@ typedef struct Mmlt {
     uint next_sample; /* of the pool: numbers below it are used */
     uint pool_sample; /* the first of the latest pool */
     uint generation;
-    uint pool_count, chain_count; /* of the buffers */
-    uint *pool_words, *chain_words;
+    uint pool_count; /* room for so many samples */
+    uint *pool_words;
+    uint *begun; /* words of the chains as their pass began, where somebody wants to know */
+    ChainPopulation populations[MMLT_HALVES];
     Film film, pool_film, paths_film; /* of the generation under way */
-    Blend blend;
-    double brightness, brightness_sum; /* of the latest pool, of all */
+    Blend blends[MMLT_HALVES];
+    double brightness; /* of the latest pool: mean luminance of a sample */
+    double brightness_sum[MMLT_HALVES]; /* of all pools */
 } Mmlt;
 
 /* The lists of steps, films, and options as they are meant; run->film must have its quantum. To be destroyed whether it
@@ -38,9 +47,12 @@ typedef struct Mmlt {
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error);
 void mmlt_destroy(Mmlt *mmlt);
 
+/* Chains of the generation under way. */
+ChainPopulation *mmlt_population(Mmlt *mmlt);
+
 /* What passes of the latest pool and of chains from it are given. */
 FrameParams mmlt_pool_frame(const Mmlt *mmlt);
-FrameParams mmlt_chain_frame(const Mmlt *mmlt);
+FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
 /* A pool, and where `count` chains begin (the words of mmlt->chains). *whole: not stopped before its end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error);

@@ -1,7 +1,6 @@
 /* A generation: a pool of independent samples, chains that begin with some of them, path tracing, and what all show. */
 #include "mmlt.h"
 
-#include "chain_seeds.h"
 #include "render_layers.h"
 #include "rng.h"
 #include "timing.h"
@@ -19,14 +18,33 @@
 /* Items of one pass of path tracing. */
 #define PATHS_MAX (1u << 24)
 
-static bool words_reserve(uint **words, uint *count, uint wanted, uint fields, Error *error)
+static bool pool_reserve(Mmlt *mmlt, uint count, Error *error)
 {
-    if (*words && wanted <= *count)
+    if (mmlt->pool_words && count <= mmlt->pool_count)
         return true;
-    free(*words);
-    *count = wanted;
-    *words = malloc((size_t)wanted * fields * sizeof **words);
-    return *words || error_memory(error, (size_t)wanted * fields * sizeof **words, "chains");
+    size_t bytes = (size_t)count * POOL_WORDS * sizeof *mmlt->pool_words;
+    free(mmlt->pool_words);
+    mmlt->pool_count = count;
+    mmlt->pool_words = malloc(bytes);
+    return mmlt->pool_words || error_memory(error, bytes, "a pool");
+}
+
+/* Which half of the image a generation is for; `paper` has chains that never end. */
+static int half_of(const Mmlt *mmlt, uint generation)
+{
+    return mmlt->options.paper ? 0 : (int)(generation % MMLT_HALVES);
+}
+
+ChainPopulation *mmlt_population(Mmlt *mmlt)
+{
+    return &mmlt->populations[half_of(mmlt, mmlt->generation)];
+}
+
+/* What the other half has seen of the pools' brightness; 0: nothing yet. */
+static double brightness_known(const Mmlt *mmlt)
+{
+    uint generations = (mmlt->generation + 1) / 2;
+    return generations > 0 ? mmlt->brightness_sum[half_of(mmlt, mmlt->generation + 1)] / generations : 0.0;
 }
 
 /* Sample numbers that `items` items of a pool take up. */
@@ -40,7 +58,7 @@ static float limit_of(const Mmlt *mmlt)
 {
     if (mmlt->options.unblended)
         return FLT_MAX;
-    return mmlt->generation > 0 ? (float)(LIMIT_FACTOR * mmlt->brightness_sum / mmlt->generation) : 0.0f;
+    return (float)(LIMIT_FACTOR * brightness_known(mmlt));
 }
 
 FrameParams mmlt_pool_frame(const Mmlt *mmlt)
@@ -53,11 +71,11 @@ FrameParams mmlt_pool_frame(const Mmlt *mmlt)
     return frame;
 }
 
-FrameParams mmlt_chain_frame(const Mmlt *mmlt)
+FrameParams mmlt_chain_frame(Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
     frame.limit = limit_of(mmlt);
-    frame.brightness = (float)mmlt->brightness;
+    frame.brightness = (float)mmlt_population(mmlt)->brightness;
     frame.sample_index = mmlt->pool_sample;
     frame.roulette_depth = NONE;
     frame.film_exponent = mmlt->film.quantum_exponent;
@@ -69,7 +87,7 @@ static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole
     RenderRun *run = mmlt->run;
     FrameParams frame = mmlt_pool_frame(mmlt);
     uint64_t delivered = 0;
-    if (!words_reserve(&mmlt->pool_words, &mmlt->pool_count, count, POOL_WORDS, error))
+    if (!pool_reserve(mmlt, count, error))
         return false;
     mmlt->pool.pass_words = mmlt->pool_words;
     mmlt->pool.pass_fields = POOL_WORDS;
@@ -91,17 +109,42 @@ static double offset_of(const Mmlt *mmlt)
     return ((double)random.x[0] + 0.5) / 4294967296.0;
 }
 
+/* Mean worth of the latest pool's samples. */
+static double pool_brightness(const Mmlt *mmlt, uint pool_count)
+{
+    double sum = 0.0;
+    for (uint i = 0; i < pool_count; ++i)
+        if (mmlt->pool_words[(size_t)POOL_KEY * pool_count + i] != 0)
+            sum += (double)bits_float(mmlt->pool_words[(size_t)POOL_WEIGHT * pool_count + i]);
+    return sum / pool_count;
+}
+
 static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
 {
-    if (!words_reserve(&mmlt->chain_words, &mmlt->chain_count, count, mmlt->chains.pass_fields, error))
+    ChainPopulation *population = mmlt_population(mmlt);
+    uint kept;
+    /* A sample of a pool that is worth this begins one chain. */
+    double threshold = brightness_known(mmlt) * pool_count / count;
+    mmlt->brightness = pool_brightness(mmlt, pool_count);
+    if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, !mmlt->options.unsorted,
+                                offset_of(mmlt), count, &kept, error))
         return false;
-    uint *words = mmlt->chain_words;
-    mmlt->chains.pass_words = words;
+    mmlt->chains.pass_words = population->words;
     mmlt->chains.pass_stride = count;
-    memset(words, 0, (size_t)count * mmlt->chains.pass_fields * sizeof *words);
-    return chain_seeds_choose(mmlt->pool_words, pool_count, !mmlt->options.unsorted, offset_of(mmlt), count,
-                              words + (size_t)CHAIN_PASS_ITEM * count, words + (size_t)CHAIN_PASS_KEY * count,
-                              &mmlt->brightness, error);
+    mmlt->run->chains.seeds += count - kept;
+    return true;
+}
+
+/* The words of the chains before the pass writes where they end. */
+static bool begun_keep(Mmlt *mmlt, uint count, Error *error)
+{
+    size_t bytes = (size_t)count * mmlt->chains.pass_fields * sizeof *mmlt->begun;
+    free(mmlt->begun);
+    mmlt->begun = malloc(bytes);
+    if (!mmlt->begun)
+        return error_memory(error, bytes, "where chains began");
+    memcpy(mmlt->begun, mmlt->chains.pass_words, bytes);
+    return true;
 }
 
 static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
@@ -109,15 +152,17 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
     RenderRun *run = mmlt->run;
     FrameParams frame = mmlt_chain_frame(mmlt);
     uint64_t delivered = 0;
-    if (!(mmlt->brightness > 0.0))
+    if (!(mmlt_population(mmlt)->brightness > 0.0))
         return true; /* a dark pool: what the chains would have shown is dark, too, on average */
     frame.item_count = count;
+    if (run->options->bad_chains && !begun_keep(mmlt, count, error))
+        return false;
     const SplatSink sink = render_run_sink(&mmlt->film);
     bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
     *whole = delivered == count;
-    if (frame.keep_chains) /* their coordinates are there */
+    if (mmlt->options.paper) /* they go on; their coordinates are there */
         for (uint i = 0; i < count; ++i)
-            mmlt->chain_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
+            mmlt->chains.pass_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
     return done;
 }
 
@@ -132,7 +177,6 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
     if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
         return false;
     mmlt->run->chains.pool_samples += pool_count;
-    mmlt->run->chains.seeds += count;
     return true;
 }
 
@@ -140,7 +184,7 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
 static void tally_chains(Mmlt *mmlt, uint count)
 {
     ChainStatistics *statistics = &mmlt->run->chains;
-    const uint *words = mmlt->chain_words;
+    const uint *words = mmlt->chains.pass_words;
     for (uint i = 0; i < count; ++i) {
         uint depth = chain_key_depth(words[(size_t)CHAIN_PASS_KEY * count + i]) % CHAIN_DEPTHS;
         for (uint kind = 0; kind < MUTATION_COUNT; ++kind) {
@@ -152,19 +196,32 @@ static void tally_chains(Mmlt *mmlt, uint count)
     statistics->steps += (uint64_t)count * mmlt->options.steps;
 }
 
-/* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). */
+/* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). It began with
+ * a sample of the pool or, when it came from the generation before, with `numbers`. */
+static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
+{
+    const uint *words = mmlt->chains.pass_words;
+    uint key = words[(size_t)CHAIN_PASS_KEY * count + i], item = words[(size_t)CHAIN_PASS_ITEM * count + i];
+    fprintf(out, "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, ",
+            (unsigned long long)mmlt->run->options->seed, mmlt->generation, mmlt->pool_sample);
+    if (item != NONE) {
+        fprintf(out, "\"pool_item\": %u, ", item);
+    } else {
+        for (uint field = CHAIN_PASS_NUMBERS; field < mmlt->chains.pass_fields; ++field)
+            fprintf(out, "%s%u", field > CHAIN_PASS_NUMBERS ? ", " : "\"numbers\": [",
+                    mmlt->begun[(size_t)field * count + i]);
+        fprintf(out, "], ");
+    }
+    fprintf(out, "\"chain\": %u, \"step\": %u, \"depth\": %u, \"s\": %u}\n", i, step, chain_key_depth(key),
+            chain_key_s(key));
+}
+
 static void bad_chains_write(const Mmlt *mmlt, uint count)
 {
-    const RenderOptions *options = mmlt->run->options;
-    const uint *words = mmlt->chain_words;
-    for (uint i = 0; options->bad_chains && i < count; ++i) {
-        uint step = words[(size_t)CHAIN_PASS_BAD * count + i], key = words[(size_t)CHAIN_PASS_KEY * count + i];
+    for (uint i = 0; mmlt->run->options->bad_chains && i < count; ++i) {
+        uint step = mmlt->chains.pass_words[(size_t)CHAIN_PASS_BAD * count + i];
         if (step != NONE)
-            fprintf(options->bad_chains,
-                    "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, \"pool_item\": %u, \"chain\": %u, "
-                    "\"step\": %u, \"depth\": %u, \"s\": %u}\n",
-                    (unsigned long long)options->seed, mmlt->generation, mmlt->pool_sample,
-                    words[(size_t)CHAIN_PASS_ITEM * count + i], i, step, chain_key_depth(key), chain_key_s(key));
+            bad_chain_write(mmlt, mmlt->run->options->bad_chains, count, i, step);
     }
 }
 
@@ -213,10 +270,10 @@ static bool generation_take(Mmlt *mmlt, Error *error)
         if (!film_merge(&mmlt->film, &mmlt->paths_film, error))
             return false;
     } else {
-        if (!blend_generation(&mmlt->blend, streams, error))
+        int half = half_of(mmlt, mmlt->generation);
+        if (!blend_generation(&mmlt->blends[half], &mmlt->blends[1 - half], streams, error))
             return false;
-        mmlt->brightness_sum += mmlt->brightness;
-        BlendPlan plan = blend_plan(&mmlt->blend);
+        BlendPlan plan = blend_plan(&mmlt->blends[half]); /* for the other half, whose turn it is */
         if (plan.paths_per_step > 0.0) {
             mmlt->paths_per_step = plan.paths_per_step;
             mmlt->pool_per_step = fmax(plan.pool_per_step, POOL_PER_STEP);
@@ -266,7 +323,8 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
         uint64_t work = generation_work(mmlt, chains ? steps : 0);
         if (!generation_take(mmlt, error))
             return false;
-        if (chains && mmlt->brightness > 0.0) {
+        mmlt->brightness_sum[half_of(mmlt, mmlt->generation)] += mmlt->brightness;
+        if (chains && mmlt_population(mmlt)->brightness > 0.0) {
             tally_chains(mmlt, count);
             bad_chains_write(mmlt, count);
         }

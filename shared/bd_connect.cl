@@ -7,6 +7,15 @@
 #include "bd_weight.h"
 #include "pool.h"
 
+/* What roulette left of a walk up to its vertex number `count`; of one without segments all. */
+SHARED_FUNCTION float vertex_survival(__global const FrameParams *frame, __global const uint *vertices, uint item,
+                                      uint side, uint count)
+{
+    return count > 1u
+               ? state_load_float(vertices, frame->stride, vertex_base(frame, side, count - 1u) + VERTEX_SURVIVAL, item)
+               : 1.0f;
+}
+
 /* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
 __kernel void bd_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                          __global const uint *restrict tables, __global const uint *restrict texels,
@@ -45,6 +54,10 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     DensityView view = bd_density_view(frame, paths, densities, item);
     float weight = bd_weight(frame, s, t, &view, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weight);
+    if (frame->pool != 0u)
+        state_store_float(paths, stride, BD_CONNECTION_SURVIVAL, item,
+                          vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
+                              vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
 }
 
 /* The pairs in the order of the list of steps (integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...
@@ -72,7 +85,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     bool visible = shadow_take(shadows, stride, item);
     if (frame->pool != 0u && visible) {
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
-        candidate_offer(frame, paths, item, s, t, contribution);
+        candidate_offer(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
+                        contribution);
         state_store_vec3(paths, stride, BD_CONTRIBUTION, item, pool_limited(frame, contribution));
     }
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);

@@ -43,7 +43,10 @@
 /* Of a pool (pool.h) */
 #define BD_CANDIDATE_SUM 29u
 #define BD_CANDIDATE 30u
-#define BD_HEADER_WORDS 31u
+#define BD_CANDIDATE_LUMINANCE 31u /* of the candidate without roulette, as a chain sees it */
+#define BD_CONNECTION_SURVIVAL 32u /* what roulette left of both walks to the connection under way */
+#define BD_SURVIVAL 33u /* probability with which roulette has let the walk under way come so far */
+#define BD_HEADER_WORDS 34u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can meet it */
@@ -67,7 +70,8 @@
 #define VERTEX_BSDF_ALPHA_Y 27u
 #define VERTEX_BSDF_ETA 28u
 #define VERTEX_BSDF_COAT 29u
-#define VERTEX_WORDS 30u
+#define VERTEX_SURVIVAL 30u /* BD_SURVIVAL there */
+#define VERTEX_WORDS 31u
 
 /* ---- densities --------------------------------------------------------------------------------------------------- */
 

@@ -58,7 +58,8 @@ SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint
                                 Vec3 contribution)
 {
     if (frame->pool != 0u)
-        candidate_offer(frame, paths, t, 0u, depth + 1u, contribution);
+        candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, frame->stride, BD_SURVIVAL, t),
+                        contribution);
     bd_add_radiance(paths, frame->stride, t, frame->pool != 0u ? pool_limited(frame, contribution) : contribution);
 }
 

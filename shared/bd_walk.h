@@ -178,6 +178,7 @@ SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *re
     state_store_float(paths, stride, BD_PDF, t, pdf);
     state_store(paths, stride, BD_WALK_FLAGS, t, flags);
     state_store_float(paths, stride, BD_ETA_SCALE, t, 1.0f / vec3_max_component(beta));
+    state_store_float(paths, stride, BD_SURVIVAL, t, 1.0f);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         walk_end(paths, rays, stride, t);
@@ -206,6 +207,7 @@ typedef struct WalkStep {
     float forward; /* density of the new direction, and of the way back; per solid angle */
     float reverse;
     float eta_scale;
+    float survival; /* probability of roulette here */
     uint delta;
 } WalkStep;
 
@@ -229,6 +231,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     float survival = roulette ? vec3_max_component(step->beta) * step->eta_scale : 1.0f;
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
         return false;
+    step->survival = float_min(survival, 1.0f);
     if (survival < 1.0f)
         step->beta = vec3_scale(step->beta, 1.0f / survival);
     step->ray = ray_spawn(vertex->p, vertex->ng, wi);
@@ -248,6 +251,7 @@ SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uin
     state_store_float(paths, stride, BD_PDF, t, step->forward);
     state_store(paths, stride, BD_WALK_FLAGS, t, step->delta != 0u ? WALK_DELTA : 0u);
     state_store_float(paths, stride, BD_ETA_SCALE, t, step->eta_scale);
+    state_store_float(paths, stride, BD_SURVIVAL, t, step->survival * state_load_float(paths, stride, BD_SURVIVAL, t));
     ray_store(rays, stride, t, step->ray);
 }
 
@@ -324,6 +328,7 @@ SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict
         state_store_float(paths, stride, BD_CONNECT, t,
                           emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex.p));
     vertex_store(scene, vertices, stride, base, t, &vertex);
+    state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
     return true;
 }
 

@@ -31,6 +31,7 @@ __kernel void pool_end(__global const FrameParams *restrict frame, __global cons
         return;
     pass_store(frame, pass, POOL_WEIGHT, t, state_load(paths, stride, BD_CANDIDATE_SUM, t));
     pass_store(frame, pass, POOL_KEY, t, state_load(paths, stride, BD_CANDIDATE, t));
+    pass_store(frame, pass, POOL_LUMINANCE, t, state_load(paths, stride, BD_CANDIDATE_LUMINANCE, t));
 }
 
 /* From: where each chain begins. To: its coordinates. */

@@ -14,7 +14,8 @@
 /* BUFFER_PASS of a pool: what a sample is worth, and the path kept of it (chain_key); 0: none. */
 #define POOL_WEIGHT 0u /* sum of the luminances of all its paths */
 #define POOL_KEY 1u
-#define POOL_WORDS 2u
+#define POOL_LUMINANCE 2u /* of the path kept, as a chain sees it */
+#define POOL_WORDS 3u
 
 /* d segments, s of the vertices from the light. */
 SHARED_FUNCTION uint chain_key(uint d, uint s)
@@ -55,10 +56,10 @@ SHARED_FUNCTION Vec3 pool_limited(__global const FrameParams *frame, Vec3 contri
     return luminance > frame->limit ? vec3_scale(contribution, frame->limit / luminance) : contribution;
 }
 
-/* The path of the strategy (s, t) carries `contribution`: it becomes the candidate with the probability of its share in
- * all so far. */
+/* The path of the strategy (s, t) carries `contribution`, having survived roulette with that probability: it becomes the
+ * candidate with the probability of its share in all so far. */
 SHARED_FUNCTION void candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                     uint s, uint t, Vec3 contribution)
+                                     uint s, uint t, float survival, Vec3 contribution)
 {
     uint stride = frame->stride;
     float luminance = rgb_luminance(contribution);
@@ -67,8 +68,10 @@ SHARED_FUNCTION void candidate_offer(__global const FrameParams *frame, __global
     float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + luminance;
     state_store_float(paths, stride, BD_CANDIDATE_SUM, item, sum);
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CANDIDATES + s * 64u + t);
-    if (random_float(random.x[0]) * sum < luminance)
+    if (random_float(random.x[0]) * sum < luminance) {
         state_store(paths, stride, BD_CANDIDATE, item, chain_key(s + t - 1u, s));
+        state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, luminance * survival);
+    }
 }
 
 #endif

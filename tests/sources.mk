@@ -10,6 +10,7 @@ check_PROGRAMS += \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_chain \
+	tests/test_chain_population \
 	tests/test_chain_seeds \
 	tests/test_emit \
 	tests/test_film \

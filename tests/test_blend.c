@@ -59,7 +59,7 @@ static double generation(Streams *streams)
     Film *const films[BLEND_STREAMS] = {&streams->films[0], &streams->films[1], &streams->films[2]};
     Error error = {0};
     double sum = 0.0;
-    ck_assert(blend_generation(&streams->blend, films, &error));
+    ck_assert(blend_generation(&streams->blend, &streams->blend, films, &error));
     for (size_t i = 0; i < 3 * PIXELS; ++i)
         sum += (double)films[BLEND_CHAINS]->light_sums[i];
     return sum * 0x1p-30 / 3.0 / (double)films[BLEND_CHAINS]->light_samples;

@@ -7,39 +7,40 @@
 #define POOL 1000u
 
 /* Weights of very different size, a third of them none, keys of a few depths. */
-static void pool_make(uint *pool, double *sum)
+static void pool_make(double *weights, uint *keys, double *sum)
 {
     *sum = 0.0;
     for (uint i = 0; i < POOL; ++i) {
-        float weight = i % 3 == 0 ? 0.0f : 0.001f * (float)((i * 7919u) % 1009u + 1u) * (i % 50 == 1 ? 100.0f : 1.0f);
-        pool[POOL_WEIGHT * POOL + i] = float_bits(weight);
-        pool[POOL_KEY * POOL + i] = i % 3 == 0 ? 0u : chain_key(3u + i % 5u, i % 3u);
-        *sum += (double)weight;
+        weights[i] = i % 3 == 0 ? 0.0 : 0.001 * ((i * 7919u) % 1009u + 1u) * (i % 50 == 1 ? 100.0 : 1.0);
+        keys[i] = i % 3 == 0 ? 0u : chain_key(3u + i % 5u, i % 3u);
+        *sum += weights[i];
     }
 }
 
 START_TEST(test_counts)
 {
-    static uint pool[POOL_WORDS * POOL], seeds[4096], keys[4096], times[POOL];
-    double sum, brightness, offset = 0.125 * (_i + 0.5);
+    static uint keys[POOL], seeds[4096], times[POOL];
+    static double weights[POOL];
+    double sum, found, offset = 0.125 * (_i + 0.5);
     const uint count = 4096;
     Error error = {0};
-    pool_make(pool, &sum);
+    pool_make(weights, keys, &sum);
     memset(times, 0, sizeof times);
-    ck_assert(chain_seeds_choose(pool, POOL, _i % 2 == 0, offset, count, seeds, keys, &brightness, &error));
-    ck_assert_double_eq_tol(brightness, sum / POOL, 1e-9);
+    ck_assert(chain_seeds_choose(weights, keys, POOL, _i % 2 == 0, offset, count, seeds, &found, &error));
+    ck_assert_double_eq_tol(found, sum, 1e-9);
     for (uint i = 0; i < count; ++i) {
-        ck_assert_uint_eq(keys[i], pool[POOL_KEY * POOL + seeds[i]]);
+        uint key = keys[seeds[i]], last = i > 0 ? keys[seeds[i - 1]] : 0;
+        ck_assert_uint_ne(key, 0);
         ++times[seeds[i]];
         if (i > 0 && _i % 2 == 0) {
-            uint before = chain_key_depth(keys[i - 1]) * 64 + chain_key_s(keys[i - 1]);
-            ck_assert_uint_le(before, chain_key_depth(keys[i]) * 64 + chain_key_s(keys[i]));
+            uint before = chain_key_depth(last) * 64 + chain_key_s(last);
+            ck_assert_uint_le(before, chain_key_depth(key) * 64 + chain_key_s(key));
         } else if (i > 0) {
             ck_assert_uint_le(seeds[i - 1], seeds[i]);
         }
     }
     for (uint i = 0; i < POOL; ++i) {
-        double expected = count * (double)bits_float(pool[POOL_WEIGHT * POOL + i]) / sum;
+        double expected = count * weights[i] / sum;
         ck_assert_double_gt(times[i], expected - 1.0 - 1e-6);
         ck_assert_double_lt(times[i], expected + 1.0 + 1e-6);
     }
@@ -49,18 +50,19 @@ END_TEST
 /* The offset moves the comb: over a fine grid of offsets every sample is taken as often as it is worth. */
 START_TEST(test_mean)
 {
-    static uint pool[POOL_WORDS * POOL], seeds[64], keys[64], times[POOL];
-    double sum, brightness;
+    static uint keys[POOL], seeds[64], times[POOL];
+    static double weights[POOL];
+    double sum, found;
     const uint count = 64, offsets = 4096;
     Error error = {0};
-    pool_make(pool, &sum);
+    pool_make(weights, keys, &sum);
     for (uint k = 0; k < offsets; ++k) {
-        ck_assert(chain_seeds_choose(pool, POOL, true, (k + 0.5) / offsets, count, seeds, keys, &brightness, &error));
+        ck_assert(chain_seeds_choose(weights, keys, POOL, true, (k + 0.5) / offsets, count, seeds, &found, &error));
         for (uint i = 0; i < count; ++i)
             ++times[seeds[i]];
     }
     for (uint i = 0; i < POOL; ++i) {
-        double expected = count * (double)bits_float(pool[POOL_WEIGHT * POOL + i]) / sum;
+        double expected = count * weights[i] / sum;
         ck_assert_double_eq_tol((double)times[i] / offsets, expected, 2.0 / offsets);
     }
 }
@@ -68,12 +70,13 @@ END_TEST
 
 START_TEST(test_dark)
 {
-    static uint pool[POOL_WORDS * POOL];
-    uint seeds[4] = {7, 7, 7, 7}, keys[4] = {0};
-    double brightness = 1.0;
+    static uint keys[POOL];
+    static double weights[POOL];
+    uint seeds[4] = {7, 7, 7, 7};
+    double found = 1.0;
     Error error = {0};
-    ck_assert(chain_seeds_choose(pool, POOL, true, 0.5, 4, seeds, keys, &brightness, &error));
-    ck_assert_double_eq(brightness, 0.0);
+    ck_assert(chain_seeds_choose(weights, keys, POOL, true, 0.5, 4, seeds, &found, &error));
+    ck_assert_double_eq(found, 0.0);
     ck_assert_uint_eq(seeds[0], 7);
 }
 END_TEST

@@ -74,7 +74,7 @@ START_TEST(test_slope)
         return;
     GroupSetup setup = {
         .groups = 16,
-        .render = {.text = bidirectional_text(scene), .samples = 20000, .max_depth = scene->depth, .threads = 2}};
+        .render = {.text = bidirectional_text(scene), .samples = 6000, .max_depth = scene->depth, .threads = 2}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_mmlt();
     for (int i = 0; i < BUDGETS; ++i) {

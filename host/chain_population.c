@@ -1,0 +1,123 @@
+#include "chain_population.h"
+
+#include "chain.h"
+#include "chain_seeds.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Paths of the population and then those of the pool. */
+typedef struct Candidates {
+    double *weights;
+    uint *keys;
+    uint chains, all;
+} Candidates;
+
+void chain_population_init(ChainPopulation *population, uint fields)
+{
+    *population = (ChainPopulation){.fields = fields};
+}
+
+void chain_population_destroy(ChainPopulation *population)
+{
+    free(population->words);
+    *population = (ChainPopulation){0};
+}
+
+static uint word_of(const ChainPopulation *population, uint field, uint i)
+{
+    return population->words[(size_t)field * population->count + i];
+}
+
+/* The part of a path of such luminance that chains answer for. */
+static double part_of_chains(double luminance, double most, double threshold)
+{
+    return luminance > 0.0 ? most * luminance / (luminance + threshold) : 0.0;
+}
+
+/* Weights in units of brightness: their sum is that of the next population. */
+static void candidates_weigh(const Candidates *candidates, const ChainPopulation *population, const uint *pool,
+                             double threshold)
+{
+    uint chains = candidates->chains, samples = candidates->all - chains;
+    double most = population->samples / (population->samples + samples);
+    for (uint i = 0; i < chains; ++i) {
+        double part = part_of_chains((double)bits_float(word_of(population, CHAIN_PASS_LUMINANCE, i)), most, threshold);
+        candidates->weights[i] = population->brightness / chains * part;
+        candidates->keys[i] = part > 0.0 ? word_of(population, CHAIN_PASS_KEY, i) : 0;
+    }
+    for (uint i = 0; i < samples; ++i) {
+        double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
+        double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;
+        double part = chains > 0 ? part_of_chains(luminance, most, threshold) : 0.0;
+        candidates->weights[chains + i] = weight * (1.0 - part);
+        candidates->keys[chains + i] = pool[(size_t)POOL_KEY * samples + i];
+    }
+}
+
+/* The words of the chains chosen: of one that goes on its coordinates, of a new one its number in the pool. */
+static uint words_gather(const ChainPopulation *population, const Candidates *candidates, const uint *seeds, uint count,
+                         uint *words)
+{
+    uint kept = 0;
+    for (uint i = 0; i < count; ++i) {
+        bool old = seeds[i] < candidates->chains;
+        words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
+        words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
+        kept += old;
+    }
+    for (uint field = CHAIN_PASS_NUMBERS; kept > 0 && field < population->fields; ++field)
+        for (uint i = 0; i < count; ++i)
+            if (seeds[i] < candidates->chains)
+                words[(size_t)field * count + i] = word_of(population, field, seeds[i]);
+    return kept;
+}
+
+static bool population_choose(ChainPopulation *population, Candidates *candidates, const uint *pool, double threshold,
+                              bool sorted, double offset, uint count, uint *kept, Error *error)
+{
+    uint *words = calloc((size_t)count * population->fields, sizeof *words), *seeds = malloc(count * sizeof *seeds);
+    double brightness = 0.0;
+    bool done = words && seeds;
+    if (done) {
+        candidates_weigh(candidates, population, pool, threshold);
+        done = chain_seeds_choose(candidates->weights, candidates->keys, candidates->all, sorted, offset, count, seeds,
+                                  &brightness, error);
+    } else {
+        error_memory(error, (size_t)count * population->fields * sizeof *words, "chains");
+    }
+    if (done && brightness > 0.0)
+        *kept = words_gather(population, candidates, seeds, count, words);
+    free(seeds);
+    if (!done) {
+        free(words);
+        return false;
+    }
+    free(population->words);
+    population->words = words;
+    population->count = count;
+    population->brightness = brightness;
+    population->samples += candidates->all - candidates->chains;
+    return true;
+}
+
+bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
+                            bool sorted, double offset, uint count, uint *kept, Error *error)
+{
+    Candidates candidates = {.chains = population->brightness > 0.0 ? population->count : 0};
+    uint unused = 0;
+    candidates.all = candidates.chains + pool_count;
+    candidates.weights = malloc(candidates.all * sizeof *candidates.weights);
+    candidates.keys = malloc(candidates.all * sizeof *candidates.keys);
+    bool done = candidates.weights && candidates.keys;
+    if (!done)
+        error_memory(error, candidates.all * (sizeof *candidates.weights + sizeof *candidates.keys), "a pool's paths");
+    if (kept)
+        *kept = 0;
+    done = done && population_choose(population, &candidates, pool, threshold, sorted, offset, count,
+                                     kept ? kept : &unused, error);
+    free(candidates.weights);
+    free(candidates.keys);
+    return done;
+}
