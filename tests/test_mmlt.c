@@ -60,6 +60,53 @@ START_TEST(test_blended)
 }
 END_TEST
 
+/* ---- modes ------------------------------------------------------------------------------------------------------- */
+
+/* A glass ball shows two caustics on the floor that nothing connects: each of a small lamp through a small ball. */
+#define TWO_CAUSTICS_HALF(x)                                                                                           \
+    "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 64 64 64 ] Translate " x "2.2 1.7 0\n"                     \
+    "Shape \"sphere\" \"float radius\" 0.2 AttributeEnd\n"                                                             \
+    "AttributeBegin Material \"dielectric\" Translate " x "1.2 0.7 0 Shape \"sphere\" \"float radius\" 0.3 "           \
+    "AttributeEnd\n"
+static const char TWO_CAUSTICS[] =
+    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32 PixelFilter \"box\"\n"
+    "LookAt 0 9 0  0 0 0  0 0 1 Camera \"perspective\" \"float fov\" 18\n"
+    "WorldBegin\n" TWO_CAUSTICS_HALF("-") TWO_CAUSTICS_HALF("") BD_GREY
+    "Shape \"bilinearmesh\" \"point3 P\" [ -4 0 -4  4 0 -4  -4 0 4  4 0 4 ]\n"
+    "Material \"dielectric\" Translate 0 3.2 0 Shape \"sphere\"\n";
+
+/* Mean of the pixels about one caustic. */
+static double caustic_mean(const PictureGroups *picture, int group, int x0)
+{
+    double sum = 0.0;
+    for (int y = 12; y < 21; ++y)
+        for (int x = x0; x < x0 + 6; ++x)
+            sum += picture->values[(group * 32 + y) * 32 + x] / 54.0;
+    return sum;
+}
+
+/* The scene is its own mirror image: with every seed both caustics get half. */
+START_TEST(test_modes)
+{
+    PictureGroups got;
+    GroupSetup setup = {.groups = test_effort() > 1 ? 5 : 1,
+                        .render = {.text = TWO_CAUSTICS,
+                                   .samples = 4800 / test_effort(),
+                                   .max_depth = 8,
+                                   .threads = 2,
+                                   .seed = 1,
+                                   .integrator = integrator_mmlt()}};
+    groups_render(&setup, &got);
+    for (int seed = 0; seed < got.groups; ++seed) {
+        double left = caustic_mean(&got, seed, 3), right = caustic_mean(&got, seed, 23);
+        printf("two caustics, seed %d: %.3f and %.3f, %.3f of both\n", seed, left, right, left / (left + right));
+        ck_assert_double_eq_tol(left + right, 0.88, 0.25);
+        ck_assert_double_eq_tol(left / (left + right), 0.5, 0.1);
+    }
+    groups_destroy(&got);
+}
+END_TEST
+
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
 /* The mean square error against what path tracing sees falls as one over the work: nothing is left over. */
@@ -72,14 +119,16 @@ START_TEST(test_slope)
     PictureGroups expected;
     if (test_effort() == 1)
         return;
-    GroupSetup setup = {
-        .groups = 16,
-        .render = {.text = bidirectional_text(scene), .samples = 6000, .max_depth = scene->depth, .threads = 2}};
+    GroupSetup setup = {.groups = 16,
+                        .render = {.text = bidirectional_text(scene),
+                                   .samples = 6000 / test_effort(),
+                                   .max_depth = scene->depth,
+                                   .threads = 2}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_mmlt();
     for (int i = 0; i < BUDGETS; ++i) {
         PictureGroups got;
-        setup.render.samples = (unsigned)work[i];
+        setup.render.samples = (unsigned)work[i] / test_effort();
         setup.render.seed = 100u * (unsigned)(i + 1);
         groups_render(&setup, &got);
         error[i] = groups_square_error(&got, &expected);
@@ -111,7 +160,7 @@ START_TEST(test_brightness)
     groups_render(&setup, &expected);
     setup.groups = SEEDS;
     setup.render.integrator = integrator_mmlt();
-    setup.render.samples = 1200;
+    setup.render.samples = 1200 / test_effort();
     groups_render(&setup, &got);
     for (int seed = 0; seed < SEEDS; ++seed) {
         PictureGroups one = got;
@@ -126,16 +175,23 @@ START_TEST(test_brightness)
 }
 END_TEST
 
+static TCase *case_make(Suite *suite, const char *name)
+{
+    TCase *tcase = tcase_create(name);
+    tcase_set_timeout(tcase, 3000);
+    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
+    suite_add_tcase(suite, tcase);
+    return tcase;
+}
+
 int main(void)
 {
     Suite *suite = suite_create("mmlt");
-    TCase *tcase = tcase_create("unbiased");
-    tcase_set_timeout(tcase, 3000);
-    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
-    tcase_add_loop_test(tcase, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
-    tcase_add_loop_test(tcase, test_slope, 0, 3);
-    tcase_add_loop_test(tcase, test_brightness, 0, 8);
-    suite_add_tcase(suite, tcase);
+    TCase *unbiased = case_make(suite, "unbiased");
+    tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_test(case_make(suite, "modes"), test_modes);
+    tcase_add_loop_test(case_make(suite, "slope"), test_slope, 0, 3);
+    tcase_add_loop_test(case_make(suite, "brightness"), test_brightness, 0, 8);
     return test_run(suite);
 }
