@@ -1,8 +1,44 @@
-# Scenes drawn for Twinlight, installed as examples.
+# Scenes drawn for Twinlight, installed as examples, and what they are made of.
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA = \
 	scenes/cornell.pbrt \
 	scenes/door.pbrt \
+	scenes/glossy.pbrt \
 	scenes/lamp.pbrt \
 	scenes/pool.pbrt \
-	scenes/showcase.pbrt
+	scenes/relief.pbrt \
+	scenes/showcase.pbrt \
+	scenes/windows.pbrt
+scenepartsdir = $(scenesdir)/parts
+dist_sceneparts_DATA = \
+	scenes/parts/bottle.ply \
+	scenes/parts/bowl.ply \
+	scenes/parts/box.pbrt \
+	scenes/parts/hammered.png \
+	scenes/parts/jar.ply \
+	scenes/parts/pane.ply \
+	scenes/parts/sun.exr \
+	scenes/parts/vase.ply
+
+# `make scene-parts` makes scenes/parts/ in the source folder again; `make scene-references` the pictures to compare with.
+EXTRA_PROGRAMS += scenes/average_images scenes/make_parts
+scenes_average_images_SOURCES = scenes/average_images.c
+scenes_average_images_LDADD = libtwinlight_host.la -lm
+scenes_make_parts_SOURCES = scenes/make_parts.c
+scenes_make_parts_LDADD = libtwinlight_host.la -lm
+CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_parts$(EXEEXT)
+EXTRA_DIST += \
+	scenes/make_references.sh \
+	scenes/reference/cornell.exr \
+	scenes/reference/door.exr \
+	scenes/reference/glossy.exr \
+	scenes/reference/lamp.exr \
+	scenes/reference/pool.exr \
+	scenes/reference/relief.exr \
+	scenes/reference/windows.exr
+
+.PHONY: scene-parts scene-references
+scene-parts: scenes/make_parts$(EXEEXT)
+	./scenes/make_parts$(EXEEXT) $(srcdir)/scenes
+scene-references: twinlight$(EXEEXT) scenes/average_images$(EXEEXT)
+	$(srcdir)/scenes/make_references.sh ./twinlight$(EXEEXT) ./scenes/average_images$(EXEEXT) $(srcdir)/scenes/reference

@@ -13,7 +13,7 @@
 
 typedef struct BidirectionalScene {
     const char *name;
-    const char *text; /* "$FILES": a folder with sky.pfm, sun.pfm and bumps.pfm; "$ICOSPHERE": a mesh with normals */
+    const char *text; /* "$FILES": a folder with sky, sun, bumps and normals.pfm; "$ICOSPHERE": a mesh with normals */
     unsigned support;
     int depth; /* of the sum of all strategies */
     int strategy_depth; /* the longest paths whose strategies are compared one by one */

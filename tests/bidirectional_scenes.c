@@ -115,6 +115,13 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
                                 "\"bool twosided\" true\n"
                                 "Shape \"sphere\" \"float radius\" 0.9 \"texture alpha\" \"holes\" AttributeEnd\n",
      SUPPORT_NO_DRAW, 4, 3},
+    {"normal map",
+     BD_BEGIN BD_LAMP
+     "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.6 0.5 ] \"string normalmap\" \"$FILES/normals.pfm\"\n"
+     "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ] \"point2 uv\" [ 0 0 2 0 0 2 2 2 "
+     "]\n" ROUGH("conductor", "\"rgb reflectance\" [ 0.9 0.8 0.7 ] \"float roughness\" 0.4 \"string normalmap\" "
+                              "\"$FILES/normals.pfm\"") BD_BALL,
+     SUPPORT_ALL, 4, 3},
 };
 
 const int BIDIRECTIONAL_SCENE_COUNT = (int)(sizeof BIDIRECTIONAL_SCENES / sizeof BIDIRECTIONAL_SCENES[0]);
@@ -135,12 +142,23 @@ static void image_write(const char *name, int n, double low, double high, int su
     free(rgb);
 }
 
+/* Directions around +z as texels of a normal map. */
+static void normals_write(void)
+{
+    float rgb[3 * 8 * 8];
+    unsigned state = 5;
+    for (int i = 0; i < 3 * 8 * 8; ++i)
+        rgb[i] = i % 3 == 2 ? 0.95f : (float)(0.25 + 0.5 * test_random_unit(&state));
+    analytic_write_pfm(test_path("normals.pfm"), 8, 8, rgb);
+}
+
 void bidirectional_files_make(void)
 {
     test_folder_make();
     image_write("sky.pfm", 8, 0.1, 2.0, -1);
     image_write("sun.pfm", 32, 0.05, 0.2, 32 * 14 + 13);
     image_write("bumps.pfm", 8, 0.0, 0.9, -1);
+    normals_write();
 }
 
 void bidirectional_files_remove(void)

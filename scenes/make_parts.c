@@ -1,0 +1,295 @@
+/* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, a pane of
+ * uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
+#include "color.h"
+#include "exr.h"
+#include "png_write.h"
+#include "warp.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TAU 6.283185307179586
+
+typedef struct Vertex {
+    double p[3], n[3], uv[2];
+} Vertex;
+
+/* Vertex (i, j) of a grid of columns x rows, both counted in quads. */
+typedef struct Grid {
+    int columns, rows;
+    Vertex (*vertex)(const void *shape, int i, int j);
+    const void *shape;
+    bool closed; /* the first and the last row are one point each */
+} Grid;
+
+/* A profile turned about the y axis: a Catmull-Rom spline through points (r, y), from the outer side of the foot up; the
+ * surface faces right of the way. */
+typedef struct Lathe {
+    const double (*points)[2];
+    int count;
+    double u_repeat, v_repeat; /* texture coordinates go from 0 to these */
+} Lathe;
+
+enum { LATHE_SEGMENTS = 36, LATHE_STEPS = 2 };
+
+#define POINTS(array) array, (int)(sizeof array / sizeof *array)
+
+/* ---- the lathe ---------------------------------------------------------------------------------------------------- */
+
+/* Point i of the profile; beyond an end on the axis its mirror image, so that the tip is smooth, else a straight way. */
+static void profile_point(const Lathe *lathe, int i, double p[2])
+{
+    int end = i < 0 ? 0 : lathe->count - 1, next = i < 0 ? 1 : lathe->count - 2;
+    const double(*points)[2] = lathe->points;
+    if (i >= 0 && i < lathe->count) {
+        p[0] = points[i][0];
+        p[1] = points[i][1];
+    } else if (points[end][0] == 0.0) {
+        p[0] = -points[next][0];
+        p[1] = points[next][1];
+    } else {
+        p[0] = 2.0 * points[end][0] - points[next][0];
+        p[1] = 2.0 * points[end][1] - points[next][1];
+    }
+}
+
+/* Point and tangent at step j. */
+static void profile_at(const Lathe *lathe, int j, double p[2], double tangent[2])
+{
+    int span = j / LATHE_STEPS < lathe->count - 1 ? j / LATHE_STEPS : lathe->count - 2;
+    double t = (double)(j - span * LATHE_STEPS) / LATHE_STEPS, k[4][2];
+    for (int i = 0; i < 4; ++i)
+        profile_point(lathe, span + i - 1, k[i]);
+    for (int c = 0; c < 2; ++c) {
+        double a = 2.0 * k[1][c], b = k[2][c] - k[0][c];
+        double d = 2.0 * k[0][c] - 5.0 * k[1][c] + 4.0 * k[2][c] - k[3][c];
+        double e = -k[0][c] + 3.0 * k[1][c] - 3.0 * k[2][c] + k[3][c];
+        p[c] = 0.5 * (a + t * (b + t * (d + t * e)));
+        tangent[c] = 0.5 * (b + t * (2.0 * d + t * 3.0 * e));
+    }
+}
+
+static Vertex lathe_vertex(const void *shape, int i, int j)
+{
+    const Lathe *lathe = shape;
+    double p[2], tangent[2], angle = TAU * (i % LATHE_SEGMENTS) / LATHE_SEGMENTS;
+    profile_at(lathe, j, p, tangent);
+    double r = p[0] > 1e-9 ? p[0] : 0.0, length = hypot(tangent[0], tangent[1]);
+    double outward = tangent[1] / length, up = -tangent[0] / length;
+    return (Vertex){.p = {r * cos(angle), p[1], r * sin(angle)},
+                    .n = {outward * cos(angle), up, outward * sin(angle)},
+                    .uv = {lathe->u_repeat * (LATHE_SEGMENTS - i) / LATHE_SEGMENTS,
+                           lathe->v_repeat * j / (LATHE_STEPS * (lathe->count - 1))}};
+}
+
+/* ---- the pane ----------------------------------------------------------------------------------------------------- */
+
+enum { PANE_COLUMNS = 24, PANE_ROWS = 28 };
+static const double PANE_STEP = 0.025, PANE_THICKNESS = 0.004;
+
+/* Waves of the uneven side: wave numbers along x and y, phase, and height in metres. Their curvatures bring sunlight
+ * together 1 to 4 m behind the pane. */
+static const double WAVES[][4] = {{52, 9, 0.3, 2.1e-4},  {31, -14, 1.9, 4.5e-4}, {-24, 38, 4.0, 3.0e-4},
+                                  {12, 47, 2.2, 2.4e-4}, {18, 7, 5.1, 9.0e-4},   {66, -31, 0.9, 1.0e-4}};
+
+static Vertex pane_vertex(const void *shape, int i, int j)
+{
+    (void)shape;
+    double x = PANE_STEP * (PANE_COLUMNS - i), y = PANE_STEP * j, z = PANE_THICKNESS, slope_x = 0.0, slope_y = 0.0;
+    for (size_t w = 0; w < sizeof WAVES / sizeof *WAVES; ++w) {
+        double phase = WAVES[w][0] * x + WAVES[w][1] * y + WAVES[w][2];
+        z += WAVES[w][3] * sin(phase);
+        slope_x += WAVES[w][3] * WAVES[w][0] * cos(phase);
+        slope_y += WAVES[w][3] * WAVES[w][1] * cos(phase);
+    }
+    double length = sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+    return (Vertex){.p = {x, y, z}, .n = {-slope_x / length, -slope_y / length, 1.0 / length}, .uv = {x, y}};
+}
+
+/* ---- files -------------------------------------------------------------------------------------------------------- */
+
+static void grid_header_write(const Grid *grid, FILE *file)
+{
+    fprintf(file, "ply\nformat ascii 1.0\ncomment Drawn for Twinlight by scenes/make_parts.c; Apache-2.0\n");
+    fprintf(file, "element vertex %d\n", (grid->columns + 1) * (grid->rows + 1));
+    for (const char *name = "xyz"; *name; ++name)
+        fprintf(file, "property float %c\n", *name);
+    for (const char *name = "xyz"; *name; ++name)
+        fprintf(file, "property float n%c\n", *name);
+    fprintf(file, "property float u\nproperty float v\nelement face %d\nproperty list uchar int vertex_indices\n",
+            2 * grid->columns * (grid->closed ? grid->rows - 1 : grid->rows));
+    fprintf(file, "end_header\n");
+}
+
+/* x in units of `unit`, without the sign of a zero. */
+static void number_write(FILE *file, double x, double unit, char after)
+{
+    double rounded = round(x / unit) * unit;
+    fprintf(file, "%.6g%c", rounded == 0.0 ? 0.0 : rounded, after);
+}
+
+static bool grid_write(const Grid *grid, const char *folder, const char *name)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/parts/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return false;
+    grid_header_write(grid, file);
+    for (int j = 0; j <= grid->rows; ++j)
+        for (int i = 0; i <= grid->columns; ++i) {
+            Vertex v = grid->vertex(grid->shape, i, j);
+            const double *numbers[] = {v.p, v.n, v.uv};
+            for (int k = 0; k < 8; ++k)
+                number_write(file, numbers[k / 3][k % 3], k < 3 ? 1e-5 : 1e-4, k < 7 ? ' ' : '\n');
+        }
+    for (int j = 0; j < grid->rows; ++j)
+        for (int i = 0; i < grid->columns; ++i) {
+            int a = j * (grid->columns + 1) + i, b = a + grid->columns + 1;
+            if (j < grid->rows - 1 || !grid->closed)
+                fprintf(file, "3 %d %d %d\n", a, b, b + 1);
+            if (j > 0 || !grid->closed)
+                fprintf(file, "3 %d %d %d\n", a, b + 1, a + 1);
+        }
+    return fclose(file) == 0;
+}
+
+static bool lathe_write(Lathe lathe, const char *folder, const char *name)
+{
+    Grid grid = {LATHE_SEGMENTS, LATHE_STEPS * (lathe.count - 1), lathe_vertex, &lathe, true};
+    return grid_write(&grid, folder, name);
+}
+
+/* ---- vessels: points (r, y) in metres -------------------------------------------------------------------------------- */
+
+/* A jar with its lid and a knob, closed. */
+static const double JAR[][2] = {{0, 0},         {0.05, 0},      {0.066, 0.001}, {0.072, 0.006}, {0.1, 0.035},
+                                {0.135, 0.1},   {0.14, 0.16},   {0.118, 0.215}, {0.088, 0.242}, {0.083, 0.247},
+                                {0.089, 0.251}, {0.087, 0.258}, {0.06, 0.275},  {0.025, 0.287}, {0.013, 0.296},
+                                {0.021, 0.309}, {0.017, 0.322}, {0, 0.327}};
+
+/* A tall vase of solid section as far as light is concerned: its inside is a dark hole of a finger's depth. */
+static const double VASE[][2] = {{0, 0},         {0.05, 0},     {0.063, 0.001}, {0.068, 0.006}, {0.064, 0.03},
+                                 {0.074, 0.1},   {0.105, 0.2},  {0.122, 0.29},  {0.112, 0.37},  {0.07, 0.44},
+                                 {0.042, 0.49},  {0.039, 0.53}, {0.052, 0.565}, {0.055, 0.57},  {0.052, 0.573},
+                                 {0.046, 0.565}, {0.034, 0.53}, {0.03, 0.5},    {0, 0.49}};
+
+/* A bottle of glass, outside and inside. */
+static const double BOTTLE[][2] = {{0, 0},          {0.035, 0},      {0.041, 0.002},  {0.0435, 0.008}, {0.044, 0.05},
+                                   {0.044, 0.12},   {0.043, 0.165},  {0.034, 0.195},  {0.02, 0.222},   {0.0155, 0.26},
+                                   {0.0155, 0.295}, {0.018, 0.3},    {0.0182, 0.308}, {0.0155, 0.311}, {0.0125, 0.308},
+                                   {0.0122, 0.29},  {0.0122, 0.258}, {0.0165, 0.222}, {0.029, 0.195},  {0.0375, 0.165},
+                                   {0.0385, 0.12},  {0.0385, 0.05},  {0.038, 0.014},  {0.034, 0.009},  {0, 0.008}};
+
+/* A shallow bowl of beaten metal, outside and inside. */
+static const double BOWL[][2] = {{0, 0},         {0.06, 0},      {0.085, 0.001}, {0.1, 0.006},   {0.15, 0.035},
+                                 {0.2, 0.085},   {0.228, 0.135}, {0.24, 0.16},   {0.242, 0.164}, {0.239, 0.1655},
+                                 {0.234, 0.162}, {0.222, 0.137}, {0.194, 0.089}, {0.146, 0.041}, {0.095, 0.013},
+                                 {0.05, 0.007},  {0, 0.006}};
+
+/* ---- hammered metal --------------------------------------------------------------------------------------------------- */
+
+enum { HAMMERED_SIDE = 192, HAMMERED_CELLS = 7 };
+
+/* Fractional part of a number that depends on cell (x, y), the map going round. */
+static double cell_random(int x, int y, int which)
+{
+    int cell = (y + HAMMERED_CELLS) % HAMMERED_CELLS * HAMMERED_CELLS + (x + HAMMERED_CELLS) % HAMMERED_CELLS;
+    double product = 0.6180339887498949 * (3 * cell + 1) * (which + 2.3) + 0.37 * cell * cell;
+    return product - floor(product);
+}
+
+/* From the nearest blow to (x, y), counted in cells. */
+static void blow_nearest(double x, double y, double offset[2])
+{
+    int x0 = (int)floor(x), y0 = (int)floor(y);
+    double least = HUGE_VAL;
+    for (int j = y0 - 1; j <= y0 + 1; ++j)
+        for (int i = x0 - 1; i <= x0 + 1; ++i) {
+            double dx = x - (i + 0.15 + 0.7 * cell_random(i, j, 0)), dy = y - (j + 0.15 + 0.7 * cell_random(i, j, 1));
+            if (dx * dx + dy * dy >= least)
+                continue;
+            least = dx * dx + dy * dy;
+            offset[0] = dx;
+            offset[1] = dy;
+        }
+}
+
+/* Every blow leaves a paraboloid, and they meet in edges. Texels are (n + 1) / 2 with y up; the PNG's rows go down. */
+static bool hammered_write(const char *folder, Error *error)
+{
+    static float rgb[3 * HAMMERED_SIDE * HAMMERED_SIDE];
+    char path[1024];
+    for (int y = 0; y < HAMMERED_SIDE; ++y)
+        for (int x = 0; x < HAMMERED_SIDE; ++x) {
+            float *texel = rgb + 3 * (y * HAMMERED_SIDE + x);
+            double d[2] = {0.0, 0.0}, cells = (double)HAMMERED_CELLS / HAMMERED_SIDE, steepness = 0.1;
+            blow_nearest((x + 0.5) * cells, (HAMMERED_SIDE - y - 0.5) * cells, d);
+            double n[3] = {-steepness * d[0], -steepness * d[1], 1.0}, length = sqrt(n[0] * n[0] + n[1] * n[1] + 1.0);
+            for (int c = 0; c < 3; ++c) /* png_write encodes as sRGB, and the map's bytes are linear */
+                texel[c] = (float)color_srgb_decode(0.5 * n[c] / length + 0.5);
+        }
+    snprintf(path, sizeof path, "%s/parts/hammered.png", folder);
+    return png_write(path, rgb, HAMMERED_SIDE, HAMMERED_SIDE, 0.0f, error);
+}
+
+/* ---- the sun --------------------------------------------------------------------------------------------------------- */
+
+/* 0.5 degrees across are 2.5 texels of the equal-area octahedral map. */
+enum { SUN_SIDE = 1024, SUN_SAMPLES = 16 };
+static const double SUN_RADIUS = TAU / 360.0 * 0.25, SUN_COLOR[3] = {1.0, 0.88, 0.7};
+
+/* What part of a texel the sun covers. */
+static double sun_part(int x, int y)
+{
+    Vec3 sun = vec3(0.0f, 0.0f, 1.0f);
+    int inside = 0;
+    for (int k = 0; k < SUN_SAMPLES * SUN_SAMPLES; ++k) {
+        double u = x + (k % SUN_SAMPLES + 0.5) / SUN_SAMPLES, v = y + (k / SUN_SAMPLES + 0.5) / SUN_SAMPLES;
+        Vec3 w = octahedral_to_sphere(vec2((float)(u / SUN_SIDE), (float)(v / SUN_SIDE)));
+        double cross = (double)vec3_length(vec3_cross(w, sun));
+        inside += vec3_dot(w, sun) > 0.0f && cross < sin(SUN_RADIUS);
+    }
+    return (double)inside / (SUN_SAMPLES * SUN_SAMPLES);
+}
+
+/* The sun straight above (+z); its red is 1 where it covers a texel. */
+static bool sun_write(const char *folder, Error *error)
+{
+    char path[1024];
+    float *sun = calloc((size_t)SUN_SIDE * SUN_SIDE * 3, sizeof *sun);
+    if (!sun)
+        return error_set(error, "not enough memory for the sun");
+    for (int y = SUN_SIDE / 2 - 4; y < SUN_SIDE / 2 + 4; ++y)
+        for (int x = SUN_SIDE / 2 - 4; x < SUN_SIDE / 2 + 4; ++x)
+            for (int c = 0; c < 3; ++c)
+                sun[3 * (y * SUN_SIDE + x) + c] = (float)(SUN_COLOR[c] * sun_part(x, y));
+    ExrChannel channels[] = {{"R", sun, 3, true}, {"G", sun + 1, 3, true}, {"B", sun + 2, 3, true}};
+    snprintf(path, sizeof path, "%s/parts/sun.exr", folder);
+    bool good = exr_write(path, channels, 3, SUN_SIDE, SUN_SIDE, NULL, NULL, 0, error);
+    free(sun);
+    return good;
+}
+
+int main(int argc, char **argv)
+{
+    Error error = {0};
+    Grid pane = {PANE_COLUMNS, PANE_ROWS, pane_vertex, NULL, false};
+    if (argc != 2) {
+        fprintf(stderr, "usage: make_parts FOLDER\n");
+        return 2;
+    }
+    if (!lathe_write((Lathe){POINTS(JAR), 1, 1}, argv[1], "jar.ply") ||
+        !lathe_write((Lathe){POINTS(VASE), 1, 1}, argv[1], "vase.ply") ||
+        !lathe_write((Lathe){POINTS(BOTTLE), 1, 1}, argv[1], "bottle.ply") ||
+        !lathe_write((Lathe){POINTS(BOWL), 5, 4}, argv[1], "bowl.ply") || !grid_write(&pane, argv[1], "pane.ply")) {
+        fprintf(stderr, "make_parts: cannot write %s/parts\n", argv[1]);
+        return 1;
+    }
+    if (!hammered_write(argv[1], &error) || !sun_write(argv[1], &error)) {
+        fprintf(stderr, "make_parts: %s\n", error.message);
+        return 1;
+    }
+    return 0;
+}
