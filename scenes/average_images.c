@@ -12,28 +12,38 @@ typedef struct Halves {
     float *rgb[2]; /* sums of the images with even and odd numbers */
 } Halves;
 
-static bool image_add(Halves *halves, const char *path, int half, Error *error)
+static bool picture_read(const char *path, float **rgb, int *width, int *height, Error *error)
 {
     Image image;
-    float *rgb = NULL;
     if (!image_read(path, &image, error))
         return false;
-    size_t count = (size_t)image.width * (size_t)image.height * 3;
-    bool good = image_linear_rgb(&image, &rgb, error);
-    if (good && halves->rgb[half] && (image.width != halves->width || image.height != halves->height)) {
-        good = error_set(error, "%s has another size than the images before it", path);
-    } else if (good) {
-        halves->width = image.width;
-        halves->height = image.height;
-        if (!halves->rgb[half])
-            halves->rgb[half] = calloc(count, sizeof *rgb);
-        good = halves->rgb[half] || error_memory(error, count * sizeof *rgb, "an image");
-        for (size_t i = 0; good && i < count; ++i)
-            halves->rgb[half][i] += rgb[i];
-    }
-    free(rgb);
+    *width = image.width;
+    *height = image.height;
+    bool good = image_linear_rgb(&image, rgb, error);
     image_destroy(&image);
     return good;
+}
+
+static bool image_add(Halves *halves, const char *path, int half, Error *error)
+{
+    float *rgb, *sum = halves->rgb[half];
+    int width, height;
+    if (!picture_read(path, &rgb, &width, &height, error))
+        return false;
+    if (halves->rgb[0] && (width != halves->width || height != halves->height)) {
+        free(rgb);
+        return error_set(error, "%s has another size than the images before it", path);
+    }
+    halves->width = width;
+    halves->height = height;
+    if (!sum) {
+        halves->rgb[half] = rgb;
+        return true;
+    }
+    for (size_t i = 0; i < (size_t)width * (size_t)height * 3; ++i)
+        sum[i] += rgb[i];
+    free(rgb);
+    return true;
 }
 
 /* From sums of n images each to means, and in the first the mean of both. */
@@ -47,7 +57,7 @@ static bool halves_finish(Halves *halves, int n, const char *path, Error *error)
     }
     if (!metrics_compute(halves->rgb[0], halves->rgb[1], halves->width, halves->height, 16, &metrics, error))
         return false;
-    printf("%s: relMSE %.2g, without the worst 0.1 %% %.2g; means of 16 x 16 blocks differ by %.2g %%\n", path,
+    printf("%s: relMSE %.2g, without the worst 0.1 %% %.2g; error of the means of 16 x 16 blocks %.2g %%\n", path,
            metrics.rel_mse / 4.0, metrics.rel_mse_trimmed / 4.0, 50.0 * metrics.block_mean);
     float *mean = halves->rgb[0];
     for (size_t i = 0; i < count; ++i)

@@ -26,6 +26,7 @@ check_PROGRAMS += \
 	tests/test_platform_bits \
 	tests/test_reference \
 	tests/test_render \
+	tests/test_scenes \
 	tests/test_texture \
 	tests/test_verify
 if HAVE_OPENCL
@@ -40,7 +41,7 @@ EFFORT = 8
 .PHONY: check-long
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
-	  TESTS='tests/test_bidirectional tests/test_mmlt tests/test_opencl tests/test_reference'
+	  TESTS='tests/test_bidirectional tests/test_mmlt tests/test_opencl tests/test_reference tests/test_scenes'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
