@@ -9,15 +9,18 @@
 enum { INTEGRATORS = 4, SIDE = 32, GRID = 4 };
 
 /* Median relative difference of the means of GRID x GRID blocks that noise explains, of pt, ibpt, bdpt and mmlt with
- * SAMPLES: the largest of eight seeds (1 to 8) and half as much again. The median, because single paths that are found
- * once in a million samples make a block or two many times too bright. What an integrator hardly ever finds is missing in
- * all blocks: path tracing's figures for light behind glass say no more than that it is missing. */
+ * SAMPLES: the largest of eight seeds (1 to 8) and half as much again, but less than what a black picture has. The median,
+ * because single paths that are found once in a million samples make a block or two many times too bright. */
 static const struct {
     const char *name;
+    double reference; /* mean error of the reference's blocks (docs/SCENES.md); for cornell's pixel filter, 0.01 */
+    bool pt_misses; /* some light is hardly ever met by path tracing, and more samples do not help soon */
     double noise[INTEGRATORS];
 } SCENES[] = {
-    {"cornell", {0, 0, 0, 0}}, {"door", {0, 0, 0, 0}},   {"glossy", {0, 0, 0, 0}},  {"lamp", {0, 0, 0, 0}},
-    {"pool", {0, 0, 0, 0}},    {"relief", {0, 0, 0, 0}}, {"windows", {0, 0, 0, 0}},
+    {"cornell", 0.010, false, {0.027, 0.029, 0.026, 0.018}}, {"door", 0.042, false, {0.63, 0.48, 0.52, 0.46}},
+    {"glossy", 0.010, true, {0.95, 0.35, 0.093, 0.16}},      {"lamp", 0.010, true, {0.82, 0.052, 0.063, 0.097}},
+    {"pool", 0.047, false, {0.80, 0.91, 0.95, 0.75}},        {"relief", 0.021, true, {0.61, 0.147, 0.12, 0.105}},
+    {"windows", 0.031, true, {0.61, 0.30, 0.38, 0.58}},
 };
 #define SCENE_COUNT (int)(sizeof SCENES / sizeof SCENES[0])
 
@@ -59,13 +62,21 @@ static double blocks_median(const float *rgb, PictureView reference)
     return 0.5 * (differences[BLOCKS / 2 - 1] + differences[BLOCKS / 2]);
 }
 
+static double noise_limit(int scene, int which)
+{
+    double noise = SCENES[scene].noise[which];
+    if (test_effort() == 1 || (which == 0 && SCENES[scene].pt_misses))
+        return noise;
+    return noise / sqrt(test_effort()) + SCENES[scene].reference;
+}
+
 START_TEST(test_scene)
 {
     const Integrator *const integrators[INTEGRATORS] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(),
                                                         integrator_mmlt()};
     const char *name = SCENES[_i / INTEGRATORS].name;
     int which = _i % INTEGRATORS;
-    double limit = SCENES[_i / INTEGRATORS].noise[which] / sqrt(test_effort());
+    double limit = noise_limit(_i / INTEGRATORS, which);
     char path[1200];
     snprintf(path, sizeof path, "%s/scenes/%s.pbrt", test_source_folder(), name);
     RenderSetup setup = {.path = path,
