@@ -91,9 +91,6 @@ same "$scene" "two all film_all" --resolution=64x48 --samples=2
 for integrator in bdpt ibpt; do
     same "$scene" "film film_all" --integrator=$integrator --resolution=31x23 --crop=3,2,30,21 --samples=3
 done
-# Chains: generations that follow one another, and the published scheme.
-same "$scene" "two all film_all" --integrator=mmlt --resolution=31x23 --samples=24
-same "$scene" "two all" --integrator=mmlt --mlt-scheme=paper --chains=100 --resolution=31x23 --samples=24
 for other in environment.pbrt instances.pbrt; do
     for batch in 1 63 100000; do
         "$program" render --quiet --integrator=pt --no-png -o cpu.exr --samples=3 $other >out 2>err &&
