@@ -1,13 +1,12 @@
 #include "cmd_compare.h"
 
 #include "command.h"
+#include "compare_print.h"
 #include "error_image.h"
-#include "image.h"
-#include "json.h"
-#include "metrics.h"
 #include "option_values.h"
+#include "path_name.h"
+#include "rendering_file.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #define BLOCKS_MAX 4096
@@ -16,13 +15,18 @@ typedef struct CompareCommand {
     bool json;
     int blocks;
     const char *output; /* error image, NULL: none */
+    const char *side_by_side; /* PNG, NULL: none */
+    DisplaySettings display;
 } CompareCommand;
 
-enum { OPTION_OUTPUT, OPTION_BLOCKS, OPTION_JSON };
+enum { OPTION_OUTPUT, OPTION_SIDE_BY_SIDE, OPTION_BLOCKS, OPTION_EXPOSURE, OPTION_PIXELS_PER_DEGREE, OPTION_JSON };
 
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE", "write an error image (.exr or .png)"},
+    [OPTION_SIDE_BY_SIDE] = {"side-by-side", 0, "FILE.png", "write image, reference and error image in a row"},
     [OPTION_BLOCKS] = {"blocks", 0, "N", "compare the means of N x N blocks (default 16)"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "of FLIP, SSIM and --side-by-side: brighten by 2^STOPS (default 0)"},
+    [OPTION_PIXELS_PER_DEGREE] = {"pixels-per-degree", 0, "N", "of FLIP: how the pictures are seen (default 67)"},
     [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
 };
 
@@ -37,11 +41,14 @@ static const OptionTable TABLE = {
     "2 command line not understood.",
 };
 
-/* The two pictures as linear RGB, of one size. */
-typedef struct ImagePair {
-    int width, height;
-    float *image, *reference;
-} ImagePair;
+static bool side_by_side_set(CompareCommand *command, const char *value, Error *error)
+{
+    command->side_by_side = value;
+    if (path_ends(value, ".png"))
+        return true;
+    error_set(error, "--side-by-side=%s: the name does not end in .png", value);
+    return error_fix(error, "use --side-by-side=FILE.png");
+}
 
 static bool option_set(void *context, int index, const char *value, Error *error)
 {
@@ -51,114 +58,69 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_OUTPUT:
         command->output = value;
         return error_image_path_check(value, error);
+    case OPTION_SIDE_BY_SIDE:
+        return side_by_side_set(command, value, error);
     case OPTION_BLOCKS:
         if (!option_whole("blocks", value, 1, BLOCKS_MAX, &blocks, error))
             return false;
         command->blocks = (int)blocks;
         return true;
+    case OPTION_EXPOSURE:
+        return option_number("exposure", value, -100.0, 100.0, &command->display.exposure, error);
+    case OPTION_PIXELS_PER_DEGREE:
+        return option_number("pixels-per-degree", value, 1.0, FLIP_PIXELS_PER_DEGREE_MAX,
+                             &command->display.pixels_per_degree, error);
     default:
         command->json = true;
         return true;
     }
 }
 
-static bool rgb_load(const char *path, int size[2], float **rgb, Error *error)
+static bool figures_compute(const CompareCommand *command, const Rendering *image, const Rendering *reference,
+                            Comparison *comparison, Error *error)
 {
-    Image image;
-    if (!image_read(path, &image, error))
-        return false;
-    size[0] = image.width;
-    size[1] = image.height;
-    bool good = image_linear_rgb(&image, rgb, error);
-    image_destroy(&image);
-    return good;
+    int width = image->width, height = image->height;
+    comparison->width = width;
+    comparison->height = height;
+    comparison->display = command->display;
+    comparison->tested = rendering_has_halves(image) && rendering_has_halves(reference);
+    const float *const halves[2][2] = {{image->halves[0], image->halves[1]},
+                                       {reference->halves[0], reference->halves[1]}};
+    return metrics_compute(image->rgb, reference->rgb, width, height, command->blocks, &comparison->metrics, error) &&
+           display_error_compute(image->rgb, reference->rgb, width, height, &command->display,
+                                 &comparison->display_error, error) &&
+           (!comparison->tested || z_test_compute(halves, width, height, &comparison->test, error));
 }
 
-static bool pair_load(ImagePair *pair, const char *image, const char *reference, Error *error)
+static bool pictures_write(const CompareCommand *command, const Rendering *image, const Rendering *reference,
+                           Error *error)
 {
-    int size[2], reference_size[2];
-    if (!rgb_load(image, size, &pair->image, error) || !rgb_load(reference, reference_size, &pair->reference, error))
-        return false;
-    if (size[0] != reference_size[0] || size[1] != reference_size[1]) {
-        error_set(error, "the sizes differ: %s has %d x %d pixels, %s has %d x %d", image, size[0], size[1], reference,
-                  reference_size[0], reference_size[1]);
-        return error_fix(error, "render or crop both to one size");
-    }
-    pair->width = size[0];
-    pair->height = size[1];
-    return true;
+    return (!command->output ||
+            error_image_write(command->output, image->rgb, reference->rgb, image->width, image->height, error)) &&
+           (!command->side_by_side ||
+            error_image_side_by_side(command->side_by_side, image->rgb, reference->rgb, image->width, image->height,
+                                     command->display.exposure, error));
 }
 
-static void text_print(const char *image, const char *reference, const ImagePair *pair, const Metrics *m)
+static bool pair_compare(const CompareCommand *command, const char *image_path, const char *reference_path,
+                         Error *error)
 {
-    printf("image            %s\nreference        %s\nsize             %d x %d\n", image, reference, pair->width,
-           pair->height);
-    printf("MSE              %.6g\n", m->mse);
-    printf("relMSE           %.6g\n", m->rel_mse);
-    printf("relMSE trimmed   %.6g  (without the worst 0.1 %% of pixels)\n", m->rel_mse_trimmed);
-    printf("MAPE             %.6g\n", m->mape);
-    printf("SMAPE            %.6g\n", m->smape);
-    printf("mean             %.6g  (RGB %.6g %.6g %.6g)\n", m->mean, m->mean_rgb[0], m->mean_rgb[1], m->mean_rgb[2]);
-    printf("reference mean   %.6g  (RGB %.6g %.6g %.6g)\n", m->mean_reference, m->mean_reference_rgb[0],
-           m->mean_reference_rgb[1], m->mean_reference_rgb[2]);
-    printf("mean ratio       %.6g\n", m->mean / m->mean_reference);
-    printf("blocks           %d x %d: largest relative difference %.4g %%, mean %.4g %%\n", m->blocks, m->blocks,
-           100.0 * m->block_max, 100.0 * m->block_mean);
-    printf("not finite       %zu pixels, reference %zu\n", m->not_finite, m->not_finite_reference);
-}
-
-static void json_rgb(JsonWriter *json, const char *key, const double rgb[3])
-{
-    json_array_begin(json, key);
-    for (int c = 0; c < 3; ++c)
-        json_number(json, NULL, rgb[c]);
-    json_array_end(json);
-}
-
-static void json_print(const char *image, const char *reference, const ImagePair *pair, const Metrics *m)
-{
-    JsonWriter json;
-    json_init(&json, stdout);
-    json_object_begin(&json, NULL);
-    json_string(&json, "image", image);
-    json_string(&json, "reference", reference);
-    json_integer(&json, "width", pair->width);
-    json_integer(&json, "height", pair->height);
-    json_number(&json, "mse", m->mse);
-    json_number(&json, "rel_mse", m->rel_mse);
-    json_number(&json, "rel_mse_trimmed", m->rel_mse_trimmed);
-    json_number(&json, "mape", m->mape);
-    json_number(&json, "smape", m->smape);
-    json_number(&json, "mean", m->mean);
-    json_number(&json, "mean_reference", m->mean_reference);
-    json_rgb(&json, "mean_rgb", m->mean_rgb);
-    json_rgb(&json, "mean_reference_rgb", m->mean_reference_rgb);
-    json_integer(&json, "blocks", m->blocks);
-    json_number(&json, "block_max", m->block_max);
-    json_number(&json, "block_mean", m->block_mean);
-    json_unsigned(&json, "not_finite", m->not_finite);
-    json_unsigned(&json, "not_finite_reference", m->not_finite_reference);
-    json_object_end(&json);
-}
-
-static bool pair_compare(const CompareCommand *command, const char *image, const char *reference, Error *error)
-{
-    ImagePair pair = {0};
-    Metrics metrics;
-    bool good = pair_load(&pair, image, reference, error) &&
-                metrics_compute(pair.image, pair.reference, pair.width, pair.height, command->blocks, &metrics, error);
-    if (good && command->output)
-        good = error_image_write(command->output, pair.image, pair.reference, pair.width, pair.height, error);
+    Rendering image = {0}, reference = {0};
+    Comparison comparison = {.image = image_path, .reference = reference_path};
+    bool good = rendering_load(image_path, &image, error) && rendering_load(reference_path, &reference, error) &&
+                rendering_same_size(&image, image_path, &reference, reference_path, error) &&
+                figures_compute(command, &image, &reference, &comparison, error) &&
+                pictures_write(command, &image, &reference, error);
     if (good)
-        (command->json ? json_print : text_print)(image, reference, &pair, &metrics);
-    free(pair.image);
-    free(pair.reference);
+        (command->json ? comparison_print_json : comparison_print_text)(&comparison);
+    rendering_destroy(&image);
+    rendering_destroy(&reference);
     return good;
 }
 
 int cmd_compare(int argc, char **argv, Error *error)
 {
-    CompareCommand command = {.blocks = 16};
+    CompareCommand command = {.blocks = 16, .display = {.pixels_per_degree = FLIP_PIXELS_PER_DEGREE}};
     int first = 0;
     OptionsEnd end = options_parse(&TABLE, argc, argv, option_set, &command, &first, error);
     if (end != OPTIONS_READ)

@@ -1,5 +1,6 @@
 #include "error_image.h"
 
+#include "contact_sheet.h"
 #include "exr.h"
 #include "path_name.h"
 #include "png_write.h"
@@ -51,15 +52,17 @@ static void relative_fill(const float *image, const float *reference, size_t pix
     }
 }
 
-static bool exr_error_write(const char *path, const float *image, const float *reference, const float *relative,
-                            int width, int height, Error *error)
+static bool exr_error_write(const char *path, const float *image, const float *reference, int width, int height,
+                            Error *error)
 {
-    size_t values = 3 * (size_t)width * (size_t)height;
-    float *difference = malloc(values * sizeof *difference);
+    size_t pixels = (size_t)width * (size_t)height;
+    float *difference = malloc(4 * pixels * sizeof *difference);
     if (!difference)
-        return error_memory(error, values * sizeof *difference, "an error image");
-    for (size_t i = 0; i < values; ++i)
+        return error_memory(error, 4 * pixels * sizeof *difference, "an error image");
+    float *relative = difference + 3 * pixels;
+    for (size_t i = 0; i < 3 * pixels; ++i)
         difference[i] = image[i] - reference[i];
+    relative_fill(image, reference, pixels, relative);
     const ExrChannel channels[] = {{"R", difference, 3, false},
                                    {"G", difference + 1, 3, false},
                                    {"B", difference + 2, 3, false},
@@ -69,15 +72,28 @@ static bool exr_error_write(const char *path, const float *image, const float *r
     return good;
 }
 
-static bool png_error_write(const char *path, const float *relative, int width, int height, Error *error)
+bool error_image_rgb(const float *image, const float *reference, int width, int height, float *rgb, Error *error)
 {
     size_t pixels = (size_t)width * (size_t)height;
-    float *rgb = malloc(3 * pixels * sizeof *rgb);
-    if (!rgb)
-        return error_memory(error, 3 * pixels * sizeof *rgb, "an error image");
+    float *relative = malloc(pixels * sizeof *relative);
+    if (!relative)
+        return error_memory(error, pixels * sizeof *relative, "an error image");
+    relative_fill(image, reference, pixels, relative);
     for (size_t i = 0; i < pixels; ++i)
         error_color(relative[i], rgb + 3 * i);
-    bool good = png_write(path, rgb, width, height, 0.0f, error);
+    free(relative);
+    return true;
+}
+
+static bool png_error_write(const char *path, const float *image, const float *reference, int width, int height,
+                            Error *error)
+{
+    size_t values = 3 * (size_t)width * (size_t)height;
+    float *rgb = malloc(values * sizeof *rgb);
+    if (!rgb)
+        return error_memory(error, values * sizeof *rgb, "an error image");
+    bool good = error_image_rgb(image, reference, width, height, rgb, error) &&
+                png_write(path, rgb, width, height, 0.0f, error);
     free(rgb);
     return good;
 }
@@ -85,15 +101,28 @@ static bool png_error_write(const char *path, const float *relative, int width, 
 bool error_image_write(const char *path, const float *image, const float *reference, int width, int height,
                        Error *error)
 {
-    size_t pixels = (size_t)width * (size_t)height;
     if (!error_image_path_check(path, error))
         return false;
-    float *relative = malloc(pixels * sizeof *relative);
-    if (!relative)
-        return error_memory(error, pixels * sizeof *relative, "an error image");
-    relative_fill(image, reference, pixels, relative);
-    bool good = path_ends(path, ".exr") ? exr_error_write(path, image, reference, relative, width, height, error)
-                                        : png_error_write(path, relative, width, height, error);
-    free(relative);
+    return (path_ends(path, ".exr") ? exr_error_write : png_error_write)(path, image, reference, width, height, error);
+}
+
+bool error_image_side_by_side(const char *path, const float *image, const float *reference, int width, int height,
+                              double exposure, Error *error)
+{
+    size_t values = 3 * (size_t)width * (size_t)height;
+    ContactSheet sheet = {0};
+    float *map = malloc(values * sizeof *map), factor = (float)exp2(exposure);
+    if (!map)
+        return error_memory(error, values * sizeof *map, "an error image");
+    bool good = error_image_rgb(image, reference, width, height, map, error) &&
+                contact_sheet_init(&sheet, width, height, 3, 1, error);
+    if (good) {
+        contact_sheet_put(&sheet, 0, 0, image, factor, "1");
+        contact_sheet_put(&sheet, 1, 0, reference, factor, "2");
+        contact_sheet_put(&sheet, 2, 0, map, 1.0f, "3");
+        good = png_write(path, sheet.rgb, sheet.width, sheet.height, 0.0f, error);
+    }
+    contact_sheet_destroy(&sheet);
+    free(map);
     return good;
 }

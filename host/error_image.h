@@ -15,6 +15,13 @@
 bool error_image_write(const char *path, const float *image, const float *reference, int width, int height,
                        Error *error);
 
+/* The false colours of the .png alone: rgb[3 x width x height], linear. */
+bool error_image_rgb(const float *image, const float *reference, int width, int height, float *rgb, Error *error);
+
+/* A PNG with image, reference and the false colours in a row, numbered 1, 2 and 3; the first two times 2^exposure. */
+bool error_image_side_by_side(const char *path, const float *image, const float *reference, int width, int height,
+                              double exposure, Error *error);
+
 /* Whether the ending is one of the above; fills `error` when not. */
 bool error_image_path_check(const char *path, Error *error);
 

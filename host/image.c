@@ -47,10 +47,15 @@ static bool is_tga(const unsigned char *header, size_t size)
     return size >= 18 && header[1] <= 1 && ((header[2] >= 1 && header[2] <= 3) || (header[2] >= 9 && header[2] <= 11));
 }
 
+static bool is_exr(const unsigned char *header, size_t size)
+{
+    return size >= 4 && memcmp(header, "\x76\x2f\x31\x01", 4) == 0;
+}
+
 static bool image_read_kind(FILE *file, const char *path, const unsigned char *header, size_t size, Image *image,
                             Error *error)
 {
-    if (size >= 4 && memcmp(header, "\x76\x2f\x31\x01", 4) == 0)
+    if (is_exr(header, size))
         return image_read_exr(file, path, image, error);
     if (size >= 3 && (memcmp(header, "PF", 2) == 0 || memcmp(header, "Pf", 2) == 0))
         return image_read_pfm(file, path, image, error);
@@ -66,27 +71,55 @@ static bool image_read_kind(FILE *file, const char *path, const unsigned char *h
     return error_fix(error, "use PNG, JPEG, TGA, HDR, EXR or PFM");
 }
 
-bool image_read(const char *path, Image *image, Error *error)
+/* Opens a regular file and reads its first bytes, of which there are *size. */
+static FILE *image_open(const char *path, unsigned char header[HEADER_SIZE], size_t *size, Error *error)
 {
-    unsigned char header[HEADER_SIZE];
     struct stat status;
-    *image = (Image){0};
     FILE *file = fopen(path, "rb");
     if (!file || fstat(fileno(file), &status) != 0) {
         error_errno(error, "open the image", path);
         error_fix(error, "check the name; those in a scene are relative to the scene's folder");
         if (file)
             fclose(file);
+        return NULL;
+    }
+    if (!S_ISREG(status.st_mode)) {
+        image_error(error, path, "it is not a file");
+        fclose(file);
+        return NULL;
+    }
+    *size = fread(header, 1, HEADER_SIZE, file);
+    rewind(file);
+    return file;
+}
+
+bool image_read(const char *path, Image *image, Error *error)
+{
+    unsigned char header[HEADER_SIZE];
+    size_t size = 0;
+    *image = (Image){0};
+    FILE *file = image_open(path, header, &size, error);
+    if (!file)
         return false;
-    }
-    bool good = S_ISREG(status.st_mode) || image_error(error, path, "it is not a file");
-    if (good) {
-        size_t size = fread(header, 1, sizeof header, file);
-        rewind(file);
-        good = image_read_kind(file, path, header, size, image, error);
-    }
+    bool good = image_read_kind(file, path, header, size, image, error);
     fclose(file);
     if (!good)
+        image_destroy(image);
+    return good;
+}
+
+bool image_read_layer(const char *path, const char *layer, Image *image, bool *found, Error *error)
+{
+    unsigned char header[HEADER_SIZE];
+    size_t size = 0;
+    *image = (Image){0};
+    *found = false;
+    FILE *file = image_open(path, header, &size, error);
+    if (!file)
+        return false;
+    bool good = !is_exr(header, size) || image_read_exr_layer(file, path, layer, image, found, error);
+    fclose(file);
+    if (!*found)
         image_destroy(image);
     return good;
 }

@@ -26,6 +26,10 @@ typedef struct Image {
 bool image_read(const char *path, Image *image, Error *error);
 void image_destroy(Image *image);
 
+/* Reads the channels LAYER.R, LAYER.G and LAYER.B of an EXR, layers as `twinlight render` writes them (render_layers.h).
+ * *found: whether it has them; false, with an empty image, for every other kind of file. */
+bool image_read_layer(const char *path, const char *layer, Image *image, bool *found, Error *error);
+
 /* Element i of the data (pixel * channels + channel) as stored: byte / 255, or the float. */
 float image_value(const Image *image, size_t i);
 

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define LAYER_NAME_MAX 64
+
 typedef struct ExrReader {
     FILE *file;
     char message[256]; /* the library's first complaint */
@@ -16,6 +18,9 @@ typedef struct ExrReader {
     bool decoding; /* `decoder` has been initialised */
     long long width, height; /* of the data window */
     int first_line;
+    const char *layer; /* whose channels are wanted: "halfA"; NULL: the picture's */
+    bool absent; /* there is no such layer */
+    char layer_names[3][LAYER_NAME_MAX + 3];
     const char *names[4]; /* channels in the order of Image */
     int channels;
 } ExrReader;
@@ -70,6 +75,19 @@ static bool exr_has(const exr_attr_chlist_t *list, const char *name)
     return false;
 }
 
+/* The channels of the layer that is wanted. */
+static bool layer_choose(ExrReader *reader, const exr_attr_chlist_t *list, const char *path, Error *error)
+{
+    for (int c = 0; c < 3; ++c) {
+        char *name = reader->layer_names[c];
+        snprintf(name, sizeof reader->layer_names[c], "%.*s.%c", LAYER_NAME_MAX, reader->layer, "RGB"[c]);
+        reader->names[c] = name;
+        reader->absent = reader->absent || !exr_has(list, name);
+    }
+    reader->channels = 3;
+    return !reader->absent || image_error(error, path, "it lacks a layer");
+}
+
 /* Which channels make the picture. */
 static bool channels_choose(ExrReader *reader, const char *path, Error *error)
 {
@@ -79,6 +97,8 @@ static bool channels_choose(ExrReader *reader, const char *path, Error *error)
     for (int i = 0; i < list->num_channels; ++i)
         if (list->entries[i].x_sampling != 1 || list->entries[i].y_sampling != 1)
             return image_error(error, path, "subsampled EXR channels are not supported");
+    if (reader->layer)
+        return layer_choose(reader, list, path, error);
     static const char *const RGBA[] = {"R", "G", "B", "A"};
     if (exr_has(list, "R") && exr_has(list, "G") && exr_has(list, "B")) {
         reader->channels = exr_has(list, "A") ? 4 : 3;
@@ -175,7 +195,7 @@ static bool is_dwa(const ExrReader *reader)
 {
     exr_compression_t compression = EXR_COMPRESSION_NONE;
     exr_get_compression(reader->context, 0, &compression);
-    return (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) &&
+    return (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) && !reader->layer &&
            (reader->channels >= 3 || strcmp(reader->names[0], "Y") == 0);
 }
 
@@ -194,24 +214,40 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
     return image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
 }
 
-bool image_read_exr(FILE *file, const char *path, Image *image, Error *error)
+/* Opens the file with the library, reads the channels that reader->layer asks for, and closes it. */
+static bool exr_read(ExrReader *reader, const char *path, Image *image, Error *error)
 {
-    ExrReader reader = {.file = file};
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = exr_message;
-    setup.user_data = &reader;
+    setup.user_data = reader;
     setup.read_fn = exr_read_bytes;
     setup.size_fn = exr_file_size;
     setup.max_image_width = setup.max_image_height = IMAGE_SIDE_MAX;
     setup.max_tile_width = setup.max_tile_height = IMAGE_SIDE_MAX;
     setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    exr_result_t result = exr_start_read(&reader.context, path, &setup);
+    exr_result_t result = exr_start_read(&reader->context, path, &setup);
     bool good =
         result == EXR_ERR_SUCCESS
-            ? part_read(&reader, path, image, error)
-            : image_error(error, path, reader.message[0] ? reader.message : exr_get_default_error_message(result));
-    if (reader.decoding)
-        exr_decoding_destroy(reader.context, &reader.decoder);
-    exr_finish(&reader.context);
+            ? part_read(reader, path, image, error)
+            : image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
+    if (reader->decoding)
+        exr_decoding_destroy(reader->context, &reader->decoder);
+    exr_finish(&reader->context);
     return good;
+}
+
+bool image_read_exr(FILE *file, const char *path, Image *image, Error *error)
+{
+    ExrReader reader = {.file = file};
+    return exr_read(&reader, path, image, error);
+}
+
+bool image_read_exr_layer(FILE *file, const char *path, const char *layer, Image *image, bool *found, Error *error)
+{
+    ExrReader reader = {.file = file, .layer = layer};
+    Error complaint = {0};
+    *found = exr_read(&reader, path, image, &complaint);
+    if (!*found && !reader.absent)
+        *error = complaint;
+    return *found || reader.absent;
 }

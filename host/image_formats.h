@@ -9,6 +9,8 @@
 typedef enum StbKind { STB_PNG, STB_JPEG, STB_TGA, STB_HDR } StbKind;
 
 bool image_read_exr(FILE *file, const char *path, Image *image, Error *error);
+/* The channels LAYER.R, .G and .B; without them *found is false, `image` empty, and that is no failure. */
+bool image_read_exr_layer(FILE *file, const char *path, const char *layer, Image *image, bool *found, Error *error);
 /* Fills the allocated float image from a DWA-compressed file whose size and channels (R G B [A], or Y) are known. */
 bool image_read_exr_dwa(const char *path, Image *image, Error *error);
 bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error);

@@ -24,7 +24,9 @@ libtwinlight_host_la_SOURCES = \
 	host/color_named.c \
 	host/color_tables.h \
 	host/command.h \
+	host/compare_print.c host/compare_print.h \
 	host/despeckle.c host/despeckle.h \
+	host/display_error.c host/display_error.h \
 	host/distribution_build.c host/distribution_build.h \
 	host/error.c host/error.h \
 	host/error_image.c host/error_image.h \
@@ -32,6 +34,7 @@ libtwinlight_host_la_SOURCES = \
 	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \
 	host/filter_setup.c host/filter_setup.h \
+	host/flip.c \
 	host/image.c host/image.h \
 	host/image_exr.c \
 	host/image_exr_dwa.c \
@@ -75,6 +78,7 @@ libtwinlight_host_la_SOURCES = \
 	host/pbrt_textures.c \
 	host/pbrt_values.c host/pbrt_values.h \
 	host/pixel_series.c host/pixel_series.h \
+	host/plane_filter.c host/plane_filter.h \
 	host/ply.c host/ply.h \
 	host/ply_header.c \
 	host/ply_internal.h \
@@ -86,16 +90,20 @@ libtwinlight_host_la_SOURCES = \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
 	host/render_verify.c host/render_verify.h \
+	host/rendering_file.c host/rendering_file.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
 	host/scene_summary.c host/scene_summary.h \
+	host/ssim.c \
 	host/stats.c host/stats.h \
+	host/student.c host/student.h \
 	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h \
-	host/verify.c host/verify.h
+	host/verify.c host/verify.h \
+	host/z_test.c host/z_test.h
 libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
 
 bin_PROGRAMS += twinlight

@@ -186,6 +186,17 @@ expect 0 '"feature_mask"' info --json "$scene"
 expect 0 '' compare one.exr three.exr
 expect 1 '' compare one.exr crop.exr
 expect 1 'missing.exr' compare one.exr missing.exr
+expect 2 'does not end in .png' compare --side-by-side=sheet.exr one.exr three.exr
+expect 2 '--pixels-per-degree=0: out of range' compare --pixels-per-degree=0 one.exr three.exr
+expect 0 'FLIP             0  (exposure 1, 30 pixels per degree)' compare --exposure=1 --pixels-per-degree=30 one.exr three.exr
+expect 0 'SSIM             1' compare one.exr three.exr
+expect 0 'z-test           none' compare one.exr three.exr
+for seed in 1 2; do
+    render --integrator=mmlt --seed=$seed -o halves$seed.exr "$scene"
+done
+expect 0 'z-test           no difference found' compare --side-by-side=sheet.png halves1.exr halves2.exr
+file_exists sheet.png
+expect 0 '"z_test": {' compare --json halves1.exr halves2.exr
 
 # ---- statistics ---------------------------------------------------------------------------------------------------
 

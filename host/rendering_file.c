@@ -1,0 +1,60 @@
+#include "rendering_file.h"
+
+#include "image.h"
+
+#include <stdlib.h>
+
+static bool half_load(const char *path, const char *layer, float **rgb, Error *error)
+{
+    Image image;
+    bool found = false;
+    if (!image_read_layer(path, layer, &image, &found, error))
+        return false;
+    bool good = !found || image_linear_rgb(&image, rgb, error);
+    image_destroy(&image);
+    return good;
+}
+
+static bool picture_load(const char *path, Rendering *rendering, Error *error)
+{
+    Image image;
+    if (!image_read(path, &image, error))
+        return false;
+    rendering->width = image.width;
+    rendering->height = image.height;
+    bool good = image_linear_rgb(&image, &rendering->rgb, error);
+    image_destroy(&image);
+    return good;
+}
+
+bool rendering_load(const char *path, Rendering *rendering, Error *error)
+{
+    *rendering = (Rendering){0};
+    bool good = picture_load(path, rendering, error) && half_load(path, "halfA", &rendering->halves[0], error) &&
+                half_load(path, "halfB", &rendering->halves[1], error);
+    if (!good)
+        rendering_destroy(rendering);
+    return good;
+}
+
+void rendering_destroy(Rendering *rendering)
+{
+    free(rendering->rgb);
+    free(rendering->halves[0]);
+    free(rendering->halves[1]);
+    *rendering = (Rendering){0};
+}
+
+bool rendering_has_halves(const Rendering *rendering)
+{
+    return rendering->halves[0] && rendering->halves[1];
+}
+
+bool rendering_same_size(const Rendering *a, const char *a_path, const Rendering *b, const char *b_path, Error *error)
+{
+    if (a->width == b->width && a->height == b->height)
+        return true;
+    error_set(error, "the sizes differ: %s has %d x %d pixels, %s has %d x %d", a_path, a->width, a->height, b_path,
+              b->width, b->height);
+    return error_fix(error, "render or crop both to one size");
+}
