@@ -34,6 +34,7 @@ typedef struct BackendTable {
 /* A command gets argv[0] = its own name. It returns an exit status; when that is EXIT_FAILED or EXIT_USAGE, `error`
  * says why, or is empty when the command's own output has. */
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_bench(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_pyramid(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error);

@@ -1,5 +1,6 @@
 #include "error_image.h"
 
+#include "color.h"
 #include "contact_sheet.h"
 #include "exr.h"
 #include "path_name.h"
@@ -30,6 +31,18 @@ void error_color(float relative, float rgb[3])
     float ramp[3] = {t, fmaxf(2.0f * t - 1.0f, 0.0f), 0.6f * fmaxf(4.0f * t - 3.0f, 0.0f)};
     for (int c = 0; c < 3; ++c)
         rgb[c] = ramp[relative > 0.0f ? c : 2 - c];
+}
+
+void magnitude_color(float magnitude, float rgb[3])
+{
+    /* sRGB, with even steps of lightness. */
+    static const double STOPS[][3] = {
+        {0.0, 0.0, 0.02}, {0.32, 0.07, 0.48}, {0.72, 0.22, 0.47}, {0.98, 0.54, 0.38}, {0.99, 0.99, 0.75}};
+    const int last = (int)(sizeof STOPS / sizeof STOPS[0]) - 1;
+    double place = last * fmin(fmax((double)magnitude, 0.0), 1.0);
+    int stop = place < last ? (int)place : last - 1;
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = (float)color_srgb_decode(STOPS[stop][c] + (place - stop) * (STOPS[stop + 1][c] - STOPS[stop][c]));
 }
 
 static double pixel_mean(const float *rgb)

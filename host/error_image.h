@@ -28,4 +28,8 @@ bool error_image_path_check(const char *path, Error *error);
 /* The false colour (linear RGB) of a relative error. */
 void error_color(float relative, float rgb[3]);
 
+/* The false colour (linear RGB) of an error of 0 ... 1 that looks as large as it is: black, violet, red, orange, light
+ * yellow. */
+void magnitude_color(float magnitude, float rgb[3]);
+
 #endif

@@ -32,6 +32,7 @@ static int compare_run(const BackendTable *backends, int argc, char **argv, Erro
 static const Command COMMANDS[] = {
     {"render", "render a scene to OpenEXR and PNG", cmd_render},
     {"compare", "measure how far an image is from a reference", compare_run},
+    {"bench", "measure error against time and write a report", cmd_bench},
     {"info", "say what a scene holds", cmd_info},
     {"devices", "list what can be rendered on", cmd_devices},
     {"pyramid", "show what every bidirectional strategy brings", cmd_pyramid},
@@ -87,7 +88,7 @@ static int usage_fail(Error *error, const char *word)
         error_set(error, "unknown %s %s", word[0] == '-' ? "option" : "command", word);
     else
         error_set(error, "no command is given");
-    error_fix(error, "use render, compare, info, devices or pyramid; see twinlight --help");
+    error_fix(error, "use render, compare, bench, info, devices or pyramid; see twinlight --help");
     return EXIT_USAGE;
 }
 

@@ -23,12 +23,17 @@ static bool pixel_clean(const float *from, double out[3])
     return damaged;
 }
 
+double metrics_relative_square(double square, double reference)
+{
+    return square / (reference * reference + RELATIVE_FLOOR);
+}
+
 static double pixel_rel_mse(const Pixel *p)
 {
     double sum = 0.0;
     for (int c = 0; c < 3; ++c) {
         double difference = p->image[c] - p->reference[c];
-        sum += difference * difference / (p->reference[c] * p->reference[c] + RELATIVE_FLOOR);
+        sum += metrics_relative_square(difference * difference, p->reference[c]);
     }
     return sum / 3.0;
 }

@@ -33,6 +33,9 @@ typedef struct Metrics {
 bool metrics_compute(const float *image, const float *reference, int width, int height, int blocks, Metrics *metrics,
                      Error *error);
 
+/* square / (reference^2 + 0.01): what relMSE is the mean of. */
+double metrics_relative_square(double square, double reference);
+
 /* Where block i of n begins in `size` pixels: round(i size / n), halves to even. */
 int metrics_block_edge(int i, int n, int size);
 

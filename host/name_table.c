@@ -1,5 +1,7 @@
 #include "name_table.h"
 
+#include "hash.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,12 +23,9 @@ void name_table_destroy(NameTable *table)
     table->slot_count = 0;
 }
 
-/* FNV-1a (Fowler, Noll, Vo). */
 static uint64_t name_hash(const char *name)
 {
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (; *name; ++name)
-        hash = (hash ^ (unsigned char)*name) * 0x100000001b3u;
+    uint64_t hash = hash_bytes(HASH_START, name, strlen(name));
     return hash ^ (hash >> 29);
 }
 

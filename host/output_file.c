@@ -75,3 +75,28 @@ void output_file_cancel(OutputFile *file)
     file->descriptor = -1;
     file->temporary[0] = '\0';
 }
+
+static bool bytes_write(int descriptor, const unsigned char *bytes, size_t size)
+{
+    while (size > 0) {
+        ssize_t n = write(descriptor, bytes, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        bytes += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+bool output_file_write(const char *path, const void *bytes, size_t size, Error *error)
+{
+    OutputFile file;
+    if (!output_file_begin(&file, path, error))
+        return false;
+    bool good = bytes_write(file.descriptor, bytes, size) || error_errno(error, "write", path);
+    good = good && output_file_commit(&file, error);
+    output_file_cancel(&file);
+    return good;
+}

@@ -21,4 +21,7 @@ bool output_file_commit(OutputFile *file, Error *error);
 /* Closes and removes the temporary file. Safe after either of the above, and on {.descriptor = -1}. */
 void output_file_cancel(OutputFile *file);
 
+/* A whole file of these bytes. */
+bool output_file_write(const char *path, const void *bytes, size_t size, Error *error);
+
 #endif

@@ -3,17 +3,16 @@
 #include "color.h"
 #include "output_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct PngWriter {
-    int descriptor;
+    unsigned char *bytes;
+    size_t size, capacity;
     char message[256]; /* why it failed */
 } PngWriter;
 
@@ -33,15 +32,16 @@ static void png_warned(png_structp png, png_const_charp message)
 static void png_bytes(png_structp png, png_bytep bytes, png_size_t size)
 {
     PngWriter *writer = png_get_io_ptr(png);
-    while (size > 0) {
-        ssize_t n = write(writer->descriptor, bytes, size);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            png_error(png, n < 0 ? strerror(errno) : "nothing written");
-        bytes += n;
-        size -= (size_t)n;
+    if (writer->capacity - writer->size < size) {
+        size_t capacity = 2 * writer->capacity + size;
+        unsigned char *grown = realloc(writer->bytes, capacity);
+        if (!grown)
+            png_error(png, "out of memory");
+        writer->bytes = grown;
+        writer->capacity = capacity;
     }
+    memcpy(writer->bytes + writer->size, bytes, size);
+    writer->size += size;
 }
 
 static void png_flush_nothing(png_structp png)
@@ -93,18 +93,25 @@ static bool png_encode(PngWriter *writer, const float *rgb, int width, int heigh
     return good;
 }
 
+bool png_memory(const float *rgb, int width, int height, float exposure_stops, unsigned char **bytes, size_t *size,
+                Error *error)
+{
+    PngWriter writer = {0};
+    if (!png_encode(&writer, rgb, width, height, exp2((double)exposure_stops))) {
+        free(writer.bytes);
+        return error_set(error, "cannot make a PNG of %d x %d pixels: %s", width, height, writer.message);
+    }
+    *bytes = writer.bytes;
+    *size = writer.size;
+    return true;
+}
+
 bool png_write(const char *path, const float *rgb, int width, int height, float exposure_stops, Error *error)
 {
-    OutputFile file;
-    if (!output_file_begin(&file, path, error))
-        return false;
-    PngWriter writer = {.descriptor = file.descriptor};
-    bool good = png_encode(&writer, rgb, width, height, exp2((double)exposure_stops));
-    if (!good) {
-        error_set(error, "cannot write %s: %s", path, writer.message);
-        error_fix(error, "check the space on the disk, or write elsewhere");
-    }
-    good = good && output_file_commit(&file, error);
-    output_file_cancel(&file);
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    bool good = png_memory(rgb, width, height, exposure_stops, &bytes, &size, error) &&
+                output_file_write(path, bytes, size, error);
+    free(bytes);
     return good;
 }

@@ -4,8 +4,14 @@
 
 #include "error.h"
 
+#include <stddef.h>
+
 /* Writes linear RGB floats (3 a pixel, row 0 on top) times 2^exposure_stops as 8-bit sRGB, clipped to 0 ... 1; NaN is
  * black. Written beside `path` and renamed. Fails, naming the path, when it cannot be written. */
 bool png_write(const char *path, const float *rgb, int width, int height, float exposure_stops, Error *error);
+
+/* The same as the bytes of the file, which the caller frees. Fails when memory is out. */
+bool png_memory(const float *rgb, int width, int height, float exposure_stops, unsigned char **bytes, size_t *size,
+                Error *error);
 
 #endif

@@ -6,10 +6,23 @@ libtwinlight_host_la_SOURCES = \
 	host/bad_chains.c host/bad_chains.h \
 	host/backend_choice.c host/backend_choice.h \
 	host/backend_group.c host/backend_group.h \
+	host/bench.h \
+	host/bench_analysis.c host/bench_analysis.h \
+	host/bench_figures.c \
+	host/bench_html.c host/bench_html.h \
+	host/bench_options.c host/bench_options.h \
+	host/bench_pictures.c \
+	host/bench_record.c host/bench_record.h \
+	host/bench_render.c host/bench_render.h \
+	host/bench_style.c \
+	host/bench_tables.c host/bench_tables.h \
+	host/bench_task.c host/bench_task.h \
 	host/blend.c host/blend.h \
+	host/build_info.c host/build_info.h \
 	host/bvh.c host/bvh.h \
 	host/bvh_tree.c host/bvh_tree.h \
 	host/camera_setup.c host/camera_setup.h \
+	host/cmd_bench.c \
 	host/cmd_compare.c host/cmd_compare.h \
 	host/cmd_devices.c \
 	host/cmd_info.c \
@@ -35,6 +48,8 @@ libtwinlight_host_la_SOURCES = \
 	host/film.c host/film.h \
 	host/filter_setup.c host/filter_setup.h \
 	host/flip.c \
+	host/hash.h \
+	host/html.c host/html.h \
 	host/image.c host/image.h \
 	host/image_exr.c \
 	host/image_exr_dwa.c \
@@ -91,12 +106,14 @@ libtwinlight_host_la_SOURCES = \
 	host/render_output.c host/render_output.h \
 	host/render_verify.c host/render_verify.h \
 	host/rendering_file.c host/rendering_file.h \
+	host/sample_statistics.c host/sample_statistics.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
 	host/stats.c host/stats.h \
 	host/student.c host/student.h \
+	host/svg_chart.c host/svg_chart.h \
 	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
 	host/texture_image.c host/texture_image.h \
@@ -105,6 +122,16 @@ libtwinlight_host_la_SOURCES = \
 	host/verify.c host/verify.h \
 	host/z_test.c host/z_test.h
 libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(STB_LIBS) -lm
+
+# The commit goes into reports of measurements; the file changes only when that does.
+host/build_info.lo: build_commit.h
+.PHONY: commit
+commit:
+build_commit.h: commit
+	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null || echo unknown`; \
+	  echo "#define BUILD_COMMIT \"$$commit\"" >$@.new; \
+	  if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+CLEANFILES += build_commit.h
 
 bin_PROGRAMS += twinlight
 twinlight_SOURCES = host/main.c

@@ -51,10 +51,15 @@ static void stats_rays(JsonWriter *json, const RenderResult *result)
     json_object_end(json);
 }
 
+const char *stats_chain_kind(int kind)
+{
+    static const char *const KINDS[CHAIN_KINDS] = {"all", "light", "camera", "large"};
+    return KINDS[kind];
+}
+
 /* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
 static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
 {
-    static const char *const KINDS[CHAIN_KINDS] = {"all", "light", "camera", "large"};
     json_object_begin(json, "chains");
     json_unsigned(json, "pool_samples", chains->pool_samples);
     json_unsigned(json, "seeds", chains->seeds);
@@ -69,7 +74,7 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
     json_object_end(json);
     json_object_begin(json, "acceptance");
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
-        json_object_begin(json, KINDS[kind]);
+        json_object_begin(json, stats_chain_kind(kind));
         for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
             char name[16];
             snprintf(name, sizeof name, "%d", depth);

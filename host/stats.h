@@ -23,4 +23,7 @@ typedef struct RenderStats {
 
 bool stats_write(const char *path, const RenderStats *stats, Error *error);
 
+/* The name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */
+const char *stats_chain_kind(int kind);
+
 #endif

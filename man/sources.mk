@@ -1,4 +1,5 @@
 dist_man_MANS += \
+	man/twinlight-bench.1 \
 	man/twinlight-compare.1 \
 	man/twinlight-devices.1 \
 	man/twinlight-pyramid.1 \

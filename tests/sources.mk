@@ -5,6 +5,7 @@ LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_hos
 if HAVE_CHECK
 check_PROGRAMS += \
 	tests/test_analytic \
+	tests/test_bench \
 	tests/test_bidirectional \
 	tests/test_blend \
 	tests/test_bsdf \
@@ -187,6 +188,7 @@ tests_test_texture_SOURCES = tests/test_texture.c \
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_opencl.sh \
+	tests/test_bench.sh \
 	tests/test_cli.sh \
 	tests/test_devices.sh
 dist_check_SCRIPTS += $(script_tests)

@@ -17,6 +17,7 @@ expect 0 'Usage: twinlight info' info --help
 expect 0 'twinlight compare' compare --help
 expect 0 'Usage: twinlight devices' devices --help
 expect 0 '--max-depth=D' pyramid --help
+expect 0 '--reference-time=TIME' bench --help
 expect 2 'no command is given'
 expect 2 'unknown command paint' paint
 expect 2 'unknown option --verbose' --verbose

@@ -1,0 +1,19 @@
+/* The report of `twinlight bench` as a page that needs no other file. */
+#ifndef TWINLIGHT_BENCH_HTML_H
+#define TWINLIGHT_BENCH_HTML_H
+
+#include "bench.h"
+
+/* The style sheet: light and dark, screen and paper. */
+extern const char BENCH_STYLE[];
+
+/* The page; scenes from the first without runs on are left out. */
+bool bench_html_write(const Bench *bench, FILE *stream, Error *error);
+
+/* A scene's pictures, errors and patches. */
+bool bench_pictures_write(const Bench *bench, int scene, FILE *stream, Error *error);
+
+/* A scene's tables of figures, of work, of chains, and of all times. */
+void bench_figures_write(const Bench *bench, const BenchScene *scene, FILE *stream);
+
+#endif

@@ -1,0 +1,11 @@
+/* The command line of `twinlight bench`. */
+#ifndef TWINLIGHT_BENCH_OPTIONS_H
+#define TWINLIGHT_BENCH_OPTIONS_H
+
+#include "bench.h"
+
+/* Strings are borrowed from argv. */
+OptionsEnd bench_options_parse(BenchOptions *options, const BackendTable *backends, int argc, char **argv,
+                               Error *error);
+
+#endif

@@ -1,0 +1,45 @@
+#include "sample_statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double sample_quantile(double *values, size_t count, double q)
+{
+    if (count == 0)
+        return NAN;
+    qsort(values, count, sizeof *values, ascending);
+    double place = q * (double)(count - 1);
+    size_t below = (size_t)place;
+    double part = place - (double)below;
+    return part > 0.0 ? values[below] + part * (values[below + 1] - values[below]) : values[below];
+}
+
+SampleLine sample_line(const double *x, const double *y, size_t count)
+{
+    double n = (double)count, mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, residual = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        mean_x += x[i] / n;
+        mean_y += y[i] / n;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        xx += (x[i] - mean_x) * (x[i] - mean_x);
+        xy += (x[i] - mean_x) * (y[i] - mean_y);
+    }
+    if (count < 2 || !(xx > 0.0))
+        return (SampleLine){NAN, NAN, NAN};
+    SampleLine line = {.slope = xy / xx, .slope_error = NAN};
+    line.intercept = mean_y - line.slope * mean_x;
+    for (size_t i = 0; i < count; ++i) {
+        double r = y[i] - line.intercept - line.slope * x[i];
+        residual += r * r;
+    }
+    if (count > 2)
+        line.slope_error = sqrt(residual / (n - 2.0) / xx);
+    return line;
+}
