@@ -3,7 +3,8 @@
 #   shared/      shared; system headers in platform.h alone (it knows the language)
 #   backend_*/   itself, shared, host/{backend,bvh,error,log}.h
 #   host/        host, shared; main.c alone may name a backend's header
-# An include that this tree does not resolve is a fault too. config.h and <system headers> are free outside shared/.
+# An include that this tree does not resolve is a fault too. config.h, build_commit.h (both made by the build) and
+# <system headers> are free outside shared/.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
 # resolve ROOT DIRECTORY NAME: the file that #include "NAME" in DIRECTORY means, relative to ROOT, in the order of the
@@ -51,7 +52,9 @@ check() {
             shared/*) echo "$file:$line: only shared/platform.h may include system headers" ;;
             esac
             ;;
-        '"config.h') case $file in shared/*) echo "$file:$line: shared/ may not depend on config.h" ;; esac ;;
+        '"config.h' | '"build_commit.h')
+            case $file in shared/*) echo "$file:$line: shared/ may not depend on ${name#?}" ;; esac
+            ;;
         *)
             target=$(resolve "$1" "${file%/*}" "${name#?}")
             if [ -z "$target" ]; then
