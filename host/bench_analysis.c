@@ -73,7 +73,7 @@ static bool group_spread(const Analysis *analysis, const PixelSeries *pixels, Be
     const Rendering *reference = &analysis->reference;
     size_t values = 3 * pixels->pixels;
     Metrics of_mean;
-    group->variance = group->bias = group->efficiency = NAN;
+    group->variance = group->bias = group->efficiency = (double)NAN;
     if (group->runs < 2)
         return true;
     if (!metrics_compute(pixels->mean, reference->rgb, reference->width, reference->height, BLOCKS, &of_mean, error))
@@ -228,7 +228,7 @@ static bool lines_fit(const BenchOptions *options, BenchScene *scene, Error *err
     double *room = malloc(2 * (size_t)scene->run_count * sizeof *room);
     if (!room)
         return error_memory(error, 2 * (size_t)scene->run_count * sizeof *room, "slopes");
-    const SampleLine none = {NAN, NAN, NAN};
+    const SampleLine none = {(double)NAN, (double)NAN, (double)NAN};
     for (int s = 0; s < scene->series_count; ++s) {
         BenchSeries *series = &scene->series[s];
         int times = 0;
@@ -269,7 +269,7 @@ static void speedups_set(const BenchOptions *options, BenchScene *scene)
     int time = bench_common_time(options, scene);
     for (int s = 0; s < scene->series_count; ++s) {
         BenchSeries *series = &scene->series[s];
-        series->equal_seconds = series->speedup = NAN;
+        series->equal_seconds = series->speedup = (double)NAN;
         if (time < 0)
             continue;
         const BenchGroup *first = &scene->series[0].groups[time];
@@ -299,7 +299,7 @@ static double own_error(const Rendering *reference)
     size_t values = 3 * (size_t)reference->width * (size_t)reference->height;
     double sum = 0.0;
     if (!rendering_has_halves(reference))
-        return NAN;
+        return (double)NAN;
     for (size_t i = 0; i < values; ++i) {
         double difference = (double)reference->halves[0][i] - (double)reference->halves[1][i];
         sum += metrics_relative_square(0.25 * difference * difference, (double)reference->rgb[i]);

@@ -222,7 +222,7 @@ static void patches_write(const Pictures *pictures)
         html_text(pictures->stream, patch->name);
         fprintf(pictures->stream, " <span class=\"soft\">%d,%d,%d,%d</span></h4>\n", patch->x, patch->y, patch->width,
                 patch->height);
-        patch_cell(pictures, patch, 0, "reference", NAN, false);
+        patch_cell(pictures, patch, 0, "reference", (double)NAN, false);
         for (int s = 0; s < scene->series_count; ++s) {
             double rel_mse = scene->series[s].groups[pictures->time].typical->figures.patches[i];
             patch_cell(pictures, patch, PICTURE(s), scene->series[s].name, rel_mse, rel_mse == least);

@@ -229,7 +229,7 @@ bool bench_scene_render(Bench *bench, BenchScene *scene, const char *path, const
 {
     BenchWorkshop shop = {.bench = bench, .scene = scene};
     scene->path = path;
-    scene->reference.own_error = NAN;
+    scene->reference.own_error = (double)NAN;
     scene_name(bench, scene);
     series_fill(&bench->options, scene);
     scene_init(&shop.data);

@@ -12,7 +12,7 @@ static int ascending(const void *a, const void *b)
 double sample_quantile(double *values, size_t count, double q)
 {
     if (count == 0)
-        return NAN;
+        return (double)NAN;
     qsort(values, count, sizeof *values, ascending);
     double place = q * (double)(count - 1);
     size_t below = (size_t)place;
@@ -32,8 +32,8 @@ SampleLine sample_line(const double *x, const double *y, size_t count)
         xy += (x[i] - mean_x) * (y[i] - mean_y);
     }
     if (count < 2 || !(xx > 0.0))
-        return (SampleLine){NAN, NAN, NAN};
-    SampleLine line = {.slope = xy / xx, .slope_error = NAN};
+        return (SampleLine){(double)NAN, (double)NAN, (double)NAN};
+    SampleLine line = {.slope = xy / xx, .slope_error = (double)NAN};
     line.intercept = mean_y - line.slope * mean_x;
     for (size_t i = 0; i < count; ++i) {
         double r = y[i] - line.intercept - line.slope * x[i];

@@ -51,7 +51,7 @@ static void moments_fill(const float *image, const float *reference, int width, 
 bool ssim_compute(const float *image, const float *reference, int width, int height, double *mean, Error *error)
 {
     size_t pixels = (size_t)width * (size_t)height;
-    *mean = NAN;
+    *mean = (double)NAN;
     if (width < SSIM_WINDOW || height < SSIM_WINDOW)
         return true;
     double *memory = malloc(PLANES * pixels * sizeof *memory), *planes[PLANES];
