@@ -20,7 +20,7 @@
 #define BENCH_PATCHES_MAX 8
 #define BENCH_SCENES_MAX 64
 #define BENCH_RUNS_MAX 1000
-#define BENCH_NAME_MAX 48
+#define BENCH_NAME_MAX 80
 
 typedef struct BenchPatch {
     char name[BENCH_NAME_MAX];
@@ -120,7 +120,7 @@ typedef struct BenchReference {
 
 typedef struct BenchScene {
     const char *path;
-    char name[BENCH_NAME_MAX]; /* without folder and ending, unlike all others' */
+    char name[BENCH_NAME_MAX]; /* folder and file without its ending, unlike all others' */
     int width, height, max_depth;
     size_t primitives, lights;
     uint64_t key; /* of all that makes its picture */
@@ -136,7 +136,8 @@ typedef struct Bench {
     char folder[PATH_MAX]; /* of renderings, beside the report */
     char command[1024]; /* the command line */
     BenchScene scenes[BENCH_SCENES_MAX];
-    double planned, done; /* seconds of rendering, of this call */
+    double planned, done; /* seconds that renderings of this call are to take, in all and so far */
+    double spent; /* seconds that those so far have taken */
     int renderings_planned, renderings_done;
 } Bench;
 

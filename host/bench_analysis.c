@@ -1,5 +1,6 @@
 #include "bench_analysis.h"
 
+#include "log.h"
 #include "metrics.h"
 #include "pixel_series.h"
 #include "rendering_file.h"
@@ -323,6 +324,10 @@ bool bench_scene_analyse(const BenchOptions *options, BenchScene *scene, Error *
         return true;
     if (!rendering_load(scene->reference.path, &analysis.reference, error))
         return false;
+    int finished = 0;
+    for (int r = 0; r < scene->run_count; ++r)
+        finished += scene->runs[r].finished;
+    log_message(LOG_INFO, "%s: comparing %d images with the reference", scene->name, finished);
     scene->reference.own_error = own_error(&analysis.reference);
     size_t values = 3 * (size_t)scene->width * (size_t)scene->height;
     for (int i = 0; i < 2; ++i)

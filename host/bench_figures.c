@@ -88,13 +88,19 @@ static bool is_best(const Tables *tables, const Column *column, int series)
     return best;
 }
 
+void bench_factor_write(FILE *stream, double factor)
+{
+    html_number(stream, factor, 3);
+    fputs(isfinite(factor) ? "\u00d7" : "", stream);
+}
+
 static void speedup_cells(FILE *stream, const BenchSeries *series, bool best)
 {
     fputs("<td>", stream);
     html_number(stream, series->equal_seconds, 3);
     fprintf(stream, "%s</td><td%s>", series->extrapolated ? " *" : "", best ? " class=\"best\"" : "");
-    html_number(stream, series->speedup, 3);
-    fputs("\u00d7</td>", stream);
+    bench_factor_write(stream, series->speedup);
+    fputs("</td>", stream);
 }
 
 static bool is_fastest(const BenchScene *scene, int series)

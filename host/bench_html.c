@@ -7,7 +7,10 @@
 #include "svg_chart.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <time.h>
+
+#define LATE 1.5 /* times the time wanted, from which on the report says so */
 
 /* ---- the head --------------------------------------------------------------------------------------------------- */
 
@@ -99,8 +102,8 @@ static void summary_row(const Bench *bench, int number, FILE *stream)
         const BenchSeries *series = &scene->series[s];
         bool best = scene->series_count > 1 && series->speedup == best_speedup(scene);
         fputs(best ? "<td class=\"best\">" : "<td>", stream);
-        html_number(stream, time < 0 ? (double)NAN : series->speedup, 3);
-        fprintf(stream, "\u00d7%s<small>relMSE ", series->extrapolated ? " *" : "");
+        bench_factor_write(stream, series->speedup);
+        fprintf(stream, "%s<small>relMSE ", series->extrapolated ? " *" : "");
         html_number(stream, time < 0 ? (double)NAN : series->groups[time].rel_mse.median, 3);
         fputs("</small></td>", stream);
     }
@@ -122,8 +125,8 @@ static void summary_mean(const Bench *bench, FILE *stream)
             ++count;
         }
         fputs("<td><b>", stream);
-        html_number(stream, count > 0 ? exp(sum / count) : (double)NAN, 3);
-        fputs("\u00d7</b></td>", stream);
+        bench_factor_write(stream, count > 0 ? exp(sum / count) : (double)NAN);
+        fputs("</b></td>", stream);
     }
     fputs("</tr>\n", stream);
 }
@@ -155,19 +158,43 @@ static void summary_write(const Bench *bench, FILE *stream)
 
 /* ---- charts ----------------------------------------------------------------------------------------------------- */
 
-static void line_fill(const Bench *bench, const BenchScene *scene, int number, bool by_samples, ChartLine *line)
+/* One chart: what is across and up, as offsets of BenchBands in a group, and which fit its names have behind them. */
+typedef struct ChartKind {
+    const char *title, *x_label, *y_label;
+    size_t x, y;
+    size_t fit; /* offset of a SampleLine in a series; 0: none */
+} ChartKind;
+
+static const ChartKind CHARTS[] = {
+    {"Error against time", "seconds of rendering", "relMSE", offsetof(BenchGroup, seconds),
+     offsetof(BenchGroup, rel_mse), offsetof(BenchSeries, by_time)},
+    {"Error against samples", "samples per pixel", "relMSE", offsetof(BenchGroup, samples_per_pixel),
+     offsetof(BenchGroup, rel_mse), offsetof(BenchSeries, by_samples)},
+    {"Without the worst 0.1 % of pixels", "seconds of rendering", "relMSE without the worst 0.1 %",
+     offsetof(BenchGroup, seconds), offsetof(BenchGroup, rel_mse_trimmed), 0},
+    {"As seen on a display", "seconds of rendering", "FLIP", offsetof(BenchGroup, seconds), offsetof(BenchGroup, flip),
+     0},
+};
+
+static const BenchBand *band_at(const BenchGroup *group, size_t offset)
+{
+    return (const BenchBand *)(const void *)((const char *)group + offset);
+}
+
+static void line_fill(const Bench *bench, const BenchScene *scene, int number, const ChartKind *kind, ChartLine *line)
 {
     const BenchSeries *series = &scene->series[number];
-    const SampleLine *fit = by_samples ? &series->by_samples : &series->by_time;
     *line = (ChartLine){.name = series->name, .style = number, .dashed = number >= bench->options.integrator_count};
-    if (isfinite(fit->slope))
-        snprintf(line->note, sizeof line->note, "%s%.2f", fit->slope < 0.0 ? "\u2212" : "", fabs(fit->slope));
+    if (kind->fit > 0) {
+        const SampleLine *fit = (const SampleLine *)(const void *)((const char *)series + kind->fit);
+        if (isfinite(fit->slope))
+            snprintf(line->note, sizeof line->note, "%s%.2f", fit->slope < 0.0 ? "\u2212" : "", fabs(fit->slope));
+    }
     for (int t = 0; t < bench->options.time_count; ++t) {
         const BenchGroup *group = &series->groups[t];
-        if (group->runs == 0 || !(group->rel_mse.low > 0.0))
-            continue;
-        line->points[line->count++] = (ChartPoint){by_samples ? group->samples_per_pixel.median : group->seconds.median,
-                                                   group->rel_mse.low, group->rel_mse.median, group->rel_mse.high};
+        const BenchBand *y = band_at(group, kind->y);
+        if (group->runs > 0 && y->low > 0.0)
+            line->points[line->count++] = (ChartPoint){band_at(group, kind->x)->median, y->low, y->median, y->high};
     }
 }
 
@@ -175,13 +202,14 @@ static void charts_write(const Bench *bench, const BenchScene *scene, FILE *stre
 {
     static ChartLine lines[BENCH_SERIES_MAX];
     fputs("<div class=\"charts\">\n", stream);
-    for (int by_samples = 0; by_samples < 2; ++by_samples) {
+    for (size_t i = 0; i < sizeof CHARTS / sizeof CHARTS[0]; ++i) {
+        const ChartKind *kind = &CHARTS[i];
         for (int s = 0; s < scene->series_count; ++s)
-            line_fill(bench, scene, s, by_samples, &lines[s]);
-        const Chart chart = {.title = by_samples ? "Error against samples" : "Error against time",
-                             .x_label = by_samples ? "samples per pixel" : "seconds of rendering",
-                             .y_label = "relMSE",
-                             .level = scene->reference.own_error,
+            line_fill(bench, scene, s, kind, &lines[s]);
+        const Chart chart = {.title = kind->title,
+                             .x_label = kind->x_label,
+                             .y_label = kind->y_label,
+                             .level = kind->fit > 0 ? scene->reference.own_error : 0.0,
                              .level_label = "the reference\u2019s own error",
                              .lines = lines,
                              .count = scene->series_count};
@@ -214,7 +242,7 @@ static void scene_facts(const Bench *bench, const BenchScene *scene, FILE *strea
         html_number(stream, scene->reference.own_error, 3);
         fputs(", from its halves; every relMSE below has it in it, and it is subtracted nowhere", stream);
     } else {
-        fputs("not known: it has no halves", stream);
+        fputs(scene->reference.path[0] ? "not known: it has no halves" : "not known", stream);
     }
     fputs("</dd>\n</dl>\n", stream);
 }
@@ -235,6 +263,24 @@ static void scene_warnings(const BenchScene *scene, FILE *stream)
                 saturated, not_finite, diagnostics);
 }
 
+/* Integrators that took much longer than they were told to. */
+static void scene_late(const BenchOptions *options, const BenchScene *scene, FILE *stream)
+{
+    int time = bench_common_time(options, scene);
+    for (int s = 0; s < scene->series_count && time >= 0; ++s) {
+        const BenchSeries *series = &scene->series[s];
+        double seconds = series->groups[time].seconds.median;
+        if (seconds < LATE * options->times[time])
+            continue;
+        fputs("<p class=\"notice\">", stream);
+        html_text(stream, series->name);
+        fprintf(stream,
+                " took %.3g s instead of %g s: the first sample of every pixel is finished, whatever the time. Longer "
+                "times or a smaller film would be fairer to the others.</p>\n",
+                seconds, options->times[time]);
+    }
+}
+
 static bool scene_write(const Bench *bench, int number, FILE *stream, Error *error)
 {
     const BenchScene *scene = &bench->scenes[number];
@@ -243,6 +289,7 @@ static bool scene_write(const Bench *bench, int number, FILE *stream, Error *err
     fputs("</h2>\n", stream);
     scene_facts(bench, scene, stream);
     scene_warnings(scene, stream);
+    scene_late(&bench->options, scene, stream);
     bool good = true;
     if (scene->reference.path[0]) {
         charts_write(bench, scene, stream);

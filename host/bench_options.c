@@ -156,6 +156,11 @@ static bool patch_add(BenchOptions *options, const char *value, Error *error)
     if (length == 0 || length >= sizeof patch->name)
         return patch_wrong(value, error);
     memcpy(patch->name, value, length);
+    for (const BenchPatch *other = options->patches; other < patch; ++other)
+        if (strcmp(other->name, patch->name) == 0) {
+            error_set(error, "--patch=%s: there is a patch of that name already", value);
+            return error_fix(error, "give every patch a name of its own");
+        }
     const char *at = colon + 1;
     for (int i = 0; i < 4; ++i) {
         char item[16];

@@ -168,6 +168,7 @@ static void series_fill(const BenchOptions *options, BenchScene *scene)
             BenchSeries *series = &scene->series[scene->series_count++];
             series->integrator = options->integrators[i];
             series->backend = &options->backends[b];
+            series->equal_seconds = series->speedup = (double)NAN;
             snprintf(series->name, sizeof series->name, options->backend_count > 1 ? "%s, %.20s" : "%s",
                      series->integrator->name, series->backend->name);
         }
@@ -200,12 +201,15 @@ static bool runs_make(BenchWorkshop *shop, Error *error)
     return true;
 }
 
-/* The name of the file, with a number behind it when another scene has that. */
+/* "veach-bidir/scene": many files are called scene. With a number behind it when another scene has that. */
 static void scene_name(Bench *bench, BenchScene *scene)
 {
     const char *name = path_file_name(scene->path);
+    if (name > scene->path + 1)
+        for (name -= 2; name > scene->path && name[-1] != '/';)
+            --name;
     int length = (int)(path_ends(name, ".pbrt") ? strlen(name) - 5 : strlen(name));
-    snprintf(scene->name, sizeof scene->name, "%.*s", length < 32 ? length : 32, name);
+    snprintf(scene->name, sizeof scene->name, "%.*s", length < 64 ? length : 64, name);
     size_t plain = strlen(scene->name);
     int number = 1;
     for (const BenchScene *other = bench->scenes; other < scene; ++other)

@@ -53,7 +53,7 @@ const char BENCH_STYLE[] =
     ".stack span{height:100%}.k0{background:var(--s3)}.k1{background:var(--s1)}.k2{background:var(--s0)}"
     ".k3{background:var(--s7)}\n"
     ".key i{display:inline-block;width:11px;height:11px;border-radius:2px;margin:0 5px 0 14px;vertical-align:-1px}\n"
-    ".pictures,.patches{display:grid;gap:16px 12px;grid-template-columns:repeat(auto-fill,minmax(230px,1fr))}\n"
+    ".pictures,.patches{display:grid;gap:16px 12px;grid-template-columns:repeat(auto-fit,minmax(230px,1fr))}\n"
     ".patches{grid-template-columns:repeat(var(--n),minmax(110px,1fr));overflow-x:auto}\n"
     ".patches h4{grid-column:1/-1;margin:8px 0 -8px;font-size:14px}\n"
     "figure{margin:0}figcaption{font-size:13px;margin-top:3px;line-height:1.35}\n"

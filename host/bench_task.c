@@ -178,11 +178,14 @@ bool bench_task_run(BenchWorkshop *shop, const BenchTask *task, const char *path
         bench->planned -= task->seconds;
     if (*finished || *interrupt_flag())
         return true;
-    progress_time(fmax(bench->planned - bench->done, 0.0), left, sizeof left);
+    /* What was made so far may have taken longer than it was told to: a first sample is finished. */
+    double stretch = bench->done > 0.0 ? bench->spent / bench->done : 1.0, start = timing_now();
+    progress_time(fmax(bench->planned - bench->done, 0.0) * stretch, left, sizeof left);
     log_message(LOG_INFO, "%d of %d, %s left: %s, %s on %s for %g s, %s", bench->renderings_done,
                 bench->renderings_planned, left, shop->scene->name, task->integrator->name, task->backend->name,
                 task->seconds, task->what);
     bool good = backend_open(shop, task->backend, error) && task_render(shop, task, path, record, finished, error);
     bench->done += task->seconds;
+    bench->spent += timing_now() - start;
     return good;
 }

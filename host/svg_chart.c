@@ -4,11 +4,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define WIDTH 620.0
 #define HEIGHT 380.0
 #define LEFT 64.0
-#define RIGHT 128.0 /* names */
+#define RIGHT_MIN 60.0
+#define CHARACTER 7.4 /* width of one in a name, about */
 #define TOP 34.0
 #define BOTTOM 48.0
 #define LABEL_STEP 16.0
@@ -43,33 +45,43 @@ static void axis_finish(Axis *axis)
     axis->high += margin;
 }
 
-static void tick_text(char *text, size_t size, double value)
+/* Whether a line at `step` times a power of ten has a number, on an axis of so many decades. */
+static bool step_has_number(int step, double decades)
 {
-    html_number_text(text, size, value, 1);
+    if (step == 1)
+        return true;
+    if (decades > 2.2)
+        return false;
+    return step == 2 || step == 5 || (decades < 0.9 && (step == 3 || step == 4 || step == 7));
 }
 
-/* Grid lines at powers of ten, and at 2 and 5 times those where there are few. */
+static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical, int step, double value)
+{
+    const Axis *axis = vertical ? y : x;
+    double at = place(axis, value);
+    char text[64];
+    fprintf(stream, "<line class=\"%s\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>",
+            step == 1 ? "grid" : "grid fine", vertical ? x->from : at, vertical ? at : y->from, vertical ? x->to : at,
+            vertical ? at : y->to);
+    if (!step_has_number(step, axis->high - axis->low))
+        return;
+    html_number_text(text, sizeof text, value, 1);
+    fprintf(stream, "<text class=\"tick\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n",
+            vertical ? x->from - 7.0 : at, vertical ? at + 4.0 : y->from + 17.0, vertical ? "end" : "middle", text);
+}
+
+/* Grid lines at powers of ten and between them, fewer where there are many decades. */
 static void grid_write(FILE *stream, const Axis *x, const Axis *y)
 {
-    static const double STEPS[] = {1.0, 2.0, 5.0};
     for (int vertical = 0; vertical < 2; ++vertical) {
         const Axis *axis = vertical ? y : x;
-        bool fine = axis->high - axis->low < 2.2;
+        double decades = axis->high - axis->low;
         for (int decade = (int)floor(axis->low); decade <= (int)ceil(axis->high); ++decade) {
-            for (int step = 0; step < 3; ++step) {
-                double value = STEPS[step] * pow(10.0, decade), at = place(axis, value);
-                char text[64];
-                if (log10(value) < axis->low || log10(value) > axis->high)
-                    continue;
-                fprintf(stream, "<line class=\"%s\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>",
-                        step == 0 ? "grid" : "grid fine", vertical ? x->from : at, vertical ? at : y->from,
-                        vertical ? x->to : at, vertical ? at : y->to);
-                if (step > 0 && !fine)
-                    continue;
-                tick_text(text, sizeof text, value);
-                fprintf(stream, "<text class=\"tick\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n",
-                        vertical ? x->from - 7.0 : at, vertical ? at + 4.0 : y->from + 17.0,
-                        vertical ? "end" : "middle", text);
+            for (int step = 1; step < 10; ++step) {
+                double value = step * pow(10.0, decade);
+                bool wanted = step == 1 || decades < 2.2 || (decades < 4.0 && (step == 2 || step == 5));
+                if (wanted && log10(value) >= axis->low && log10(value) <= axis->high)
+                    grid_line(stream, x, y, vertical == 1, step, value);
             }
         }
     }
@@ -171,9 +183,20 @@ static void labels_write(FILE *stream, const Chart *chart, const Axis *x, const 
     }
 }
 
+/* Room for the longest name and its note. */
+static double right_margin(const Chart *chart)
+{
+    size_t longest = 0;
+    for (int i = 0; i < chart->count; ++i) {
+        size_t length = strlen(chart->lines[i].name) + strlen(chart->lines[i].note) + 1;
+        longest = length > longest ? length : longest;
+    }
+    return fmin(fmax(RIGHT_MIN, 30.0 + CHARACTER * (double)longest), 0.5 * WIDTH);
+}
+
 static void axes_fit(const Chart *chart, Axis *x, Axis *y)
 {
-    *x = (Axis){HUGE_VAL, -HUGE_VAL, LEFT, WIDTH - RIGHT};
+    *x = (Axis){HUGE_VAL, -HUGE_VAL, LEFT, WIDTH - right_margin(chart)};
     *y = (Axis){HUGE_VAL, -HUGE_VAL, HEIGHT - BOTTOM, TOP};
     for (int i = 0; i < chart->count; ++i) {
         for (int p = 0; p < chart->lines[i].count; ++p) {
