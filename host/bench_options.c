@@ -34,7 +34,8 @@ static const OptionSpec SPECS[] = {
     [OPTION_TIMES] = {"times", 0, "TIME,...", "how long to render, each on its own (default: 1s,2s,4s,8s)"},
     [OPTION_RUNS] = {"runs", 0, "N", "renderings with each integrator and time, with seeds of their own (default: 4)"},
     [OPTION_REFERENCE] = {"reference", 0, "FILE", "the true picture; once for every scene, in their order"},
-    [OPTION_REFERENCE_INTEGRATOR] = {"reference-integrator", 0, "NAME", "what makes those not given (default: bdpt)"},
+    [OPTION_REFERENCE_INTEGRATOR] = {"reference-integrator", 0, "NAME",
+                                     "what makes those not given (default: one not compared)"},
     [OPTION_REFERENCE_TIME] = {"reference-time", 0, "TIME", "for how long (default: 8 times the longest of --times)"},
     [OPTION_BACKENDS] = {"backends", 0, "NAME,...", "where to render (default: cpu)"},
     [OPTION_PATCH] = {"patch", 0, "NAME:x,y,w,h", "show this part of the pictures enlarged; up to 8 times"},
@@ -58,6 +59,14 @@ static const OptionTable TABLE = {
     "second call does not repeat. SIGINT ends with the report of what is there.\n"
     "More: man twinlight-bench.",
 };
+
+bool bench_is_compared(const BenchOptions *options, const Integrator *integrator)
+{
+    for (int i = 0; i < options->integrator_count; ++i)
+        if (options->integrators[i] == integrator)
+            return true;
+    return false;
+}
 
 typedef struct Parse {
     BenchOptions *options;
@@ -100,11 +109,10 @@ static bool integrator_add(Parse *parse, const char *item, Error *error)
     const Integrator *integrator = integrator_find(item, error);
     if (!integrator)
         return false;
-    for (int i = 0; i < options->integrator_count; ++i)
-        if (options->integrators[i] == integrator) {
-            error_set(error, "--integrators: %s is named twice", item);
-            return error_fix(error, "name every integrator once");
-        }
+    if (bench_is_compared(options, integrator)) {
+        error_set(error, "--integrators: %s is named twice", item);
+        return error_fix(error, "name every integrator once");
+    }
     if (options->integrator_count == BENCH_INTEGRATORS_MAX)
         return too_many("integrators", BENCH_INTEGRATORS_MAX, error);
     options->integrators[options->integrator_count++] = integrator;
@@ -257,6 +265,16 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
+/* One that is not judged by its own picture, where there is one. */
+static const Integrator *reference_choose(const BenchOptions *options)
+{
+    const Integrator *const candidates[] = {integrator_bdpt(), integrator_mmlt(), integrator_ibpt(), integrator_pt()};
+    for (size_t i = 0; i < sizeof candidates / sizeof candidates[0]; ++i)
+        if (!bench_is_compared(options, candidates[i]))
+            return candidates[i];
+    return candidates[0];
+}
+
 /* What is meant where nothing is said. */
 static bool defaults_set(Parse *parse, Error *error)
 {
@@ -272,7 +290,7 @@ static bool defaults_set(Parse *parse, Error *error)
     if (options->reference_seconds == 0.0)
         options->reference_seconds = 8.0 * options->times[options->time_count - 1];
     if (!options->reference_integrator)
-        options->reference_integrator = integrator_bdpt();
+        options->reference_integrator = reference_choose(options);
     return true;
 }
 

@@ -8,4 +8,7 @@
 OptionsEnd bench_options_parse(BenchOptions *options, const BackendTable *backends, int argc, char **argv,
                                Error *error);
 
+/* Whether the integrator is one of --integrators. */
+bool bench_is_compared(const BenchOptions *options, const Integrator *integrator);
+
 #endif

@@ -1,5 +1,6 @@
 #include "bench_render.h"
 
+#include "bench_options.h"
 #include "bench_task.h"
 #include "exr.h"
 #include "hash.h"
@@ -107,15 +108,6 @@ static bool halves_join(const BenchScene *scene, const char paths[2][PATH_MAX], 
     return good;
 }
 
-/* Whether the reference's integrator is one of those that it judges. */
-static bool is_compared(const BenchOptions *options)
-{
-    for (int i = 0; i < options->integrator_count; ++i)
-        if (options->integrators[i] == options->reference_integrator)
-            return true;
-    return false;
-}
-
 static bool reference_make(BenchWorkshop *shop, Error *error)
 {
     const BenchOptions *options = &shop->bench->options;
@@ -141,7 +133,9 @@ static bool reference_make(BenchWorkshop *shop, Error *error)
     snprintf(reference->origin, sizeof reference->origin,
              "made here: %s, %g s in two halves with seeds of their own, %.4g samples per pixel%s",
              options->reference_integrator->name, options->reference_seconds, samples,
-             is_compared(options) ? "; it is among those compared, and shares their bias if there is one" : "");
+             bench_is_compared(options, options->reference_integrator)
+                 ? "; it is among those compared, and shares their bias if there is one"
+                 : "");
     return halves_join(shop->scene, paths, error);
 }
 

@@ -10,10 +10,16 @@
 /* EXRs hold 24 bits: differences of that size are none. */
 #define ROUNDING 0x1p-20
 
+/* Sums of x^2 and of x^4 over pixels. */
+typedef struct Moments {
+    double squares, fourths;
+} Moments;
+
 /* One channel of a tile of both renderings. */
 typedef struct TileValue {
     double mean[2];
-    double squares, fourths; /* sums of d^2 and d^4 over both renderings */
+    Moments halves; /* of d, over both renderings */
+    Moments between; /* of the difference between the renderings */
     double of_sums; /* sum over the renderings of (sum of d)^2 */
     int pixels;
 } TileValue;
@@ -28,23 +34,38 @@ static double finite_or_zero(float x)
     return isfinite(x) ? (double)x : 0.0;
 }
 
-/* Adds the pixels of rendering `which` to a tile's channel. */
-static void tile_add(TileValue *tile, int which, const float *const halves[2], int width, const int box[4], int channel)
+static void moments_add(Moments *moments, double x)
 {
-    double sum = 0.0, differences = 0.0;
-    tile->pixels = (box[2] - box[0]) * (box[3] - box[1]);
+    moments->squares += x * x;
+    moments->fourths += x * x * x * x;
+}
+
+/* Degrees of freedom of a sum of squares. */
+static double moments_freedom(const Moments *moments)
+{
+    return moments->fourths > 0.0 ? 3.0 * moments->squares * moments->squares / moments->fourths - 2.0 : HUGE_VAL;
+}
+
+static TileValue tile_measure(const float *const halves[2][2], int width, const int box[4], int channel)
+{
+    TileValue tile = {.pixels = (box[2] - box[0]) * (box[3] - box[1])};
+    double differences[2] = {0.0, 0.0};
     for (int y = box[1]; y < box[3]; ++y) {
         for (int x = box[0]; x < box[2]; ++x) {
             size_t i = 3 * ((size_t)y * (size_t)width + (size_t)x) + (size_t)channel;
-            double a = finite_or_zero(halves[0][i]), b = finite_or_zero(halves[1][i]), d = 0.5 * (a - b);
-            sum += 0.5 * (a + b);
-            differences += d;
-            tile->squares += d * d;
-            tile->fourths += d * d * d * d;
+            double values[2];
+            for (int which = 0; which < 2; ++which) {
+                double a = finite_or_zero(halves[which][0][i]), b = finite_or_zero(halves[which][1][i]);
+                values[which] = 0.5 * (a + b);
+                tile.mean[which] += values[which] / tile.pixels;
+                differences[which] += 0.5 * (a - b);
+                moments_add(&tile.halves, 0.5 * (a - b));
+            }
+            moments_add(&tile.between, values[0] - values[1]);
         }
     }
-    tile->mean[which] = sum / tile->pixels;
-    tile->of_sums += differences * differences;
+    tile.of_sums = differences[0] * differences[0] + differences[1] * differences[1];
+    return tile;
 }
 
 static void tiles_fill(Tiles *tiles, const float *const halves[2][2], int width, int height)
@@ -55,8 +76,7 @@ static void tiles_fill(Tiles *tiles, const float *const halves[2][2], int width,
             const int box[4] = {x, y, x + Z_TEST_TILE < width ? x + Z_TEST_TILE : width,
                                 y + Z_TEST_TILE < height ? y + Z_TEST_TILE : height};
             for (int c = 0; c < 3; ++c)
-                for (int which = 0; which < 2; ++which)
-                    tile_add(&tiles->values[3 * (j * tiles->columns + i) + c], which, halves[which], width, box, c);
+                tiles->values[3 * (j * tiles->columns + i) + c] = tile_measure(halves, width, box, c);
         }
     }
 }
@@ -72,9 +92,9 @@ static double tile_correlation(const Tiles *tiles, int column, int row)
                 continue;
             const TileValue *values = &tiles->values[3 * (j * tiles->columns + i)];
             for (int c = 0; c < 3; ++c) {
-                if (!(values[c].squares > 0.0))
+                if (!(values[c].halves.squares > 0.0))
                     continue;
-                sum += values[c].of_sums / values[c].squares;
+                sum += values[c].of_sums / values[c].halves.squares;
                 ++count;
             }
         }
@@ -85,17 +105,15 @@ static double tile_correlation(const Tiles *tiles, int column, int row)
 /* The probability of a difference as large as the tile's; negative when there is nothing to test. */
 static double tile_probability(const TileValue *tile, double neighbours)
 {
-    double difference = tile->mean[0] - tile->mean[1];
+    double difference = tile->mean[0] - tile->mean[1], squares = tile->halves.squares;
     double rounding = ROUNDING * (fabs(tile->mean[0]) + fabs(tile->mean[1]));
-    double own = tile->squares > 0.0 ? tile->of_sums / tile->squares : 1.0, correlation = fmax(own, neighbours);
-    double variance = correlation * tile->squares / ((double)tile->pixels * tile->pixels) + rounding * rounding;
-    double most = 2.0 * tile->pixels, freedom = most;
-    if (tile->squares == 0.0 && fabs(difference) <= rounding)
+    double own = squares > 0.0 ? tile->of_sums / squares : 1.0, correlation = fmax(own, neighbours);
+    double variance = correlation * squares / ((double)tile->pixels * tile->pixels) + rounding * rounding;
+    double most = 2.0 * tile->pixels;
+    if (squares == 0.0 && fabs(difference) <= rounding)
         return -1.0;
-    if (tile->fourths > 0.0)
-        freedom = (3.0 * tile->squares * tile->squares / tile->fourths - 2.0) / correlation;
-    freedom = fmin(fmax(freedom, 1.0), most);
-    return student_two_sided(difference / sqrt(variance), freedom);
+    double freedom = fmin(moments_freedom(&tile->halves), moments_freedom(&tile->between)) / correlation;
+    return student_two_sided(difference / sqrt(variance), fmin(fmax(freedom, 1.0), most));
 }
 
 /* Every tile's probabilities; returns how many were tested. */

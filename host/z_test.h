@@ -10,9 +10,10 @@
  *
  * where R is what correlation between neighbouring pixels adds, 1 for independent ones. It is the tile's own or the mean
  * over 5 x 5 tiles and all channels, whichever is larger, at least 1. The difference of the tile's means over sqrt(V) is
- * taken for a t of Student with (3 (sum d^2)^2 / sum d^4 - 2) / R degrees of freedom, at least 1 (Satterthwaite 1946 with
- * the fourth moment of a normal d): as many as there are pixels where those are alike and independent, few where one bright
- * dot or one chain makes the variance. */
+ * taken for a t of Student with (3 (sum x^2)^2 / sum x^4 - 2) / R degrees of freedom, at least 1 (Satterthwaite 1946 with
+ * the fourth moment of a normal x), x being d or the difference of the renderings at a pixel, whichever gives fewer: as many
+ * as there are pixels where those are alike and independent, few where one bright dot or one chain makes the variance, and
+ * where one pixel makes the difference, such as one at a lamp's edge that both halves happen to see or to miss. */
 #ifndef TWINLIGHT_Z_TEST_H
 #define TWINLIGHT_Z_TEST_H
 

@@ -87,8 +87,10 @@ for name, s in series.items():
     median = s["groups"][-1]["rel_mse"][1]
     digits = "%.*f" % (2 - math.floor(math.log10(median)), median)
     assert digits in text, digits
-assert 0 < report["scenes"][0]["reference_rel_mse"] < 10
-assert any(r.get("chains", {}).get("mutations", 0) > 0 for r in report["scenes"][0]["runs"])
+scene = report["scenes"][0]
+assert 0 < scene["reference_rel_mse"] < 10
+assert scene["reference_origin"].startswith("made here: bdpt") and "among" not in scene["reference_origin"]
+assert any(r.get("chains", {}).get("mutations", 0) > 0 for r in scene["runs"])
 PYTHON
     result 'the report is not well-formed, or has figures that are not those of its images' $?
 fi

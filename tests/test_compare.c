@@ -161,6 +161,24 @@ START_TEST(test_halves)
 }
 END_TEST
 
+/* A pixel at a lamp's edge that both halves of one rendering happened to see and both of the other to miss: one observation,
+ * not a difference. */
+START_TEST(test_halves_one_pixel)
+{
+    static float memory[4][HALF_VALUES];
+    const float *const halves[2][2] = {{memory[0], memory[1]}, {memory[2], memory[3]}};
+    unsigned seed = 4;
+    ZTest test;
+    Error error = {0};
+    for (int i = 0; i < 4; ++i)
+        half_fill(memory[i], 1.0, 1, &seed);
+    for (int i = 0; i < 2; ++i)
+        memory[i][3 * (50 * SIDE + 50)] = 200.0f + (float)i;
+    ck_assert(z_test_compute(halves, SIDE, SIDE, &test, &error));
+    ck_assert_msg(test.outside == 0, "values outside: %zu, least %g", test.outside, test.least);
+}
+END_TEST
+
 /* Without noise every difference counts, and equal pictures have nothing to test. */
 START_TEST(test_halves_without_noise)
 {
@@ -240,6 +258,7 @@ int main(void)
     tcase_add_test(tcase, test_display_limits);
     tcase_add_test(tcase, test_student);
     tcase_add_test(tcase, test_halves);
+    tcase_add_test(tcase, test_halves_one_pixel);
     tcase_add_test(tcase, test_halves_without_noise);
     tcase_add_test(tcase, test_layers_read);
     tcase_add_test(tcase, test_side_by_side);
