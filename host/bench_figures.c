@@ -3,7 +3,6 @@
 #include "bench_html.h"
 #include "html.h"
 #include "progress.h"
-#include "stats.h"
 
 #include <math.h>
 
@@ -261,102 +260,6 @@ static void work_table(const Tables *tables)
           stream);
 }
 
-/* ---- chains ----------------------------------------------------------------------------------------------------- */
-
-/* What the chains of all runs with one time did together; returns the number of runs that have chains. */
-static int chains_sum(const Tables *tables, int series, ChainStatistics *sum)
-{
-    const BenchScene *scene = tables->scene;
-    int runs = 0;
-    *sum = (ChainStatistics){0};
-    for (const BenchRun *run = scene->runs; run < scene->runs + scene->run_count; ++run) {
-        const ChainStatistics *chains = &run->record.chains;
-        if (!run->finished || run->series != series || run->time != tables->time || chains->steps == 0)
-            continue;
-        ++runs;
-        sum->pool_samples += chains->pool_samples;
-        sum->seeds += chains->seeds;
-        sum->steps += chains->steps;
-        for (int i = 0; i < 3; ++i)
-            sum->shares[i] += chains->shares[i];
-        for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-            for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
-                sum->proposals[kind][depth] += chains->proposals[kind][depth];
-                sum->accepted[kind][depth] += chains->accepted[kind][depth];
-            }
-    }
-    return runs;
-}
-
-static uint64_t proposals_total(const uint64_t counts[CHAIN_DEPTHS])
-{
-    uint64_t total = 0;
-    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
-        total += counts[depth];
-    return total;
-}
-
-static void acceptance_cell(FILE *stream, uint64_t accepted, uint64_t proposals)
-{
-    double share = proposals > 0 ? 100.0 * (double)accepted / (double)proposals : (double)NAN;
-    if (proposals == 0)
-        fputs("<td>\u2013</td>", stream);
-    else
-        fprintf(stream, "<td class=\"share\" style=\"--v:%.1f\" title=\"%llu of %llu\">%.1f</td>", share,
-                (unsigned long long)accepted, (unsigned long long)proposals, share);
-}
-
-static void acceptance_table(FILE *stream, const ChainStatistics *chains)
-{
-    int first = CHAIN_DEPTHS, last = -1;
-    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-        for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
-            if (chains->proposals[kind][depth] > 0) {
-                first = depth < first ? depth : first;
-                last = depth > last ? depth : last;
-            }
-    fputs("<div class=\"wide\"><table>\n<thead><tr><th>mutation of</th><th>proposals</th><th>all depths</th>", stream);
-    for (int depth = first; depth <= last; ++depth)
-        fprintf(stream, "<th>%d</th>", depth);
-    fputs("</tr></thead>\n<tbody>\n", stream);
-    for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
-        uint64_t proposals = proposals_total(chains->proposals[kind]);
-        if (proposals == 0)
-            continue;
-        fprintf(stream, "<tr><th>%s</th>", stats_chain_kind(kind));
-        number_cell(stream, (double)proposals, 3, false);
-        acceptance_cell(stream, proposals_total(chains->accepted[kind]), proposals);
-        for (int depth = first; depth <= last; ++depth)
-            acceptance_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
-        fputs("</tr>\n", stream);
-    }
-    table_end(stream);
-}
-
-static void chains_write(const Tables *tables)
-{
-    FILE *stream = tables->stream;
-    for (int s = 0; s < tables->scene->series_count; ++s) {
-        ChainStatistics chains;
-        int runs = chains_sum(tables, s, &chains);
-        if (runs == 0)
-            continue;
-        fputs("<h3>Chains of ", stream);
-        html_text(stream, tables->scene->series[s].name);
-        fputs("</h3>\n<p class=\"soft\">A run draws ", stream);
-        html_number(stream, (double)chains.pool_samples / runs, 3);
-        fputs(" samples for its pools, begins ", stream);
-        html_number(stream, (double)chains.seeds / runs, 3);
-        fputs(" chains and makes ", stream);
-        html_number(stream, (double)chains.steps / runs, 3);
-        fprintf(stream,
-                " mutations. In the picture of the last generation chains have %.0f %%, the pool %.0f %% and paths "
-                "%.0f %%. Acceptance in per cent, by kind of mutation and by the path\u2019s segments:</p>\n",
-                100.0 * chains.shares[0] / runs, 100.0 * chains.shares[1] / runs, 100.0 * chains.shares[2] / runs);
-        acceptance_table(stream, &chains);
-    }
-}
-
 /* ---- all times -------------------------------------------------------------------------------------------------- */
 
 static void times_table(const Tables *tables)
@@ -398,7 +301,7 @@ void bench_figures_write(const Bench *bench, const BenchScene *scene, FILE *stre
         variance_table(&tables);
         fprintf(stream, "<h3>Work in %g s</h3>\n", seconds);
         work_table(&tables);
-        chains_write(&tables);
+        bench_chains_write(scene, tables.time, stream);
     }
     times_table(&tables);
 }

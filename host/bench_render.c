@@ -223,6 +223,23 @@ double bench_scene_seconds(const BenchOptions *options, bool has_reference, int 
     return seconds;
 }
 
+/* A reference that is given: of the film's size, said before hours of rendering. */
+static bool reference_take(BenchScene *scene, const char *path, Error *error)
+{
+    BenchReference *reference = &scene->reference;
+    Rendering picture;
+    const Rendering film = {.width = scene->width, .height = scene->height};
+    if (!rendering_load(path, &picture, error))
+        return false;
+    bool good = rendering_same_size(&picture, path, &film, "the film", error);
+    rendering_destroy(&picture);
+    if (!good)
+        return error_fix(error, "render with --resolution of the reference, or crop it");
+    snprintf(reference->path, sizeof reference->path, "%s", path);
+    snprintf(reference->origin, sizeof reference->origin, "given: %.200s", path_file_name(path));
+    return true;
+}
+
 bool bench_scene_render(Bench *bench, BenchScene *scene, const char *path, const char *reference, Error *error)
 {
     BenchWorkshop shop = {.bench = bench, .scene = scene};
@@ -232,12 +249,7 @@ bool bench_scene_render(Bench *bench, BenchScene *scene, const char *path, const
     series_fill(&bench->options, scene);
     scene_init(&shop.data);
     bool good = scene_prepare(&shop, error);
-    if (good && reference) {
-        snprintf(scene->reference.path, sizeof scene->reference.path, "%s", reference);
-        snprintf(scene->reference.origin, sizeof scene->reference.origin, "given: %.200s", path_file_name(reference));
-    } else if (good) {
-        good = reference_make(&shop, error);
-    }
+    good = good && (reference ? reference_take(scene, reference, error) : reference_make(&shop, error));
     good = good && runs_make(&shop, error);
     if (shop.choices)
         shop.backend.interface->close(shop.backend.backend);

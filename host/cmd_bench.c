@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* The report's name with another ending. */
 static void sibling(const Bench *bench, const char *ending, char path[PATH_MAX])
@@ -30,6 +31,18 @@ static bool folder_make(Bench *bench, Error *error)
         return false;
     sibling(bench, ".runs", bench->folder);
     return mkdir(bench->folder, 0777) == 0 || errno == EEXIST || error_errno(error, "make the folder", bench->folder);
+}
+
+/* What the last scene needs is looked for before the first is rendered. */
+static bool inputs_check(const BenchOptions *options, Error *error)
+{
+    for (int i = 0; i < options->scene_count; ++i)
+        if (access(options->scenes[i], R_OK) != 0)
+            return error_errno(error, "read", options->scenes[i]);
+    for (int i = 0; i < options->reference_count; ++i)
+        if (access(options->references[i], R_OK) != 0)
+            return error_errno(error, "read", options->references[i]);
+    return true;
 }
 
 static void plan(Bench *bench)
@@ -120,7 +133,7 @@ static void command_line(Bench *bench, int argc, char **argv)
 
 static int bench_run(Bench *bench, Error *error)
 {
-    if (!interrupt_install(error) || !folder_make(bench, error))
+    if (!interrupt_install(error) || !inputs_check(&bench->options, error) || !folder_make(bench, error))
         return EXIT_FAILED;
     plan(bench);
     Error late = {0};

@@ -8,6 +8,7 @@ libtwinlight_host_la_SOURCES = \
 	host/backend_group.c host/backend_group.h \
 	host/bench.h \
 	host/bench_analysis.c host/bench_analysis.h \
+	host/bench_chains.c \
 	host/bench_figures.c \
 	host/bench_html.c host/bench_html.h \
 	host/bench_options.c host/bench_options.h \

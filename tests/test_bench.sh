@@ -15,6 +15,8 @@ expect 2 'a patch of that name already' bench --patch=a:1,2,3,4 --patch=a:5,6,7,
 expect 2 '2 references for 1 scenes' bench --reference=a.exr --reference=b.exr "$scene"
 expect 2 '--runs=0: out of range' bench --runs=0 "$scene"
 expect 1 'nowhere/report.html' bench -o nowhere/report.html "$scene"
+expect 1 'missing.pbrt' bench --times=9s "$scene" missing.pbrt
+expect 1 'missing.exr' bench --times=9s --reference=missing.exr "$scene"
 expect 1 'the patch wall reaches beyond the film' bench --resolution=32x24 --patch=wall:20,0,13,4 "$scene"
 
 # tiny ARGUMENT...: a report of two integrators at two times.
@@ -132,7 +134,7 @@ result 'SIGINT: the report does not say what is missing' $?
 result 'SIGINT: the table has not both runs' $?
 
 "$program" render --quiet --integrator=pt --resolution=16x12 --samples=1 -o other.exr "$scene"
-expect 1 'the sizes differ' bench --integrators=pt --times=0.1s --runs=1 --resolution=32x24 --reference=other.exr \
+expect 1 'the sizes differ' bench --integrators=pt --times=60s --runs=1 --resolution=32x24 --reference=other.exr \
     -o sizes.html "$scene"
 
 checks_end
