@@ -2,6 +2,9 @@
  * to what they carry are unbiased however few steps they make. */
 #include "bidirectional.h"
 
+#include "backend_cpu.h"
+#include "backend_group.h"
+
 static const unsigned STEPS[] = {1, 4, 16, 64};
 #define STEPS_COUNT (int)(sizeof STEPS / sizeof STEPS[0])
 
@@ -107,6 +110,52 @@ START_TEST(test_modes)
 }
 END_TEST
 
+/* ---- several backends -------------------------------------------------------------------------------------------- */
+
+/* The picture by two backends of one thread each, or (alone) by one of two. 3 x 256 floats. */
+static void picture_render(const RenderSetup *setup, const Scene *scene, bool alone, float *rgb)
+{
+    Error error = {0};
+    Film film;
+    RenderResult result;
+    const RenderOptions options = {.samples = setup->samples, .max_depth = setup->max_depth, .chains = setup->chains};
+    const BackendInterface *interface = alone ? backend_cpu() : backend_group_interface();
+    BackendMember members[2];
+    for (int i = 0; i < 2; ++i) {
+        members[i] = (BackendMember){backend_cpu(), fixture_open(setup, scene, &error)};
+        ck_assert_msg(members[i].backend != NULL, "%s", error.message);
+    }
+    Backend *backend = alone ? members[0].backend : backend_group_create(members, 2, &error);
+    ck_assert_msg(backend != NULL, "%s", error.message);
+    ck_assert(film_init(&film, scene->settings.width, scene->settings.height, scene->settings.crop, &error));
+    ck_assert_msg(
+        render_film(integrator_mmlt(), scene, interface, backend, &options, false, NULL, &film, &result, &error), "%s",
+        error.message);
+    film_resolve(&film, scene->settings.film_scale, rgb);
+    film_destroy(&film);
+    interface->close(backend);
+    if (alone)
+        backend_cpu()->close(members[1].backend);
+}
+
+/* Chains that go on know nothing of who has run them before, nor who runs their neighbours. */
+START_TEST(test_shared)
+{
+    float one[3 * 256], two[3 * 256];
+    Scene scene;
+    RenderSetup setup = {.text = bidirectional_text(&BIDIRECTIONAL_SCENES[2]),
+                         .samples = 200,
+                         .max_depth = 6,
+                         .threads = 1,
+                         .chains = {.chains = 500, .paper = _i == 1}};
+    fixture_scene(&setup, &scene);
+    picture_render(&setup, &scene, true, one);
+    picture_render(&setup, &scene, false, two);
+    ck_assert_mem_eq(one, two, sizeof one);
+    scene_destroy(&scene);
+}
+END_TEST
+
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
 /* The mean square error against what path tracing sees falls as one over the work: nothing is left over. */
@@ -114,7 +163,7 @@ START_TEST(test_slope)
 {
     enum { BUDGETS = 3 };
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
-    const double work[BUDGETS] = {30.0, 300.0, 3000.0};
+    const double work[BUDGETS] = {200.0, 2000.0, 20000.0}; /* earlier it learns its shares, and gains more */
     double error[BUDGETS];
     PictureGroups expected;
     if (test_effort() == 1)
@@ -191,6 +240,7 @@ int main(void)
     tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
+    tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
     tcase_add_loop_test(case_make(suite, "slope"), test_slope, 0, 3);
     tcase_add_loop_test(case_make(suite, "brightness"), test_brightness, 0, 8);
     return test_run(suite);
