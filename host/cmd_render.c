@@ -11,6 +11,7 @@
 #include "render_options.h"
 #include "render_output.h"
 #include "render_verify.h"
+#include "scene_advice.h"
 #include "stats.h"
 #include "timing.h"
 #include "trace_output.h"
@@ -171,7 +172,10 @@ static bool outputs_name(RenderJob *job, Error *error)
 
 static bool scene_load(RenderJob *job, Error *error)
 {
-    return pbrt_load(job->command->scene, job->command->lenient, &job->scene, error);
+    if (!pbrt_load(job->command->scene, job->command->lenient, &job->scene, error))
+        return false;
+    scene_advise(&job->scene);
+    return true;
 }
 
 static bool backend_build(RenderJob *job, Error *error)

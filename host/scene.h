@@ -134,6 +134,9 @@ bool scene_finish(Scene *scene, Error *error);
 /* Sets the film's size and crop again (after options) and recomputes the camera of `frame`. */
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error);
 
+/* Whether a conductor, dielectric or coat has a microfacet lobe anywhere, and not a delta. */
+bool scene_material_is_rough(const Material *m);
+
 /* What a backend gets of a finished scene, which must outlive it. */
 BackendScene scene_backend_view(const Scene *scene);
 

@@ -181,7 +181,7 @@ static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
     return roughness->program != NONE || material_alpha(m, roughness) >= ALPHA_DELTA;
 }
 
-static bool material_is_rough(const Material *m)
+bool scene_material_is_rough(const Material *m)
 {
     return (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_COATED_DIFFUSE) &&
            (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
@@ -190,7 +190,7 @@ static bool material_is_rough(const Material *m)
 static uint material_features(const Material *m)
 {
     uint features = FEATURE_OF_MATERIAL[m->kind];
-    if (material_is_rough(m))
+    if (scene_material_is_rough(m))
         features |= FEATURE_ROUGH;
     if (m->normal_map != NONE || m->displacement.program != NONE)
         features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
@@ -271,7 +271,7 @@ static bool scene_coat_tables(Scene *scene, Error *error)
         if (m->kind != MATERIAL_COATED_DIFFUSE)
             continue;
         m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        if (!material_is_rough(m))
+        if (!scene_material_is_rough(m))
             continue;
         for (size_t j = 0; j < i && m->coat_table == NONE; ++j) {
             const Material *other = &ARRAY_AT(&scene->materials, Material, j);

@@ -110,6 +110,7 @@ libtwinlight_host_la_SOURCES = \
 	host/sample_statistics.c host/sample_statistics.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
+	host/scene_advice.c host/scene_advice.h \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
 	host/stats.c host/stats.h \

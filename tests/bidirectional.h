@@ -22,6 +22,10 @@ typedef struct BidirectionalScene {
 extern const BidirectionalScene BIDIRECTIONAL_SCENES[];
 extern const int BIDIRECTIONAL_SCENE_COUNT;
 
+/* A pixel filter of every kind, as PixelFilter has it. */
+enum { BIDIRECTIONAL_FILTER_COUNT = 6 };
+extern const char *const BIDIRECTIONAL_FILTERS[BIDIRECTIONAL_FILTER_COUNT];
+
 /* The folder for the files that scenes name. */
 void bidirectional_files_make(void);
 void bidirectional_files_remove(void);

@@ -126,6 +126,14 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
 
 const int BIDIRECTIONAL_SCENE_COUNT = (int)(sizeof BIDIRECTIONAL_SCENES / sizeof BIDIRECTIONAL_SCENES[0]);
 
+const char *const BIDIRECTIONAL_FILTERS[BIDIRECTIONAL_FILTER_COUNT] = {
+    "\"box\" \"float xradius\" 0.5 \"float yradius\" 0.5",
+    "\"box\" \"float xradius\" 1.3 \"float yradius\" 0.8",
+    "\"triangle\"",
+    "\"gaussian\"",
+    "\"mitchell\"",
+    "\"sinc\" \"float xradius\" 2.5 \"float yradius\" 3"};
+
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
 /* Red, green and blue of an image of n x n; the values are in low ... high. */

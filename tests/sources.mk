@@ -18,6 +18,7 @@ check_PROGRAMS += \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_mmlt \
+	tests/test_numerics \
 	tests/test_group \
 	tests/test_import \
 	tests/test_layers \
@@ -44,6 +45,8 @@ EFFORT = 8
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
 	  TESTS='tests/test_bidirectional tests/test_mmlt tests/test_opencl tests/test_reference tests/test_scenes'
+	  TESTS='tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_opencl \
+	    tests/test_reference'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
@@ -62,6 +65,7 @@ EXTRA_DIST += \
 	tests/geometry_suites.h \
 	tests/instances.pbrt \
 	tests/light_fixture.h \
+	tests/numerics.h \
 	tests/opencl_probe.h \
 	tests/platform_layout.h \
 	tests/render_fixture.h \
@@ -171,6 +175,11 @@ tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_rng.c \
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
+
+tests_test_numerics_SOURCES = tests/test_numerics.c \
+	tests/test_numerics_film.c \
+	tests/test_numerics_lights.c \
+	tests/test_numerics_scale.c
 
 tests_test_opencl_SOURCES = tests/test_opencl.c \
 	tests/test_opencl_bits.c \

@@ -26,14 +26,6 @@ static void pictures_agree(const char *name, const char *text, int depth, unsign
 
 /* ---- crop, filter, borders --------------------------------------------------------------------------------------- */
 
-static const char *const FILTERS[] = {"\"box\" \"float xradius\" 0.5 \"float yradius\" 0.5",
-                                      "\"box\" \"float xradius\" 1.3 \"float yradius\" 0.8",
-                                      "\"triangle\"",
-                                      "\"gaussian\"",
-                                      "\"mitchell\"",
-                                      "\"sinc\" \"float xradius\" 2.5 \"float yradius\" 3"};
-#define FILTER_COUNT ((int)(sizeof FILTERS / sizeof FILTERS[0]))
-
 #define LIT_FROM_ALL_SIDES                                                                                             \
     "LookAt 0 1.2 -6  0 -0.2 0  0 1 0\nCamera \"perspective\" \"float fov\" 38 \"float lensradius\" 0.1 "              \
     "\"float focaldistance\" 5\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" BD_LAMP BD_GREY BD_FLOOR   \
@@ -48,9 +40,9 @@ START_TEST(test_filters)
     snprintf(
         text, sizeof text,
         "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 9 %s\nPixelFilter %s\n" LIT_FROM_ALL_SIDES,
-        CROPS[_i % 2], FILTERS[_i / 2]);
-    pictures_agree(FILTERS[_i / 2], text, 2, 60, LIGHT_TRACING);
-    pictures_agree(FILTERS[_i / 2], text, 3, 30, NULL);
+        CROPS[_i % 2], BIDIRECTIONAL_FILTERS[_i / 2]);
+    pictures_agree(BIDIRECTIONAL_FILTERS[_i / 2], text, 2, 60, LIGHT_TRACING);
+    pictures_agree(BIDIRECTIONAL_FILTERS[_i / 2], text, 3, 30, NULL);
 }
 END_TEST
 
@@ -165,7 +157,7 @@ TCase *bidirectional_film_case(void)
 {
     TCase *tcase = tcase_create("film");
     tcase_set_timeout(tcase, 600);
-    tcase_add_loop_test(tcase, test_filters, 0, 2 * FILTER_COUNT);
+    tcase_add_loop_test(tcase, test_filters, 0, 2 * BIDIRECTIONAL_FILTER_COUNT);
     return tcase;
 }
 

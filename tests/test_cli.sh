@@ -182,6 +182,20 @@ result 'pyramid: --unweighted changes nothing' $?
 expect 0 'lights        2' info "$scene"
 expect 0 '"feature_mask"' info --json "$scene"
 
+# Light that no path can bring is said to be missing, where glass is smooth and the sun a point; not where it is rough.
+pool() {
+    printf '%s\n' 'WorldBegin LightSource "distant"' 'Material "diffuse"' \
+        'Shape "bilinearmesh" "point3 P" [ -9 -1 -9  9 -1 -9  -9 -1 9  9 -1 9 ]' \
+        "Material \"dielectric\" \"float roughness\" $1" \
+        'Shape "bilinearmesh" "point3 P" [ -9 0 -9  9 0 -9  -9 0 9  9 0 9 ]' >pool.pbrt
+}
+pool 0
+expect 0 'is found by no integrator' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
+pool 0.3
+expect 0 '' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
+! grep -q 'is found by no integrator' err
+result 'rough glass is taken for smooth' $?
+
 # ---- compare ------------------------------------------------------------------------------------------------------
 
 expect 0 '' compare one.exr three.exr

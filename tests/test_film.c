@@ -60,6 +60,27 @@ START_TEST(test_billion_additions_exact)
 }
 END_TEST
 
+/* The long test makes them, 10^9 one by one, some of them at once. */
+START_TEST(test_billion_additions_made)
+{
+    enum { BATCH = 4000, BATCHES = 250000 };
+    static uint splats[SPLAT_WORDS * BATCH];
+    const int crop[4] = {0, 0, 1, 1};
+    Film film = film_make(1, 1, crop);
+    if (test_effort() == 1)
+        return;
+    for (uint t = 0; t < BATCH; ++t)
+        splat_set(splats, BATCH, t, 0, 0.3f, -0.3f, 1e-3f);
+    for (int i = 0; i < BATCHES; ++i)
+        film_add_splats(&film, splats, BATCH, BATCH);
+    ck_assert_int_eq(film.sums[0], 1000000000 * (int64_t)floor((double)0.3f * 0x1p30 + 0.5));
+    ck_assert_int_eq(film.sums[1], -film.sums[0]);
+    ck_assert_int_eq(film.sums[2], 1000000000 * (int64_t)floor((double)1e-3f * 0x1p30 + 0.5));
+    ck_assert_uint_eq(film.counts[0], 1000000000);
+    film_destroy(&film);
+}
+END_TEST
+
 #define SPLATS 40000u
 #define THREADS 4u
 
@@ -336,7 +357,9 @@ int main(void)
 {
     Suite *suite = suite_create("film");
     TCase *tcase = tcase_create("film");
+    tcase_set_timeout(tcase, 300); /* of the long test */
     tcase_add_test(tcase, test_billion_additions_exact);
+    tcase_add_test(tcase, test_billion_additions_made);
     tcase_add_test(tcase, test_order_does_not_matter);
     tcase_add_test(tcase, test_merge_equals_one_film);
     tcase_add_test(tcase, test_sums_of_a_device);

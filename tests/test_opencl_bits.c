@@ -1,5 +1,5 @@
 /* The same image, bit for bit, on the CPU and on the device. */
-#include "bidirectional.h"
+#include "numerics.h"
 #include "test_opencl.h"
 
 #include "backend_ocl.h"
@@ -105,6 +105,13 @@ START_TEST(test_bits_of_chains)
 }
 END_TEST
 
+/* Two surfaces in one place: both backends meet the same one everywhere. */
+START_TEST(test_bits_of_coincident_surfaces)
+{
+    backends_agree("coincident", (RenderSetup){.text = COINCIDENT_SCENE, .samples = 16, .max_depth = 4});
+}
+END_TEST
+
 /* Units so small that most contributions are clamped. */
 START_TEST(test_bits_of_clamped_sums)
 {
@@ -181,6 +188,7 @@ TCase *opencl_bits_tests(void)
     tcase_set_tags(bits, "pictures");
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
+    tcase_add_test(bits, test_bits_of_coincident_surfaces);
     tcase_add_test(bits, test_bits_of_clamped_sums);
     tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_chains, 0, 4);
