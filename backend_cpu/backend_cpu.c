@@ -1,6 +1,7 @@
 #include "backend_cpu.h"
 
 #include "kernel_list.h"
+#include "kernel_scene.h"
 #include "kernels.h"
 #include "rays_embree.h"
 #include "state.h"
@@ -37,6 +38,7 @@ typedef struct Worker {
     Backend *backend;
     pthread_t thread;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the chunk */
+    void *kernel_frame; /* kernel_frame's storage */
     uint *buffers[BUFFER_COUNT]; /* per-item buffers and counters */
     size_t buffer_words[BUFFER_COUNT];
     uint64_t diagnostics[DIAGNOSTIC_COUNT];
@@ -57,7 +59,7 @@ typedef struct Job {
 } Job;
 
 struct Backend {
-    BackendScene scene;
+    KernelScene *scene;
     RaysEmbree *rays;
     double build_seconds;
     uint worker_count;
@@ -91,10 +93,9 @@ static bool worker_reserve(Worker *worker, const StepList *list)
             continue;
         free(worker->buffers[id]);
         worker->buffer_words[id] = 0;
-        worker->buffers[id] = aligned_alloc(64, (words * sizeof(uint) + 63) / 64 * 64);
+        worker->buffers[id] = kernel_state_create(words);
         if (!worker->buffers[id])
             return false;
-        memset(worker->buffers[id], 0, words * sizeof(uint));
         worker->buffer_words[id] = words;
     }
     return true;
@@ -103,10 +104,10 @@ static bool worker_reserve(Worker *worker, const StepList *list)
 /* What a kernel's BufferIds mean to this worker. */
 static void worker_arguments(Worker *worker, const StepList *list, void *arguments[BUFFER_COUNT])
 {
-    const BackendScene *scene = &worker->backend->scene;
+    const BackendScene *scene = kernel_scene_view(worker->backend->scene);
     for (int id = 0; id < BUFFER_COUNT; ++id)
         arguments[id] = worker->buffers[id];
-    arguments[BUFFER_FRAME] = &worker->frame;
+    arguments[BUFFER_FRAME] = kernel_frame(worker->backend->scene, &worker->frame, worker->kernel_frame);
     arguments[BUFFER_PASS] = list->pass_words;
     /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
     arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;
@@ -324,8 +325,11 @@ static void backend_cpu_close(Backend *backend)
     for (uint i = 0; i < backend->worker_count; ++i)
         for (int id = 0; id < BUFFER_COUNT; ++id)
             free(backend->workers[i].buffers[id]);
+    for (uint i = 0; i < backend->worker_count; ++i)
+        free(backend->workers[i].kernel_frame);
     free(backend->workers);
     rays_embree_destroy(backend->rays);
+    kernel_scene_destroy(backend->scene);
     pthread_cond_destroy(&backend->begin);
     pthread_cond_destroy(&backend->end);
     pthread_mutex_destroy(&backend->mutex);
@@ -346,7 +350,11 @@ static bool workers_start(Backend *backend, uint count, Error *error)
         return error_memory(error, count * sizeof *backend->workers, "threads");
     for (uint i = 0; i < count; ++i) {
         backend->workers[i].backend = backend;
+        backend->workers[i].kernel_frame = malloc(kernel_frame_bytes() + 1);
+        if (!backend->workers[i].kernel_frame)
+            return error_memory(error, kernel_frame_bytes(), "threads");
         if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
+            free(backend->workers[i].kernel_frame);
             error_set(error, "thread %u of %u cannot be started", i + 1, count);
             return error_fix(error, "ask for fewer with --threads");
         }
@@ -362,13 +370,14 @@ static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions
         error_memory(error, sizeof *backend, "the CPU backend");
         return NULL;
     }
-    backend->scene = *scene;
     pthread_mutex_init(&backend->mutex, NULL);
     pthread_cond_init(&backend->begin, NULL);
     pthread_cond_init(&backend->end, NULL);
     uint threads = thread_count(options);
     uint64_t begin = nanoseconds_now();
-    backend->rays = rays_embree_create(scene, (int)threads, error);
+    backend->scene = kernel_scene_create(scene, error);
+    if (backend->scene)
+        backend->rays = rays_embree_create(kernel_scene_view(backend->scene), (int)threads, error);
     backend->build_seconds = 1e-9 * (double)(nanoseconds_now() - begin);
     if (!backend->rays || !workers_start(backend, threads, error)) {
         backend_cpu_close(backend);

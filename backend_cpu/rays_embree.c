@@ -1,11 +1,11 @@
+#include <embree3/rtcore.h> /* before any shared header: its floats are floats in every build */
+
 #include "rays_embree.h"
 
 #include "box.h"
 #include "primitive.h"
 #include "state.h"
 #include "triangle_cluster.h"
-
-#include <embree3/rtcore.h>
 
 #include <stdatomic.h>
 #include <stdio.h>

@@ -1,11 +1,22 @@
-noinst_LTLIBRARIES += libtwinlight_cpu.la
+# What is compiled with the arithmetic of the kernels: float, or double with --enable-double; and the rest, which has the
+# host's structs.
+noinst_LTLIBRARIES += libtwinlight_cpu.la libtwinlight_kernels.la
 libtwinlight_cpu_la_SOURCES = \
-	backend_cpu/backend_cpu.c backend_cpu/backend_cpu.h \
+	backend_cpu/backend_cpu.c backend_cpu/backend_cpu.h
+libtwinlight_cpu_la_LIBADD = libtwinlight_kernels.la $(EMBREE_LIBS)
+libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernel_loop.h \
+	backend_cpu/kernel_scene.h \
 	backend_cpu/kernels.c backend_cpu/kernels.h \
 	backend_cpu/kernels_bd.c \
 	backend_cpu/kernels_mlt.c \
 	backend_cpu/kernels_others.c \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
-libtwinlight_cpu_la_LIBADD = $(EMBREE_LIBS)
+libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)
+libtwinlight_kernels_la_CFLAGS = $(AM_CFLAGS) $(KERNEL_CFLAGS)
+if ENABLE_DOUBLE
+libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene_double.c
+else
+libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene.c
+endif

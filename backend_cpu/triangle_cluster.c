@@ -153,7 +153,7 @@ static inline Lanes lanes_max(Lanes a, Lanes b)
 /* Bit i: lane i of the mask. */
 static inline unsigned lanes_bits(LaneMask mask)
 {
-#if defined(__SSE__) && CLUSTER_LANES == 4
+#if defined(__SSE__) && CLUSTER_LANES == 4 && !defined(PLATFORM_DOUBLE)
     return (unsigned)__builtin_ia32_movmskps((Lanes)mask);
 #endif
     unsigned bits = 0;

@@ -5,16 +5,20 @@
 #ifndef TWINLIGHT_TRIANGLE_CLUSTER_H
 #define TWINLIGHT_TRIANGLE_CLUSTER_H
 
+#include <embree3/rtcore.h> /* before any shared header: its floats are floats in every build */
+
 #include "box.h"
 #include "error.h"
 #include "primitive.h"
 
-#include <embree3/rtcore.h>
-
 #define CLUSTER_LANES 4
 
-typedef float Lanes __attribute__((vector_size(4 * CLUSTER_LANES)));
-typedef int LaneMask __attribute__((vector_size(4 * CLUSTER_LANES)));
+typedef float Lanes __attribute__((vector_size(sizeof(float) * CLUSTER_LANES)));
+#ifdef PLATFORM_DOUBLE
+typedef int64_t LaneMask __attribute__((vector_size(sizeof(float) * CLUSTER_LANES)));
+#else
+typedef int LaneMask __attribute__((vector_size(sizeof(float) * CLUSTER_LANES)));
+#endif
 
 typedef struct TriangleCluster {
     Lanes corner[3][3]; /* corner, axis */

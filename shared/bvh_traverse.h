@@ -191,10 +191,11 @@ SHARED_FUNCTION ShearedCorner bvh_corner(Float4 x, Float4 y, Float4 z, uint k)
  * beyond t_best by more than rounding. */
 SHARED_FUNCTION bool bvh_triangle_query(__global const Float4 *quads, const RayQuery *query, float t_best, Hit *hit)
 {
-    Float4 z = quads[query->kz] - query->oz;
-    Float4 x = (quads[query->kx] - query->ox) - query->sx * z;
-    Float4 y = (quads[query->ky] - query->oy) - query->sy * z;
-    z = query->sz * z;
+    Float4 sx = float4_splat(query->sx), sy = float4_splat(query->sy), sz = float4_splat(query->sz);
+    Float4 z = quads[query->kz] - float4_splat(query->oz);
+    Float4 x = (quads[query->kx] - float4_splat(query->ox)) - sx * z;
+    Float4 y = (quads[query->ky] - float4_splat(query->oy)) - sy * z;
+    z = sz * z;
     ShearedCorner a = bvh_corner(x, y, z, 0u), b = bvh_corner(x, y, z, 1u), c = bvh_corner(x, y, z, 2u);
     TriangleEdges edges = triangle_edges(a, b, c);
     float area = edges.a + edges.b + edges.c;

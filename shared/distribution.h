@@ -49,7 +49,7 @@ SHARED_FUNCTION float distribution_place(uint cell, float fraction, uint count)
         uint at = distribution_cell_of(x, count);
         if (at == cell)
             break;
-        x = bits_float(at > cell ? float_bits(x) - 1u : float_bits(x) + 1u);
+        x = float_step(x, at > cell ? -1.0f : 1.0f);
     }
     return x;
 }

@@ -19,7 +19,8 @@
 #include "platform.h"
 
 #define FLOAT_NAN bits_float(0x7fc00000u)
-#define FLOAT_SIGN_BIT 0x80000000u
+
+#ifndef PLATFORM_DOUBLE
 
 /* ---- exact building blocks (Dekker 1971) ---------------------------------------------------------------------- */
 
@@ -332,5 +333,7 @@ SHARED_FUNCTION float float_atan2(float y, float x)
     }
     return bits_float(float_bits(base + (base_lower + angle)) ^ (float_bits(y) & FLOAT_SIGN_BIT));
 }
+
+#endif
 
 #endif

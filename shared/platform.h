@@ -13,6 +13,8 @@
 #define SHARED_FUNCTION inline static
 #define float_bits(x) as_uint(x)
 #define bits_float(x) as_float(x)
+#define word_float(word) as_float(*(word))
+#define word_set_float(word, value) (*(word) = as_uint(value))
 #define float_sqrt(x) sqrt(x)
 #define float_abs(x) fabs(x)
 #define float_floor(x) floor(x)
@@ -67,6 +69,10 @@ typedef uint64_t ulong;
 static _Thread_local uint platform_item __attribute__((unused));
 #define get_global_id(dimension) ((size_t)platform_item)
 
+#ifdef TWINLIGHT_DOUBLE
+#include "platform_double.h"
+#else
+
 SHARED_FUNCTION uint float_bits(float x)
 {
     uint bits;
@@ -81,19 +87,29 @@ SHARED_FUNCTION float bits_float(uint bits)
     return x;
 }
 
+/* The float that a word of state holds. */
+#define word_float(word) bits_float(*(word))
+#define word_set_float(word, value) (*(word) = float_bits(value))
+
+#define float_sqrt(x) sqrtf(x)
+#define float_abs(x) fabsf(x)
+#define float_floor(x) floorf(x)
+
 /* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the operators
  * of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad differ from
  * device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use them, which
  * decide no bit of a result. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
+#define float4_splat(x) ((Float4){(x), (x), (x), (x)})
+#define float4_mad(a, b, c) ((a) * (b) + (c))
+
+#endif
+
 typedef uint Uint4 __attribute__((vector_size(16), may_alias));
 #define lane_of(v, i) ((v)[i])
 #define uint4_make(a, b, c, d) ((Uint4){(a), (b), (c), (d)})
-#define float4_splat(x) ((Float4){(x), (x), (x), (x)})
 #define float4_bits(a) ((Uint4)(a))
 #define float4_at_most(a, b) ((Uint4)((a) <= (b)))
-
-#define float4_mad(a, b, c) ((a) * (b) + (c))
 
 #if defined(__SSE__)
 /* gcc makes six instructions of the text below. */
@@ -113,9 +129,6 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 }
 #endif
 
-#define float_sqrt(x) sqrtf(x)
-#define float_abs(x) fabsf(x)
-#define float_floor(x) floorf(x)
 /* Every thread has its own counters. */
 #define counter_increment(counter) (++*(counter))
 #define counter_add(counter, n) (*(counter) += (n))
@@ -133,13 +146,6 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 
 #define FLOAT_MAX 3.402823466e+38f
 #define FLOAT_INFINITY bits_float(0x7f800000u)
-#define PI 3.14159265358979323846f
-#define INV_PI 0.31830988618379067154f
-#define INV_2PI 0.15915494309189533577f
-#define INV_4PI 0.07957747154594766788f
-#define PI_OVER_2 1.57079632679489661923f
-#define PI_OVER_4 0.78539816339744830961f
-
 /* "No such index" in every 32-bit index of the scene. */
 #define NONE 0xffffffffu
 
@@ -147,5 +153,51 @@ SHARED_FUNCTION bool float_finite(float x)
 {
     return (float_bits(x) & 0x7f800000u) != 0x7f800000u;
 }
+
+/* What --enable-double has its own of (platform_double.h). */
+#ifndef PLATFORM_DOUBLE
+
+#define PI 3.14159265358979323846f
+#define INV_PI 0.31830988618379067154f
+#define INV_2PI 0.15915494309189533577f
+#define INV_4PI 0.07957747154594766788f
+#define PI_OVER_2 1.57079632679489661923f
+#define PI_OVER_4 0.78539816339744830961f
+
+#define FLOAT_SIGN_BIT 0x80000000u
+
+/* a or b by selecting among integers, which compiles to moves and not to branches that nobody can predict. */
+#define float_select(condition, a, b) bits_float((condition) ? float_bits(a) : float_bits(b))
+
+SHARED_FUNCTION float float_copy_sign(float magnitude, float sign)
+{
+    return bits_float((float_bits(magnitude) & ~FLOAT_SIGN_BIT) | (float_bits(sign) & FLOAT_SIGN_BIT));
+}
+
+/* The next float after x in the direction of `toward` (x itself when that is 0 or x is not finite). */
+SHARED_FUNCTION float float_step(float x, float toward)
+{
+    if (toward == 0.0f || !float_finite(x))
+        return x;
+    if (x == 0.0f)
+        return toward > 0.0f ? bits_float(1u) : bits_float(0x80000001u);
+    uint bits = float_bits(x);
+    return bits_float((x > 0.0f) == (toward > 0.0f) ? bits + 1u : bits - 1u);
+}
+
+/* The mantissa in [1, 2) of a positive finite x, which is it times 2^exponent. */
+SHARED_FUNCTION float float_mantissa(float x, int *exponent)
+{
+    int shift = 0;
+    if (x < 1.17549435e-38f) { /* denormal */
+        x = x * 16777216.0f;
+        shift = 24;
+    }
+    uint bits = float_bits(x);
+    *exponent = (int)(bits >> 23) - 127 - shift;
+    return bits_float((bits & 0x007fffffu) | 0x3f800000u);
+}
+
+#endif
 
 #endif

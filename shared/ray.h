@@ -35,17 +35,6 @@ SHARED_FUNCTION float vec3_max_abs(Vec3 a)
     return vec3_max_component(vec3_abs(a));
 }
 
-/* The next float after x in the direction of `toward` (x itself when that is 0 or x is not finite). */
-SHARED_FUNCTION float float_step(float x, float toward)
-{
-    if (toward == 0.0f || !float_finite(x))
-        return x;
-    if (x == 0.0f)
-        return toward > 0.0f ? bits_float(1u) : bits_float(0x80000001u);
-    uint bits = float_bits(x);
-    return bits_float((x > 0.0f) == (toward > 0.0f) ? bits + 1u : bits - 1u);
-}
-
 /* p moved off its surface along `normal` (unit; zero: not moved), rounded away from the surface. */
 SHARED_FUNCTION Vec3 ray_offset(Vec3 p, Vec3 normal)
 {
@@ -125,12 +114,10 @@ typedef struct RayQuery {
     float sx, sy, sz;
 } RayQuery;
 
-/* Component k by selecting among integers, which compiles to moves and not to branches that nobody can predict. */
 SHARED_FUNCTION float vec3_component(Vec3 a, uint k)
 {
-    uint x = float_bits(a.x), y = float_bits(a.y), z = float_bits(a.z);
-    uint xy = k == 0u ? x : y;
-    return bits_float(k == 2u ? z : xy);
+    float xy = float_select(k == 0u, a.x, a.y);
+    return float_select(k == 2u, a.z, xy);
 }
 
 SHARED_FUNCTION RayQuery ray_query_shear(Vec3 o, Vec3 d, float t_max, Vec3 error, float offset)

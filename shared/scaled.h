@@ -35,18 +35,11 @@ SHARED_FUNCTION Scaled scaled_infinite(void)
 SHARED_FUNCTION Scaled scaled_from(float x)
 {
     Scaled result;
-    int shift = 0;
     if (!(x > 0.0f))
         return scaled_zero();
     if (!float_finite(x))
         return scaled_infinite();
-    if (x < 1.17549435e-38f) { /* denormal */
-        x = x * 16777216.0f;
-        shift = 24;
-    }
-    uint bits = float_bits(x);
-    result.exponent = (int)(bits >> 23) - 127 - shift;
-    result.mantissa = bits_float((bits & 0x007fffffu) | 0x3f800000u);
+    result.mantissa = float_mantissa(x, &result.exponent);
     return result;
 }
 

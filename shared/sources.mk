@@ -52,6 +52,7 @@ SHARED_FILES = \
 	shared/path_types.h \
 	shared/pixel_filter.h \
 	shared/platform.h \
+	shared/platform_double.h \
 	shared/pool.h \
 	shared/primitive.h \
 	shared/pt.cl \
@@ -63,6 +64,7 @@ SHARED_FILES = \
 	shared/sphere.h \
 	shared/state.h \
 	shared/strategy.h \
+	shared/struct_members.h \
 	shared/surface.h \
 	shared/texture.h \
 	shared/trace.cl \

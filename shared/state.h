@@ -17,12 +17,12 @@ SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field,
 
 SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint t)
 {
-    return bits_float(buffer[(size_t)field * stride + t]);
+    return word_float(buffer + (size_t)field * stride + t);
 }
 
 SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint t, float value)
 {
-    buffer[(size_t)field * stride + t] = float_bits(value);
+    word_set_float(buffer + (size_t)field * stride + t, value);
 }
 
 /* A Vec3 takes three fields from `field` on. */

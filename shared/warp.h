@@ -85,11 +85,6 @@ SHARED_FUNCTION Vec2 warp_triangle(Vec2 u)
 
 /* ---- the sphere as a square: pbrt-v4's equal-area octahedral map ----------------------------------------------- */
 
-SHARED_FUNCTION float warp_copy_sign(float magnitude, float sign)
-{
-    return bits_float((float_bits(magnitude) & ~FLOAT_SIGN_BIT) | (float_bits(sign) & FLOAT_SIGN_BIT));
-}
-
 /* Uniform uv gives uniform directions; density over solid angle INV_4PI. +z is the middle of the square, -z its
  * corners, +x the middle of the edge u = 1 (Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", JGT
  * 13(3), 2008). */
@@ -104,8 +99,8 @@ SHARED_FUNCTION Vec3 octahedral_to_sphere(Vec2 uv)
     float s, c;
     float_sincos(PI_OVER_4 * (ratio + 1.0f), &s, &c);
     float horizontal = r * float_sqrt(2.0f - r * r);
-    return vec3(warp_copy_sign(horizontal * c, u), warp_copy_sign(horizontal * s, v),
-                warp_copy_sign(1.0f - r * r, distance));
+    return vec3(float_copy_sign(horizontal * c, u), float_copy_sign(horizontal * s, v),
+                float_copy_sign(1.0f - r * r, distance));
 }
 
 /* The inverse; d must be a unit vector. 1 - |z| is computed from x and y, which keeps the poles precise. */
@@ -120,7 +115,7 @@ SHARED_FUNCTION Vec2 sphere_to_octahedral(Vec3 d)
         u = 1.0f - v;
         v = 1.0f - swap;
     }
-    return vec2(0.5f * (1.0f + warp_copy_sign(u, d.x)), 0.5f * (1.0f + warp_copy_sign(v, d.y)));
+    return vec2(0.5f * (1.0f + float_copy_sign(u, d.x)), 0.5f * (1.0f + float_copy_sign(v, d.y)));
 }
 
 /* ---- the sphere as a latitude-longitude image ------------------------------------------------------------------ */

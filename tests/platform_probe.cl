@@ -2,6 +2,7 @@
  * writes PROBE_WORDS words of `out`, zeroed before; `table` holds what distributions need. */
 #include "distribution.h"
 #include "rng.h"
+#include "struct_members.h"
 #include "warp.h"
 
 #define PROBE_WORDS 32u
@@ -21,7 +22,7 @@ __kernel void probe_layout(__global const uint *in, __global const uint *table, 
         out[n++] = (uint)((const uchar *)&value.member - (const uchar *)&value);                                       \
         out[n++] = (uint)sizeof value.member;                                                                          \
     }
-#include "platform_layout.h"
+    STRUCT_MEMBERS(STRUCT, MEMBER)
 #undef STRUCT
 #undef MEMBER
 }

@@ -67,7 +67,6 @@ EXTRA_DIST += \
 	tests/light_fixture.h \
 	tests/numerics.h \
 	tests/opencl_probe.h \
-	tests/platform_layout.h \
 	tests/render_fixture.h \
 	tests/test_bvh.h \
 	tests/test_emit.h \

@@ -25,9 +25,7 @@ typedef struct LayoutEntry {
 
 #define STRUCT(type) {#type, NULL},
 #define MEMBER(type, member) {#type, #member},
-static const LayoutEntry LAYOUT[] = {
-#include "platform_layout.h"
-};
+static const LayoutEntry LAYOUT[] = {STRUCT_MEMBERS(STRUCT, MEMBER)};
 #undef STRUCT
 #undef MEMBER
 #define LAYOUT_COUNT (sizeof LAYOUT / sizeof LAYOUT[0])
@@ -49,7 +47,7 @@ START_TEST(test_layout)
 END_TEST
 
 /* Members are 4-byte words and structs of them, so a struct without a gap is as large as its members together: a member
- * missing in platform_layout.h shows, and so does padding. */
+ * missing in struct_members.h shows, and so does padding. */
 START_TEST(test_layout_complete)
 {
     static uint words[4 * LAYOUT_COUNT];
@@ -80,7 +78,7 @@ static bool layout_lists(const char *type)
     return false;
 }
 
-/* Every struct of scene_types.h is in platform_layout.h. */
+/* Every struct of scene_types.h is in struct_members.h. */
 START_TEST(test_layout_structs)
 {
     char path[4096], line[512], type[64];
@@ -90,7 +88,7 @@ START_TEST(test_layout_structs)
     int count = 0;
     while (fgets(line, sizeof line, file))
         if (sscanf(line, "typedef struct %63[A-Za-z0-9_]", type) == 1) {
-            ck_assert_msg(layout_lists(type), "platform_layout.h lacks %s", type);
+            ck_assert_msg(layout_lists(type), "struct_members.h lacks %s", type);
             ++count;
         }
     fclose(file);

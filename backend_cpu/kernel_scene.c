@@ -1,0 +1,49 @@
+#include "kernel_scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct KernelScene {
+    BackendScene view;
+};
+
+KernelScene *kernel_scene_create(const BackendScene *scene, Error *error)
+{
+    KernelScene *out = malloc(sizeof *out);
+    if (out)
+        out->view = *scene;
+    else
+        error_memory(error, sizeof *out, "the CPU backend");
+    return out;
+}
+
+void kernel_scene_destroy(KernelScene *scene)
+{
+    free(scene);
+}
+
+const BackendScene *kernel_scene_view(const KernelScene *scene)
+{
+    return &scene->view;
+}
+
+size_t kernel_frame_bytes(void)
+{
+    return 0;
+}
+
+void *kernel_frame(const KernelScene *scene, FrameParams *frame, void *storage)
+{
+    (void)scene;
+    (void)storage;
+    return frame;
+}
+
+uint *kernel_state_create(size_t words)
+{
+    size_t bytes = (words * sizeof(uint) + 63) / 64 * 64;
+    uint *out = aligned_alloc(64, bytes);
+    if (out)
+        memset(out, 0, bytes);
+    return out;
+}
