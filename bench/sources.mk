@@ -5,6 +5,8 @@
 #   bench_opencl.sh  samples/s of a device with overlap, without, with its own film, and of the CPU; rays/s of both
 #   bench_mmlt.sh    what sorting and grouping of chains bring, acceptance by depth, on the CPU and the first device
 #   bench_error.sh   error against time of all integrators on BENCH_SCENES, and a plot of it
+# By hand, with a second program from a build with --enable-double:
+#   bench_double.sh  how far pictures of both are apart
 # Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
@@ -18,8 +20,11 @@ EXTRA_PROGRAMS += bench/bench_bvh
 bench_bench_bvh_SOURCES = bench/bench_bvh.c $(OPENCL_PROBE)
 bench_bench_bvh_CPPFLAGS = $(AM_CPPFLAGS) -I$(srcdir)/tests
 bench_bench_bvh_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) -lm
-CLEANFILES += bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/bench.sh bench/bench_util.h bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_PROGRAMS += bench/block_difference
+bench_block_difference_SOURCES = bench/block_difference.c
+bench_block_difference_LDADD = libtwinlight_host.la -lm
+CLEANFILES += bench/block_difference$(EXEEXT) bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
+EXTRA_DIST += bench/bench.sh bench/bench_util.h bench/bench_double.sh bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)
