@@ -10,10 +10,10 @@ set -eu
 . "$(dirname "$0")/bench.sh"
 
 SEEDS=${SEEDS:-8}
-SAMPLES=${SAMPLES:-64}
+SAMPLES=${SAMPLES:-16}
 RESOLUTION=${RESOLUTION:-64x48}
 DEPTH=${DEPTH:-8}
-INTEGRATORS=${INTEGRATORS:-pt ibpt bdpt mmlt}
+INTEGRATORS=${INTEGRATORS:-pt bdpt mmlt}
 float=$1
 double=$2
 difference=$3
