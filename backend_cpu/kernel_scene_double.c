@@ -1,5 +1,8 @@
 /* Every array of the scene, with a double where the host has a float. The numbers are the host's: what differs from a
  * build without --enable-double is the arithmetic, and nothing else. */
+#ifndef TWINLIGHT_DOUBLE
+#define TWINLIGHT_DOUBLE
+#endif
 #include "kernel_scene.h"
 
 #include "scene_view.h"
@@ -58,27 +61,38 @@ static const Member *struct_begin(int type)
     return member;
 }
 
-/* Reads one struct of the host's words, writes the kernels' to `out` unless that is NULL, and returns how many words it
- * has read. Structs hold structs two deep. */
-static size_t struct_widen(int type, const uint *words, char *out) // NOLINT(misc-no-recursion)
+/* How many numbers or words a member of numbers or words holds. */
+static size_t member_count(const Member *member)
 {
-    size_t read = 0;
+    return member->size / (member->kind == MEMBER_FLOATS ? sizeof(float) : sizeof(uint));
+}
+
+/* Words of the host's struct. Structs hold structs two deep. */
+static size_t struct_words(int type) // NOLINT(misc-no-recursion)
+{
+    size_t words = 0;
+    for (const Member *m = struct_begin(type) + 1; m < MEMBERS + MEMBER_COUNT && m->kind != -1; ++m)
+        words += m->kind > MEMBER_WORDS ? struct_words(m->kind) : member_count(m);
+    return words;
+}
+
+/* Writes the kernels' struct from the words of the host's. */
+static void struct_widen(int type, const uint *words, char *out) // NOLINT(misc-no-recursion)
+{
     for (const Member *m = struct_begin(type) + 1; m < MEMBERS + MEMBER_COUNT && m->kind != -1; ++m) {
-        char *to = out ? out + m->offset : NULL;
+        char *to = out + m->offset;
         if (m->kind > MEMBER_WORDS) {
-            read += struct_widen(m->kind, words ? words + read : NULL, to);
+            struct_widen(m->kind, words, to);
+            words += struct_words(m->kind);
             continue;
         }
-        size_t count = m->size / (m->kind == MEMBER_FLOATS ? sizeof(float) : sizeof(uint));
-        for (size_t i = 0; to && i < count; ++i) {
+        for (size_t i = 0; i < member_count(m); ++i, ++words) {
             if (m->kind == MEMBER_FLOATS)
-                ((float *)(void *)to)[i] = bits_float(words[read + i]);
+                ((float *)(void *)to)[i] = bits_float(*words);
             else
-                ((uint *)(void *)to)[i] = words[read + i];
+                ((uint *)(void *)to)[i] = *words;
         }
-        read += count;
     }
-    return read;
 }
 
 /* ---- arrays ------------------------------------------------------------------------------------------------------ */
@@ -91,7 +105,7 @@ typedef struct WideArray {
 
 static size_t element_words(int type)
 {
-    return type <= MEMBER_WORDS ? 1 : struct_widen(type, NULL, NULL);
+    return type <= MEMBER_WORDS ? 1 : struct_words(type);
 }
 
 static size_t element_bytes(int type)

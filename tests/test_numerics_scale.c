@@ -14,8 +14,8 @@ typedef struct Placement {
 } Placement;
 
 /* The seed is the same, so only paths whose rounding decides something, a hit or a lobe, differ at all: nothing for a
- * power of two. 10^4 away a float has steps of 10^-3, a ray leaves a surface of this scene of size 8 by 0.01, and half
- * of the paths take another turn somewhere: what is left there is noise, and test_far looks for more. */
+ * power of two. 10^4 away a float has steps of 10^-3, a ray leaves a surface of this scene of size 8 by 0.01, and many
+ * paths take another turn somewhere: what is left there is noise, and test_far looks for more. */
 static const Placement PLACEMENTS[] = {{1.0, 0.0, 0.0, 0.0},    {1.0 / 1024.0, 0.0, 0.0, 0.0}, {1e-3, 0.0, 1e-6, 1e-3},
                                        {37.0, 0.0, 1e-6, 1e-3}, {1e4, 0.0, 1e-6, 1e-3},        {1.0, 100.0, 1e-4, 2e-3},
                                        {1.0, 1e4, 2e-3, 0.03}};
