@@ -2,8 +2,8 @@
 # Float against double: the same scenes, seeds and samples by a program of the usual build and by one of --enable-double.
 #
 # Of 8 x 8 blocks of pixels, relative: the largest difference of their means, its standard error over the seeds, what is
-# left of the largest when as much as noise explains (p = 0.01 for all blocks together) is taken off, and beside it how far
-# two seeds are apart, most of which the same seed takes away: paths are the same but where rounding decides something.
+# left of the largest when as much as noise explains (p = 0.01 for all blocks together) is taken off, the difference of the
+# whole picture and its standard error, and beside it how far two seeds are apart in their blocks, most of which the same seed takes away: paths are the same but where rounding decides something.
 # SEEDS, SAMPLES, RESOLUTION, DEPTH, INTEGRATORS shorten it. usage: bench_double.sh FLOAT DOUBLE BLOCK_DIFFERENCE SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
@@ -27,7 +27,7 @@ image() {
 
 head_print
 printf '# setting\t%s seeds, %s samples a pixel each, %s pixels, %s segments\n' "$SEEDS" "$SAMPLES" "$RESOLUTION" "$DEPTH"
-printf 'scene\tintegrator\tlargest difference\tstandard error\tbeyond noise\tbetween seeds\n'
+printf 'scene\tintegrator\tlargest difference\tstandard error\tbeyond noise\tpicture\tstandard error\tbetween seeds\n'
 for scene in "$@"; do
     for integrator in $INTEGRATORS; do
         set --

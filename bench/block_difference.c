@@ -4,7 +4,8 @@
  * block's mean in one pair, over the mean that all B have there plus 0.01 of the picture's, m the mean of d over the pairs
  * and e its standard error, prints one line:
  *   largest |m| of all blocks, its e, and the largest |m| - T e above zero, T Student's value for p = 0.01 of all blocks
- *   together; the root mean square of d that two seeds of one program differ by, which the same seed takes away. */
+ *   together; the same difference and standard error of the whole picture; the root mean square of d that two seeds of
+ *   one program differ by, which the same seed takes away. */
 #include "bench_util.h"
 
 #include "image.h"
@@ -47,39 +48,69 @@ static double student(int pairs)
     return pairs >= 16 ? 5.0 : pairs >= 8 ? 7.2 : 18.0;
 }
 
+/* The difference of one block over all pairs, and its standard error; scale: what it is relative to. */
+typedef struct Difference {
+    double mean, error;
+} Difference;
+
+static Difference difference_of(const double *a, const double *b, int pairs, double scale)
+{
+    Difference d = {0.0, 0.0};
+    double squares = 0.0;
+    for (int g = 0; g < pairs; ++g)
+        d.mean += (a[g] - b[g]) / scale / pairs;
+    for (int g = 0; g < pairs; ++g)
+        squares += pow((a[g] - b[g]) / scale - d.mean, 2.0);
+    d.error = sqrt(squares / (pairs - 1) / pairs);
+    return d;
+}
+
+/* Mean square difference of two of the values, over scale^2. */
+static double spread_of(const double *b, int pairs, double mean, double scale)
+{
+    double spread = 0.0;
+    for (int g = 0; g < pairs; ++g)
+        spread += 2.0 * pow((b[g] - mean) / scale, 2.0) / (pairs - 1);
+    return spread;
+}
+
+static double mean_of(const double *values, int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i)
+        sum += values[i];
+    return sum / count;
+}
+
 int main(int argc, char **argv)
 {
-    static Means a[PAIRS_MAX], b[PAIRS_MAX];
-    int blocks = argc > 1 ? atoi(argv[1]) : 0, pairs = (argc - 2) / 2;
+    static Means a, b;
+    static double block_a[BLOCKS_MAX * BLOCKS_MAX][PAIRS_MAX], block_b[BLOCKS_MAX * BLOCKS_MAX][PAIRS_MAX];
+    double picture_a[PAIRS_MAX], picture_b[PAIRS_MAX], beyond = 0.0, seeds = 0.0;
+    int blocks = argc > 1 ? atoi(argv[1]) : 0, pairs = (argc - 2) / 2, cells = blocks * blocks;
     if (blocks < 1 || blocks > BLOCKS_MAX || pairs < 4 || pairs > PAIRS_MAX || argc % 2 != 0)
         bench_fail("usage: block_difference BLOCKS A1.exr B1.exr ... (four pairs or more)");
     for (int g = 0; g < pairs; ++g) {
-        means_read(argv[2 + 2 * g], blocks, &a[g]);
-        means_read(argv[3 + 2 * g], blocks, &b[g]);
+        means_read(argv[2 + 2 * g], blocks, &a);
+        means_read(argv[3 + 2 * g], blocks, &b);
+        picture_a[g] = mean_of(a.value, cells);
+        picture_b[g] = mean_of(b.value, cells);
+        for (int k = 0; k < cells; ++k) {
+            block_a[k][g] = a.value[k];
+            block_b[k][g] = b.value[k];
+        }
     }
-    int cells = blocks * blocks;
-    double whole = 0.0, largest = -1.0, error_there = 0.0, beyond = 0.0, seeds = 0.0;
-    for (int k = 0; k < cells; ++k)
-        for (int g = 0; g < pairs; ++g)
-            whole += b[g].value[k] / (cells * pairs);
+    double whole = mean_of(picture_b, pairs);
+    Difference largest = {0.0, 0.0}, picture = difference_of(picture_a, picture_b, pairs, whole);
     for (int k = 0; k < cells; ++k) {
-        double mean = 0.0, m = 0.0, squares = 0.0, spread = 0.0;
-        for (int g = 0; g < pairs; ++g)
-            mean += b[g].value[k] / pairs;
-        for (int g = 0; g < pairs; ++g)
-            m += (a[g].value[k] - b[g].value[k]) / (mean + 0.01 * whole) / pairs;
-        for (int g = 0; g < pairs; ++g) {
-            squares += pow((a[g].value[k] - b[g].value[k]) / (mean + 0.01 * whole) - m, 2.0);
-            spread += 2.0 * pow((b[g].value[k] - mean) / (mean + 0.01 * whole), 2.0) / (pairs - 1);
-        }
-        double error = sqrt(squares / (pairs - 1) / pairs);
-        if (fabs(m) > largest) {
-            largest = fabs(m);
-            error_there = error;
-        }
-        beyond = fmax(beyond, fabs(m) - student(pairs) * error);
-        seeds += spread / cells;
+        double mean = mean_of(block_b[k], pairs), scale = mean + 0.01 * whole;
+        Difference d = difference_of(block_a[k], block_b[k], pairs, scale);
+        if (fabs(d.mean) >= fabs(largest.mean))
+            largest = d;
+        beyond = fmax(beyond, fabs(d.mean) - student(pairs) * d.error);
+        seeds += spread_of(block_b[k], pairs, mean, scale) / cells;
     }
-    printf("%.2e\t%.2e\t%.2e\t%.2e\n", largest, error_there, beyond, sqrt(seeds));
+    printf("%.2e\t%.2e\t%.2e\t%.2e\t%.2e\t%.2e\n", fabs(largest.mean), largest.error, beyond, fabs(picture.mean),
+           picture.error, sqrt(seeds));
     return EXIT_SUCCESS;
 }
