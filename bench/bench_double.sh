@@ -3,7 +3,8 @@
 #
 # Of 8 x 8 blocks of pixels, relative: the largest difference of their means, its standard error over the seeds, what is
 # left of the largest when as much as noise explains (p = 0.01 for all blocks together) is taken off, the difference of the
-# whole picture and its standard error, and beside it how far two seeds are apart in their blocks, most of which the same seed takes away: paths are the same but where rounding decides something.
+# whole picture and its standard error, and beside it how far two seeds are apart in their blocks, most of which the same
+# seed takes away: paths are the same but where rounding decides something.
 # SEEDS, SAMPLES, RESOLUTION, DEPTH, INTEGRATORS shorten it. usage: bench_double.sh FLOAT DOUBLE BLOCK_DIFFERENCE SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
