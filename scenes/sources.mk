@@ -42,7 +42,6 @@ scene-parts: scenes/make_parts$(EXEEXT)
 	./scenes/make_parts$(EXEEXT) $(srcdir)/scenes
 scene-references: twinlight$(EXEEXT) scenes/average_images$(EXEEXT)
 	$(srcdir)/scenes/make_references.sh ./twinlight$(EXEEXT) ./scenes/average_images$(EXEEXT) $(srcdir)/scenes/reference
-	scenes/showcase.pbrt
 
 # Scenes that are hard on the arithmetic (docs/NUMERICS.md).
 EXTRA_DIST += \

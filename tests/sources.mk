@@ -44,9 +44,8 @@ EFFORT = 8
 .PHONY: check-long
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
-	  TESTS='tests/test_bidirectional tests/test_mmlt tests/test_opencl tests/test_reference tests/test_scenes'
 	  TESTS='tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_opencl \
-	    tests/test_reference'
+	    tests/test_reference tests/test_scenes'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
