@@ -64,7 +64,8 @@ bool ssim_compute(const float *image, const float *reference, int width, int hei
     for (int y = RADIUS; y < height - RADIUS; ++y)
         for (int x = RADIUS; x < width - RADIUS; ++x)
             sum += similarity(planes, (size_t)y * (size_t)width + (size_t)x);
-    *mean = sum / ((double)(width - 2 * RADIUS) * (height - 2 * RADIUS));
+    const int inner[2] = {width - 2 * RADIUS, height - 2 * RADIUS};
+    *mean = sum / ((double)inner[0] * (double)inner[1]);
     free(memory);
     return true;
 }

@@ -12,7 +12,8 @@ static double beta_fraction(double a, double b, double x)
 {
     double c = 1.0, d = 0.0, value = 1.0;
     for (int i = 0; i < STEPS_MAX; ++i) {
-        double m = i / 2, numerator; /* every second term has a form of its own */
+        int pair = i / 2; /* every second term has a form of its own */
+        double m = pair, numerator;
         if (i == 0)
             numerator = 1.0;
         else if (i % 2 == 0)
