@@ -108,7 +108,7 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
 
 #define CHAIN_PASS_KEY 0u /* where to begin; after the pass, where it ended */
 #define CHAIN_PASS_ITEM 1u /* the pool's sample; NONE: the coordinates are given */
-#define CHAIN_PASS_LUMINANCE 2u /* after the pass */
+#define CHAIN_PASS_LUMINANCE 2u /* of the path when the pass before ended, 0: there was none; after it, of this one */
 #define CHAIN_PASS_TALLY 3u /* after the pass, 4 */
 #define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
 #define CHAIN_PASS_BAD 8u /* after the pass: CHAIN_BAD */

@@ -47,6 +47,7 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     state_store(paths, stride, CHAIN_STEP, t, pass_load(frame, pass, CHAIN_PASS_STEP, t));
     state_store(paths, stride, CHAIN_MOVE, t, MUTATION_REPLAY << MOVE_MUTATION);
     state_store_float(paths, stride, CHAIN_LUMINANCE, t, 0.0f);
+    state_store(paths, stride, CHAIN_COLOR, t, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, t)); /* until it has one */
     state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
     state_store(paths, stride, CHAIN_BAD, t, NONE);
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
@@ -60,6 +61,28 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
             state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
 }
 
+/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the current
+ * path's halves in different banks, the proposal's would lie over them: the camera's half moves to where the light's is. */
+SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                      __global uint *restrict vertices, __global uint *restrict densities, uint t)
+{
+    uint stride = frame->stride, banks = chain_move(paths, stride, t, MOVE_BANKS);
+    uint light = banks & 1u, camera = banks >> 1 & 1u, key = state_load(paths, stride, CHAIN_KEY, t);
+    if (light == camera)
+        return;
+    for (uint i = chain_key_s(key); i < chain_key_depth(key); ++i)
+        state_store_float(densities, stride, light * frame->max_depth + i, t,
+                          state_load_float(densities, stride, camera * frame->max_depth + i, t));
+    uint to = chain_half(SIDE_CAMERA, light), from = chain_half(SIDE_CAMERA, camera);
+    for (uint i = 0u; i < CHAIN_CAMERA_HALF_WORDS; ++i)
+        state_store(paths, stride, to + i, t, state_load(paths, stride, from + i, t));
+    to = chain_vertex_base(SIDE_CAMERA, light);
+    from = chain_vertex_base(SIDE_CAMERA, camera);
+    for (uint i = 0u; i < VERTEX_WORDS; ++i)
+        state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
+    chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? HALF_BOTH : 0u);
+}
+
 /* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
 __kernel void mlt_propose(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                           __global const uint *restrict tables, __global const uint *restrict texels,
@@ -70,6 +93,8 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     if (t >= frame->item_count)
         return;
     chain_propose(frame, paths, t);
+    if (chain_move(paths, stride, t, MOVE_MUTATION) == MUTATION_LARGE)
+        chain_banks_join(frame, paths, vertices, densities, t);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
     state_store_vec3(paths, stride, BD_CONTRIBUTION, t, vec3_splat(0.0f));
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);

@@ -134,7 +134,10 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     }
     f = float_max(f, 0.0f);
     if (mutation == MUTATION_REPLAY) {
+        uint before = state_load(paths, stride, CHAIN_COLOR, t);
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        if (before != 0u && before != float_bits(f))
+            diagnostic_count(diagnostics, DIAGNOSTIC_REPLAY);
         if (f > 0.0f)
             chain_take(frame, paths, t, f, color, 0.0f);
         else
