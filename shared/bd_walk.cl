@@ -124,7 +124,7 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
-    WalkStep step;
+    WalkStep step = {0};
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
         return;
     walk_mark(paths, stride, t, side, depth, &step);

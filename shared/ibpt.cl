@@ -145,7 +145,7 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
-    WalkStep step;
+    WalkStep step = {0};
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
         return;
     ib_leave(paths, stride, t, side, depth, step.reverse * state_load_float(paths, stride, BD_BACK, t),

@@ -220,7 +220,7 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     uint s = chain_key_s(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)), bank = chain_bank(paths, stride, t, side);
-    WalkStep step;
+    WalkStep step = {0};
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
                     chain_vertex(frame, paths, t, side, depth), &step))
         return;
