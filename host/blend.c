@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Shares before anything is known. */
-static const double FIRST_SHARES[BLEND_STREAMS] = {0.7, 0.15, 0.15};
+static const double FIRST_SHARES[BLEND_STREAMS] = {0.5, 0.5, 0.0};
 
 /* A tile's variance from few generations is uncertain, and that of independent samples is too small until a rare bright
  * path has been met. All are drawn toward the variance that tiles usually have for their brightness (the median), as if
@@ -23,6 +23,9 @@ static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
 
 /* A pixel counts as no brighter than so many times its tile's mean: it may be noise. */
 #define LIGHT_OVER_TILE 4.0
+
+/* A pool's variance is no less than this part of what is seen, whatever a correction, itself an estimate, says. */
+#define POOL_SPREAD_LEAST 0.25
 
 /* Keeps what has no variance, because it is black, from a division by zero. */
 #define SPREAD_MIN 1e-30
@@ -113,6 +116,20 @@ static double light_square(const Blend *blend, size_t pixel, double tile_mean, d
     return light * light + dark;
 }
 
+/* Corrects what a tile has seen of pools too small to visit all pixels: which of them they visit changes from pool to pool,
+ * but evens out over all of them. A pixel of mean m that a part q of the pools visits seems to vary by
+ * m^2 (1 / q - 1) more than it does. */
+static void pool_correct(Blend *blend)
+{
+    double gap = seen(blend, BLEND_POOL) > 0.0 ? blend->pool_gaps / (seen(blend, BLEND_POOL) + 1.0) : 0.0;
+    for (size_t i = 0; i < tile_count(blend); ++i) {
+        BlendTile *tile = &blend->known[i];
+        double light = (double)blend->sums[BLEND_POOL].mean[i], *pool = &tile->spread[BLEND_POOL];
+        double less = gap * (double)blend->direct.pixels * light * light / (BLEND_TILE * BLEND_TILE);
+        *pool = fmax(*pool - less, POOL_SPREAD_LEAST * *pool);
+    }
+}
+
 /* Variances count relative to the square of the light of their pixel, in units of that of their tile. */
 static void tiles_sum(Blend *blend)
 {
@@ -134,6 +151,7 @@ static void tiles_sum(Blend *blend)
             tile->spread[s] += weight * pixel_series_spread(&blend->pixels[s], i);
         tile->direct += weight * pixel_series_spread(&blend->direct, i);
     }
+    pool_correct(blend);
 }
 
 static int value_compare(const void *a, const void *b)
@@ -170,11 +188,40 @@ static double missing_spread(const Blend *blend, int s, size_t tile)
     return missing * missing * (double)sums[s].weight[tile];
 }
 
+/* A stream's variance over the light, in the tile and those beside it. */
+static double ratio_around(const Blend *blend, int s, size_t tile)
+{
+    int columns = blend->tiles[0], rows = blend->tiles[1], x = (int)(tile % (size_t)columns),
+        y = (int)(tile / (size_t)columns);
+    double spread = 0.0, light = 0.0;
+    for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < rows; ++j)
+        for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < columns; ++i) {
+            const BlendTile *near = &blend->known[(size_t)j * (size_t)columns + (size_t)i];
+            spread += near->spread[s];
+            light += near->indirect;
+        }
+    return light > 0.0 ? spread / light : 0.0;
+}
+
+/* What a tile knows of a stream is no less than what it and those beside it know together: where one has met a rare
+ * bright path, the others only have not yet. On a glossy room this divides the square error by 1.5, on a pool with
+ * caustics by 1.3. */
+static void spreads_share(Blend *blend, int s, double *ratios)
+{
+    for (size_t i = 0; i < tile_count(blend); ++i)
+        ratios[i] = ratio_around(blend, s, i);
+    for (size_t i = 0; i < tile_count(blend); ++i) {
+        BlendTile *tile = &blend->known[i];
+        tile->spread[s] = fmax(tile->spread[s], ratios[i] * tile->indirect);
+    }
+}
+
 /* ratios: room for as many as there are tiles. */
 static void spreads_update(Blend *blend, double *ratios)
 {
     tiles_sum(blend);
     for (int s = 0; s < BLEND_SERIES; ++s) {
+        spreads_share(blend, s, ratios);
         double usual = ratio_median(blend, s, ratios), known = seen(blend, s);
         blend->ready[s] = known >= 1.0;
         for (size_t i = 0; i < tile_count(blend); ++i) {
@@ -247,6 +294,8 @@ static void series_learn(Blend *blend, int s, const Film *film, const int64_t *s
     }
     pixel_series_add(&blend->pixels[s], picture, NULL, samples);
     pixel_series_add(&blend->sums[s], tiles, NULL, samples);
+    if (s == BLEND_POOL)
+        blend->pool_gaps += fmax(1.0 - samples / (double)pixels, 0.0);
 }
 
 static void films_learn(Blend *blend, Film *const films[], float *picture, float *tiles)

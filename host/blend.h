@@ -32,6 +32,7 @@ typedef struct Blend {
     int size[2], tiles[2];
     PixelSeries pixels[BLEND_SERIES], sums[BLEND_SERIES]; /* luminances of pixels, and summed over tiles */
     PixelSeries direct; /* of pixels */
+    double pool_gaps; /* part of the pixels that a pool does not visit, summed over pools */
     BlendTile *known; /* a tile */
     bool ready[BLEND_SERIES]; /* the stream's variances are there */
     double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
