@@ -25,7 +25,7 @@
         {BUFFER_PATHS, BD_CONTRIBUTION, 3, true, "contribution of the connection"},                                    \
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
-        {BUFFER_PATHS, BD_SPLAT, 1, false, "pixel of the splat"},                                                      \
+        {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"},                                                             \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
         {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \
         {BUFFER_PATHS, BD_CANDIDATE_LUMINANCE, 1, true, "luminance of the candidate"},                                 \

@@ -31,6 +31,8 @@ typedef struct Mmlt {
     uint64_t work_done, work_last; /* blend_work: what --samples and progress count; of the latest generation */
     uint next_sample; /* of the pool: numbers below it are used */
     uint pool_sample; /* the first of the latest pool */
+    uint pool_pixel; /* where the latest pool began in the order in which they visit the pixels */
+    uint pool_next; /* and where the next will */
     uint generation;
     uint pool_count; /* room for so many samples */
     uint *pool_words;

@@ -47,10 +47,25 @@ static double brightness_known(const Mmlt *mmlt)
     return generations > 0 ? mmlt->brightness_sum[half_of(mmlt, mmlt->generation + 1)] / generations : 0.0;
 }
 
-/* Sample numbers that `items` items of a pool take up. */
-static uint samples_of(const RenderRun *run, uint items)
+/* A uniform number of the host's own. */
+static double host_random(const FrameParams *frame, uint generation, uint use)
 {
-    return (uint)((items + run->crop_pixels - 1) / run->crop_pixels);
+    Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
+    return ((double)random.x[0] + 0.5) / 4294967296.0;
+}
+
+/* The next pool, of `items` samples: it goes on visiting the pixels where the last one stopped, and the first begins
+ * anywhere, so that each by itself is as likely to see one pixel as another. */
+static void pool_place(Mmlt *mmlt, uint items)
+{
+    uint64_t pixels = mmlt->run->crop_pixels;
+    if (mmlt->generation == 0)
+        mmlt->pool_next = (uint)(host_random(&mmlt->run->frame, 0, 1) * (double)pixels);
+    uint64_t end = (uint64_t)mmlt->pool_next + items;
+    mmlt->pool_pixel = mmlt->pool_next;
+    mmlt->pool_next = (uint)(end % pixels);
+    mmlt->pool_sample = mmlt->next_sample;
+    mmlt->next_sample += (uint)((end + pixels - 1) / pixels);
 }
 
 /* Of what a path shows before it becomes an excess: that of a usual one many times, as earlier pools have it. */
@@ -61,11 +76,18 @@ static float limit_of(const Mmlt *mmlt)
     return (float)(LIMIT_FACTOR * brightness_known(mmlt));
 }
 
+static void pool_order(const Mmlt *mmlt, FrameParams *frame)
+{
+    frame->sample_index = mmlt->pool_sample;
+    frame->pixel_first = mmlt->pool_pixel;
+    frame->pixel_stride = render_pixel_stride((uint)mmlt->run->crop_pixels);
+}
+
 FrameParams mmlt_pool_frame(const Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;
-    frame.sample_index = mmlt->pool_sample;
+    pool_order(mmlt, &frame);
     frame.limit = limit_of(mmlt);
     frame.film_exponent = mmlt->pool_film.quantum_exponent;
     return frame;
@@ -76,7 +98,7 @@ FrameParams mmlt_chain_frame(Mmlt *mmlt)
     FrameParams frame = mmlt->run->frame;
     frame.limit = limit_of(mmlt);
     frame.brightness = (float)mmlt_population(mmlt)->brightness;
-    frame.sample_index = mmlt->pool_sample;
+    pool_order(mmlt, &frame);
     frame.roulette_depth = NONE;
     frame.film_exponent = mmlt->film.quantum_exponent;
     return frame;
@@ -104,9 +126,7 @@ static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole
 /* Uniform numbers of the host's own, one for each generation. */
 static double offset_of(const Mmlt *mmlt)
 {
-    const FrameParams *frame = &mmlt->run->frame;
-    Random4 random = random_four(mmlt->generation, 0, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
-    return ((double)random.x[0] + 0.5) / 4294967296.0;
+    return host_random(&mmlt->run->frame, mmlt->generation, 0);
 }
 
 /* Mean worth of the latest pool's samples. */
@@ -166,14 +186,21 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
     return done;
 }
 
+/* Samples of a pool for so many steps of chains: of every pixel as many, where that changes the number by no more than
+ * half. */
+static uint pool_size(const Mmlt *mmlt, double steps)
+{
+    double pixels = (double)mmlt->run->crop_pixels, whole = rint(mmlt->pool_per_step * steps / pixels);
+    double wanted = whole >= 1.0 ? whole * pixels : mmlt->pool_per_step * steps;
+    if (mmlt->options.pool)
+        wanted = (double)mmlt->options.pool;
+    return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
+}
+
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
-    uint64_t wanted = mmlt->options.pool
-                          ? mmlt->options.pool
-                          : (uint64_t)(mmlt->pool_per_step * (double)count * (double)mmlt->options.steps);
-    uint pool_count = wanted < 1 ? 1 : wanted < 1u << 30 ? (uint)wanted : 1u << 30;
-    mmlt->pool_sample = mmlt->next_sample;
-    mmlt->next_sample += samples_of(mmlt->run, pool_count);
+    uint pool_count = pool_size(mmlt, (double)count * (double)mmlt->options.steps);
+    pool_place(mmlt, pool_count);
     if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
         return false;
     mmlt->run->chains.pool_samples += pool_count;
@@ -202,8 +229,8 @@ static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uin
 {
     const uint *words = mmlt->chains.pass_words;
     uint key = words[(size_t)CHAIN_PASS_KEY * count + i], item = words[(size_t)CHAIN_PASS_ITEM * count + i];
-    fprintf(out, "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, ",
-            (unsigned long long)mmlt->run->options->seed, mmlt->generation, mmlt->pool_sample);
+    fprintf(out, "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, \"pool_pixel\": %u, ",
+            (unsigned long long)mmlt->run->options->seed, mmlt->generation, mmlt->pool_sample, mmlt->pool_pixel);
     if (item != NONE) {
         fprintf(out, "\"pool_item\": %u, ", item);
     } else {

@@ -63,8 +63,7 @@ static int pilot_compare(const void *a, const void *b)
     return (x->luminance > y->luminance) - (x->luminance < y->luminance);
 }
 
-/* A number without common factor with n, near the golden section of it: k * stride mod n visits the pixels evenly. */
-static uint stride_coprime(uint n)
+uint render_pixel_stride(uint n)
 {
     for (uint stride = (uint)(0.6180339887 * n) | 1u;; ++stride) {
         uint a = stride, b = n;
@@ -95,7 +94,7 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
     frame.first_item = 0;
     frame.item_count = PILOT_ITEMS;
     frame.sample_index = PILOT_SAMPLE;
-    frame.pixel_stride = stride_coprime(frame.width * frame.height);
+    frame.pixel_stride = render_pixel_stride(frame.width * frame.height);
     const SplatSink sink = {.splats = pilot_splats, .context = pilot};
     bool done = interface->run(backend, &frame, list, &sink, &never, NULL, error);
     double sum = 0.0;

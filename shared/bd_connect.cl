@@ -46,7 +46,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     Random4 random = bd_random_connection(frame, paths, item, s, t);
     bool possible = connect_ends(&scene, s, t, &y, back_y, &z, back_z, random, &connection);
     if (possible && t == 1u)
-        possible = connection_aim(&scene, random, &connection) || frame->pool != 0u;
+        possible = connection_aim(&scene, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
     if (s >= 2u)
@@ -84,10 +84,14 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     bool visible = shadow_take(shadows, stride, item);
     if (frame->pool != 0u && visible) {
+        /* Of a splat the weight is the cover, but for sign and the filter's own. */
+        float cover = t == 1u ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
+                              : state_load_float(paths, stride, BD_COVER, item);
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
-        candidate_offer(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
-                        contribution);
-        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, pool_limited(frame, contribution));
+        contribution = candidate_offer(frame, paths, item, s, t,
+                                       state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item), cover,
+                                       contribution);
+        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
     }
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
     connection_advance(paths, stride, item, frame->max_depth);
@@ -102,7 +106,8 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global cons
         return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
-    splat_store(splats, diagnostics, stride, item, state_load(paths, stride, BD_SPLAT, item), radiance);
+    uint flags = frame->pool != 0u ? SPLAT_FROM_LIGHT : 0u;
+    splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item), radiance);
 }
 
 #endif

@@ -9,7 +9,7 @@
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
 #define BD_RANDOM_LIGHT 1u /* x, y: which light */
 #define BD_RANDOM_EMIT 2u /* point and direction on it */
-#define BD_RANDOM_PIXEL 3u /* of a pool's sample */
+#define BD_RANDOM_PIXEL 3u /* of a pool: film position of paths that do not begin there */
 /* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix materials. */
 #define BD_RANDOM_VERTICES 4u
 #define BD_RANDOM_SCATTER 0u

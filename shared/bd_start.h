@@ -14,7 +14,6 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     ItemPlace place = item_place(frame, t);
     state_store(paths, stride, BD_PIXEL, t, place.pixel);
     state_store(paths, stride, BD_SAMPLE, t, place.sample);
-    state_store(paths, stride, BD_SPLAT, t, place.pixel);
     state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     state_store_float(paths, stride, BD_CANDIDATE_SUM, t, 0.0f);
@@ -87,11 +86,27 @@ SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
     return reach;
 }
 
+/* How much larger the reach is than the crop window: a path from anywhere in it stands for so much of a pixel. */
+SHARED_FUNCTION float film_reach_factor(__global const FrameParams *frame)
+{
+    FilmReach reach = film_reach(frame);
+    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
+    return reach.width * reach.height / pixels;
+}
+
 /* The film position of two random numbers, uniform over the reach. */
 SHARED_FUNCTION Vec2 film_position(__global const FrameParams *frame, uint x, uint y)
 {
     FilmReach reach = film_reach(frame);
     return vec2(reach.x + reach.width * random_float(x), reach.y + reach.height * random_float(y));
+}
+
+/* The random number of a place, 0 <= place < extent, in the reach: film_position finds it again within 2^-24 of the extent.
+ * rest: gives the bits that say no more about the place. */
+SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
+{
+    float cell = float_clamp(place / extent, 0.0f, 0.99999988079071045f) * 8388608.0f;
+    return (uint)cell << 9 | (rest & 0x1ffu);
 }
 
 /* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that of
@@ -101,13 +116,11 @@ SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *rest
                                      uint t, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
-    FilmReach reach = film_reach(frame);
-    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->width,
                          (float)frame->height, vec2(random_float(random.x[2]), random_float(random.x[3])));
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(reach.width * reach.height / pixels),
-               1.0f, WALK_DELTA);
+    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
+               WALK_DELTA);
 }
 
 #endif

@@ -39,7 +39,7 @@
 #define BD_CONTRIBUTION 23u /* if nothing lies between, 3 */
 #define BD_TARGET 26u /* pixel it goes to; NONE: the path's own */
 #define BD_TARGET_WEIGHT 27u /* of the pixel filter, there */
-#define BD_SPLAT 28u /* SPLAT_PIXEL of what is gathered */
+#define BD_COVER 28u /* of a pool: film_splat_cover where the camera's path began */
 /* Of a pool (pool.h) */
 #define BD_CANDIDATE_SUM 29u
 #define BD_CANDIDATE 30u

@@ -57,10 +57,11 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
 SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 contribution)
 {
+    uint stride = frame->stride;
     if (frame->pool != 0u)
-        candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, frame->stride, BD_SURVIVAL, t),
-                        contribution);
-    bd_add_radiance(paths, frame->stride, t, frame->pool != 0u ? pool_limited(frame, contribution) : contribution);
+        contribution = candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
+                                       state_load_float(paths, stride, BD_COVER, t), contribution);
+    bd_add_radiance(paths, stride, t, contribution);
 }
 
 /* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss

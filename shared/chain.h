@@ -243,14 +243,21 @@ SHARED_FUNCTION void chain_take_numbers(__global const FrameParams *frame, __glo
 /* ---- how a chain begins ------------------------------------------------------------------------------------------ */
 
 /* The coordinates that the pool's sample had for the path it kept. */
-SHARED_FUNCTION void chain_numbers_of_pool(__global const FrameParams *frame, __global uint *paths, uint t, uint key,
-                                           uint item)
+SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint t, uint key, uint item)
 {
+    __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
     ItemPlace place = item_place_of(frame, item);
     state_store(paths, stride, BD_PIXEL, t, place.pixel);
     state_store(paths, stride, BD_SAMPLE, t, place.sample);
-    chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, pool_random(frame, paths, t, BD_RANDOM_CAMERA));
+    float weight;
+    Random4 camera = pool_camera(scene, paths, t, &weight);
+    if (s == d) {
+        Random4 film = pool_random(frame, paths, t, BD_RANDOM_PIXEL);
+        camera.x[0] = film.x[0];
+        camera.x[1] = film.x[1];
+    }
+    chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, camera);
     chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, pool_random(frame, paths, t, BD_RANDOM_EMIT));
     chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, pool_random(frame, paths, t, BD_RANDOM_LIGHT));
     for (uint slot = 0u; slot + 1u < d; ++slot) {

@@ -70,4 +70,16 @@ SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u,
     return x == NONE || y == NONE ? NONE : y * frame->width + x;
 }
 
+/* What all pixels together see of the film position: the sum of |f(film - c)| / (integral of |f|), which is 1 but for borders
+ * and for filters that do not add up to a constant. */
+SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
+{
+    __global const FrameParams *frame = scene->frame;
+    __global const PixelFilter *filter = &frame->filter;
+    float x, y;
+    film_splat_axis(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x, 0.5f, &x);
+    film_splat_axis(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y, 0.5f, &y);
+    return float_abs(x * y);
+}
+
 #endif

@@ -14,6 +14,7 @@ SHARED_FUNCTION ItemPlace item_place_of(__global const FrameParams *frame, uint 
 {
     uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
     uint crop_pixels = crop_width * crop_height;
+    item += frame->pixel_first;
     uint at = (uint)((ulong)(item % crop_pixels) * frame->pixel_stride % crop_pixels);
     ItemPlace place;
     place.pixel = (frame->crop_y0 + at / crop_width) * frame->width + frame->crop_x0 + at % crop_width;

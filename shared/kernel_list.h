@@ -59,7 +59,8 @@
 
 #define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
-    X(mlt_begin, 5, BUFFER_FRAME, BUFFER_PASS, BUFFER_PATHS, BUFFER_RAYS, BUFFER_SHADOWS)                              \
+    X(mlt_begin, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,            \
+      BUFFER_RAYS, BUFFER_SHADOWS)                                                                                     \
     X(mlt_propose, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
       BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
     X(mlt_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \

@@ -35,8 +35,10 @@ __kernel void pool_end(__global const FrameParams *restrict frame, __global cons
 }
 
 /* From: where each chain begins. To: its coordinates. */
-__kernel void mlt_begin(__global const FrameParams *restrict frame, __global const uint *restrict pass,
-                        __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict shadows)
+__kernel void mlt_begin(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                        __global const uint *restrict tables, __global const uint *restrict texels,
+                        __global const uint *restrict pass, __global uint *restrict paths, __global uint *restrict rays,
+                        __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -54,11 +56,13 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
         state_store(paths, stride, CHAIN_TALLY + i, t, 0u);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     walk_end(paths, rays, stride, t);
-    if (item != NONE)
-        chain_numbers_of_pool(frame, paths, t, key, item);
-    else
-        for (uint i = 0u; i < words; ++i)
-            state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
+    if (item != NONE) {
+        SceneView scene = scene_view(frame, geometry, tables, texels);
+        chain_numbers_of_pool(&scene, paths, t, key, item);
+        return;
+    }
+    for (uint i = 0u; i < words; ++i)
+        state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
 }
 
 /* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the current

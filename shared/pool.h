@@ -33,45 +33,57 @@ SHARED_FUNCTION uint chain_key_s(uint key)
     return key >> 8;
 }
 
-/* The camera's first ray, and the pixel that the sample's gathered light goes to. */
+/* The camera's numbers of a pool's sample: its pixel is given, and the film position drawn from that pixel's filter, as for
+ * every sample of an image. So a pool shows all pixels alike, which positions drawn from all of the film would not. The
+ * density of a position is then film_splat_cover over film_reach_factor. *weight: of the pixel filter. */
+SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint *paths, uint t, float *weight)
+{
+    __global const FrameParams *frame = scene->frame;
+    Random4 random = pool_random(frame, paths, t, BD_RANDOM_CAMERA);
+    uint pixel = state_load(paths, frame->stride, BD_PIXEL, t);
+    Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), weight);
+    FilmReach reach = film_reach(frame);
+    float x = (float)(pixel % frame->width) + 0.5f + offset.x, y = (float)(pixel / frame->width) + 0.5f + offset.y;
+    random.x[0] = film_number(x - reach.x, reach.width, random.x[0]);
+    random.x[1] = film_number(y - reach.y, reach.height, random.x[1]);
+    return random;
+}
+
+/* The camera's first ray. What is gathered goes to the sample's pixel. */
 SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint t)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
-    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
-    Random4 aim = bd_random(frame, paths, t, BD_RANDOM_PIXEL);
     float weight;
-    uint pixel = film_splat_pixel(scene, film_position(frame, random.x[0], random.x[1]),
-                                  vec2(random_float(aim.x[0]), random_float(aim.x[1])), &weight);
-    state_store(paths, stride, BD_SPLAT, t, pixel == NONE ? NONE : SPLAT_FROM_LIGHT | pixel);
-    state_store_float(paths, stride, BD_WEIGHT, t, weight);
+    Random4 random = pool_camera(scene, paths, t, &weight);
+    state_store_float(paths, stride, BD_COVER, t,
+                      film_splat_cover(scene, film_position(frame, random.x[0], random.x[1])));
+    state_store_float(paths, stride, BD_WEIGHT, t, weight / film_reach_factor(frame));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
 }
 
-/* The part of a pool's path that the film is shown. */
-SHARED_FUNCTION Vec3 pool_limited(__global const FrameParams *frame, Vec3 contribution)
-{
-    float luminance = rgb_luminance(contribution);
-    return luminance > frame->limit ? vec3_scale(contribution, frame->limit / luminance) : contribution;
-}
-
-/* The path of the strategy (s, t) carries `contribution`, having survived roulette with that probability: it becomes the
- * candidate with the probability of its share in all so far. */
-SHARED_FUNCTION void candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                     uint s, uint t, float survival, Vec3 contribution)
+/* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;
+ * `cover`: film_splat_cover where the film sees it. It becomes the candidate with the probability of its share in all so
+ * far. Returns what the film is shown of it, the part below the limit. */
+SHARED_FUNCTION Vec3 candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                     uint s, uint t, float survival, float cover, Vec3 contribution)
 {
     uint stride = frame->stride;
     float luminance = rgb_luminance(contribution);
-    if (!(luminance > 0.0f) || !float_finite(luminance))
-        return;
-    float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + luminance;
+    float f = luminance * cover * survival; /* of a chain there, which knows no roulette */
+    if (!(f > 0.0f) || !float_finite(luminance))
+        return contribution;
+    /* Over the density of the numbers: those of a film position that the path does not have (t = 1) are uniform. */
+    float worth = t == 1u ? luminance * cover : luminance / film_reach_factor(frame);
+    float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + worth;
     state_store_float(paths, stride, BD_CANDIDATE_SUM, item, sum);
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CANDIDATES + s * 64u + t);
-    if (random_float(random.x[0]) * sum < luminance) {
+    if (random_float(random.x[0]) * sum < worth) {
         state_store(paths, stride, BD_CANDIDATE, item, chain_key(s + t - 1u, s));
-        state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, luminance * survival);
+        state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, f);
     }
+    return f > frame->limit ? vec3_scale(contribution, frame->limit / f) : contribution;
 }
 
 #endif

@@ -339,7 +339,8 @@ typedef struct FrameParams {
     uint item_count;
     uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
     uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k at f * pass_stride + k - pass_first */
-    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots */
+    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots and pools */
+    uint pixel_first; /* and k counted from here; 0 but for pools */
     int film_exponent; /* one unit of the film's sums is 2^film_exponent (film_sum.h) */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;

@@ -180,6 +180,7 @@
     MEMBER(FrameParams, pass_first)                                                                                    \
     MEMBER(FrameParams, pass_stride)                                                                                   \
     MEMBER(FrameParams, pixel_stride)                                                                                  \
+    MEMBER(FrameParams, pixel_first)                                                                                   \
     MEMBER(FrameParams, film_exponent)                                                                                 \
     MEMBER(FrameParams, world_center)                                                                                  \
     MEMBER(FrameParams, world_radius)                                                                                  \
