@@ -15,22 +15,11 @@ static bool half_load(const char *path, const char *layer, float **rgb, Error *e
     return good;
 }
 
-static bool picture_load(const char *path, Rendering *rendering, Error *error)
-{
-    Image image;
-    if (!image_read(path, &image, error))
-        return false;
-    rendering->width = image.width;
-    rendering->height = image.height;
-    bool good = image_linear_rgb(&image, &rendering->rgb, error);
-    image_destroy(&image);
-    return good;
-}
-
 bool rendering_load(const char *path, Rendering *rendering, Error *error)
 {
     *rendering = (Rendering){0};
-    bool good = picture_load(path, rendering, error) && half_load(path, "halfA", &rendering->halves[0], error) &&
+    bool good = image_read_rgb(path, &rendering->rgb, &rendering->width, &rendering->height, error) &&
+                half_load(path, "halfA", &rendering->halves[0], error) &&
                 half_load(path, "halfB", &rendering->halves[1], error);
     if (!good)
         rendering_destroy(rendering);

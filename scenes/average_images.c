@@ -12,23 +12,11 @@ typedef struct Halves {
     float *rgb[2]; /* sums of the images with even and odd numbers */
 } Halves;
 
-static bool picture_read(const char *path, float **rgb, int *width, int *height, Error *error)
-{
-    Image image;
-    if (!image_read(path, &image, error))
-        return false;
-    *width = image.width;
-    *height = image.height;
-    bool good = image_linear_rgb(&image, rgb, error);
-    image_destroy(&image);
-    return good;
-}
-
 static bool image_add(Halves *halves, const char *path, int half, Error *error)
 {
     float *rgb, *sum = halves->rgb[half];
     int width, height;
-    if (!picture_read(path, &rgb, &width, &height, error))
+    if (!image_read_rgb(path, &rgb, &width, &height, error))
         return false;
     if (halves->rgb[0] && (width != halves->width || height != halves->height)) {
         free(rgb);
