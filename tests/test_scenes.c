@@ -1,6 +1,5 @@
 /* Every scene of scenes/ by every integrator, against the pictures in scenes/reference/, which are path traced or
  * bidirectionally path traced (scenes/make_references.sh). */
-#include "image.h"
 #include "render_fixture.h"
 #include "test_util.h"
 
@@ -25,20 +24,6 @@ static const struct {
 #define SCENE_COUNT (int)(sizeof SCENES / sizeof SCENES[0])
 
 static const unsigned SAMPLES[INTEGRATORS] = {64, 32, 16, 512};
-
-static float *reference_read(const char *name, PictureView *view)
-{
-    char path[1200];
-    Image image;
-    Error error = {0};
-    float *rgb;
-    snprintf(path, sizeof path, "%s/scenes/reference/%s.exr", test_source_folder(), name);
-    ck_assert_msg(image_read(path, &image, &error), "%s", error.message);
-    ck_assert_msg(image_linear_rgb(&image, &rgb, &error), "%s", error.message);
-    *view = (PictureView){rgb, image.width, image.height};
-    image_destroy(&image);
-    return rgb;
-}
 
 static int number_compare(const void *a, const void *b)
 {
@@ -89,7 +74,8 @@ START_TEST(test_scene)
     RenderedImage image;
     PictureView view;
     fixture_render(&setup, &image);
-    float *reference = reference_read(name, &view);
+    snprintf(path, sizeof path, "%s/scenes/reference/%s.exr", test_source_folder(), name);
+    float *reference = fixture_picture_read(path, &view);
     double median = blocks_median(image.rgb, view);
     printf("%-8s %-5s blocks differ by %.2f %%, limit %.2f %%\n", name, integrators[which]->name, 100.0 * median,
            100.0 * limit);
