@@ -2,7 +2,6 @@
 
 #include "config.h"
 
-#include "json.h"
 #include "log.h"
 #include "timing.h"
 
@@ -57,16 +56,21 @@ const char *stats_chain_kind(int kind)
     return KINDS[kind];
 }
 
-/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
-static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
+void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
 {
-    json_object_begin(json, "chains");
     json_unsigned(json, "pool_samples", chains->pool_samples);
     json_unsigned(json, "seeds", chains->seeds);
     json_unsigned(json, "mutations", chains->steps);
     json_number(json, "pool_seconds", chains->pool_seconds);
     json_number(json, "chain_seconds", chains->chain_seconds);
     json_number(json, "direct_seconds", chains->direct_seconds);
+}
+
+/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
+static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
+{
+    json_object_begin(json, "chains");
+    stats_chain_counts(json, chains);
     json_object_begin(json, "shares");
     json_number(json, "chains", chains->shares[0]);
     json_number(json, "pool", chains->shares[1]);
