@@ -1,5 +1,7 @@
 #include "metrics.h"
 
+#include "sample_statistics.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,20 +52,14 @@ static void metrics_add(Metrics *metrics, const Pixel *p)
     }
 }
 
-static int descending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
-}
-
 /* Sets both relMSEs from every pixel's; sorts the array. */
 static void rel_mse_set(Metrics *metrics, double *values, size_t count)
 {
     size_t dropped = count / TRIMMED_SHARE;
     double kept_sum = 0.0, dropped_sum = 0.0;
-    qsort(values, count, sizeof *values, descending);
-    for (size_t i = count; i-- > 0;)
-        *(i < dropped ? &dropped_sum : &kept_sum) += values[i];
+    sample_sort(values, count);
+    for (size_t i = 0; i < count; ++i)
+        *(i < count - dropped ? &kept_sum : &dropped_sum) += values[i];
     metrics->rel_mse = (kept_sum + dropped_sum) / (double)count;
     metrics->rel_mse_trimmed = kept_sum / (double)(count - dropped);
 }

@@ -9,11 +9,16 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+void sample_sort(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, ascending);
+}
+
 double sample_quantile(double *values, size_t count, double q)
 {
     if (count == 0)
         return (double)NAN;
-    qsort(values, count, sizeof *values, ascending);
+    sample_sort(values, count);
     double place = q * (double)(count - 1);
     size_t below = (size_t)place;
     double part = place - (double)below;

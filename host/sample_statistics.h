@@ -4,6 +4,9 @@
 
 #include <stddef.h>
 
+/* Ascending. */
+void sample_sort(double *values, size_t count);
+
 /* The quantile q, 0 ... 1, linear between neighbours (Hyndman and Fan's type 7). Sorts `values`. NaN when count is 0. */
 double sample_quantile(double *values, size_t count, double q);
 

@@ -1,6 +1,7 @@
 /* Every scene of scenes/ by every integrator, against the pictures in scenes/reference/, which are path traced or
  * bidirectionally path traced (scenes/make_references.sh). */
 #include "render_fixture.h"
+#include "sample_statistics.h"
 #include "test_util.h"
 
 #include <math.h>
@@ -25,12 +26,6 @@ static const struct {
 
 static const unsigned SAMPLES[INTEGRATORS] = {64, 32, 16, 512};
 
-static int number_compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double blocks_median(const float *rgb, PictureView reference)
 {
     enum { BLOCKS = GRID * GRID, STEP = SIDE / GRID };
@@ -43,8 +38,7 @@ static double blocks_median(const float *rgb, PictureView reference)
             fixture_block_mean(reference.rgb, reference.width, x * wide, y * high, (x + 1) * wide, (y + 1) * high);
         differences[i] = fabs(a - b) / b;
     }
-    qsort(differences, BLOCKS, sizeof *differences, number_compare);
-    return 0.5 * (differences[BLOCKS / 2 - 1] + differences[BLOCKS / 2]);
+    return sample_quantile(differences, BLOCKS, 0.5);
 }
 
 static double noise_limit(int scene, int which)
