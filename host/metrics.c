@@ -84,15 +84,13 @@ static double block_mean(const float *rgb, int width, int x0, int x1, int y0, in
     return sum / (3.0 * (x1 - x0) * (y1 - y0));
 }
 
-/* means: n x n for the image, then n x n for the reference. */
-static void blocks_fill(const float *image, const float *reference, int width, int height, int n, double *means)
+void metrics_block_means(const float *rgb, int width, int height, int n, double *means)
 {
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
             int x0 = metrics_block_edge(i, n, width), x1 = metrics_block_edge(i + 1, n, width);
             int y0 = metrics_block_edge(j, n, height), y1 = metrics_block_edge(j + 1, n, height);
-            means[j * n + i] = block_mean(image, width, x0, x1, y0, y1);
-            means[n * n + j * n + i] = block_mean(reference, width, x0, x1, y0, y1);
+            means[j * n + i] = block_mean(rgb, width, x0, x1, y0, y1);
         }
     }
 }
@@ -104,7 +102,8 @@ static bool blocks_compare(const float *image, const float *reference, int width
     double *means = calloc(2 * count, sizeof *means), floor_value = 0.0;
     if (!means)
         return error_memory(error, 2 * count * sizeof *means, "block means");
-    blocks_fill(image, reference, width, height, metrics->blocks, means);
+    metrics_block_means(image, width, height, metrics->blocks, means);
+    metrics_block_means(reference, width, height, metrics->blocks, means + count);
     for (size_t i = 0; i < count; ++i)
         floor_value += means[count + i];
     floor_value = RELATIVE_FLOOR * fabs(floor_value / (double)count);
