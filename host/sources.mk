@@ -105,6 +105,7 @@ libtwinlight_host_la_SOURCES = \
 	host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
+	host/render_settings.c host/render_settings.h \
 	host/render_verify.c host/render_verify.h \
 	host/rendering_file.c host/rendering_file.h \
 	host/sample_statistics.c host/sample_statistics.h \
