@@ -112,6 +112,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
 	host/scene_advice.c host/scene_advice.h \
+	host/scene_pack.c host/scene_pack.h \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
 	host/stats.c host/stats.h \
