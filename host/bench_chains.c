@@ -15,16 +15,7 @@ static int chains_sum(const BenchScene *scene, int series, int time, ChainStatis
         if (!run->finished || run->series != series || run->time != time || chains->steps == 0)
             continue;
         ++runs;
-        sum->pool_samples += chains->pool_samples;
-        sum->seeds += chains->seeds;
-        sum->steps += chains->steps;
-        for (int i = 0; i < 3; ++i)
-            sum->shares[i] += chains->shares[i];
-        for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-            for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
-                sum->proposals[kind][depth] += chains->proposals[kind][depth];
-                sum->accepted[kind][depth] += chains->accepted[kind][depth];
-            }
+        chain_statistics_add(sum, chains);
     }
     return runs;
 }
@@ -47,19 +38,34 @@ static void acceptance_cell(FILE *stream, uint64_t accepted, uint64_t proposals)
                 (unsigned long long)accepted, (unsigned long long)proposals, share);
 }
 
-static void acceptance_table(FILE *stream, const ChainStatistics *chains)
+/* The depths that have chains: [*first, *last]. */
+static void depths_find(const ChainStatistics *chains, int *first, int *last)
 {
-    int first = CHAIN_DEPTHS, last = -1;
-    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-        for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
-            if (chains->proposals[kind][depth] > 0) {
-                first = depth < first ? depth : first;
-                last = depth > last ? depth : last;
-            }
-    fputs("<div class=\"wide\"><table>\n<thead><tr><th>mutation of</th><th>proposals</th><th>all depths</th>", stream);
+    *first = CHAIN_DEPTHS;
+    *last = -1;
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
+        if (chain_statistics_proposals(chains, depth) > 0) {
+            *first = depth < *first ? depth : *first;
+            *last = depth;
+        }
+}
+
+static void table_begin(FILE *stream, const char *columns, int first, int last)
+{
+    fprintf(stream, "<div class=\"wide\"><table>\n<thead><tr>%s", columns);
     for (int depth = first; depth <= last; ++depth)
         fprintf(stream, "<th>%d</th>", depth);
     fputs("</tr></thead>\n<tbody>\n", stream);
+}
+
+static void table_end(FILE *stream)
+{
+    fputs("</tbody></table></div>\n", stream);
+}
+
+static void acceptance_table(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    table_begin(stream, "<th>mutation of</th><th>proposals</th><th>all depths</th>", first, last);
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
         uint64_t proposals = proposals_total(chains->proposals[kind]);
         if (proposals == 0)
@@ -73,13 +79,33 @@ static void acceptance_table(FILE *stream, const ChainStatistics *chains)
             acceptance_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
         fputs("</tr>\n", stream);
     }
-    fputs("</tbody></table></div>\n", stream);
+    table_end(stream);
+}
+
+static void runs_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    uint64_t longest = 0;
+    for (int depth = first; depth <= last; ++depth)
+        longest = chains->longest_run[depth] > longest ? chains->longest_run[depth] : longest;
+    fprintf(stream, "<tr><th>longest run of rejections</th><td>%llu</td>", (unsigned long long)longest);
+    for (int depth = first; depth <= last; ++depth)
+        fprintf(stream, "<td>%llu</td>", (unsigned long long)chains->longest_run[depth]);
+    fputs("</tr>\n", stream);
+}
+
+static void health_table(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    fputs("<p class=\"soft\">Whether they get about:</p>\n", stream);
+    table_begin(stream, "<th></th><th>all depths</th>", first, last);
+    runs_row(stream, chains, first, last);
+    table_end(stream);
 }
 
 void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
 {
     for (int s = 0; s < scene->series_count; ++s) {
         ChainStatistics chains;
+        int first, last;
         int runs = chains_sum(scene, s, time, &chains);
         if (runs == 0)
             continue;
@@ -95,6 +121,8 @@ void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
                 " mutations. In the picture of the last generation chains have %.0f %%, the pool %.0f %% and paths "
                 "%.0f %%. Acceptance in per cent, by kind of mutation and by the path\u2019s segments:</p>\n",
                 100.0 * chains.shares[0] / runs, 100.0 * chains.shares[1] / runs, 100.0 * chains.shares[2] / runs);
-        acceptance_table(stream, &chains);
+        depths_find(&chains, &first, &last);
+        acceptance_table(stream, &chains, first, last);
+        health_table(stream, &chains, first, last);
     }
 }

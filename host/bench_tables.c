@@ -133,6 +133,7 @@ static void json_chains(JsonWriter *json, const ChainStatistics *chains)
             json_object_end(json);
         }
     json_array_end(json);
+    stats_chain_health(json, chains);
     json_object_end(json);
 }
 

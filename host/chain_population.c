@@ -65,8 +65,10 @@ static uint words_gather(const ChainPopulation *population, const Candidates *ca
         bool old = seeds[i] < candidates->chains;
         words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
         words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
-        if (old)
+        if (old) {
             words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
+            words[(size_t)CHAIN_PASS_RUN * count + i] = word_of(population, CHAIN_PASS_RUN, seeds[i]);
+        }
         kept += old;
     }
     for (uint field = CHAIN_PASS_NUMBERS; kept > 0 && field < population->fields; ++field)

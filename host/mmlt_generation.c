@@ -180,22 +180,6 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
     return true;
 }
 
-/* How often chains of each depth took what they proposed. */
-static void tally_chains(Mmlt *mmlt, uint count)
-{
-    ChainStatistics *statistics = &mmlt->run->chains;
-    const uint *words = mmlt->chains.pass_words;
-    for (uint i = 0; i < count; ++i) {
-        uint depth = chain_key_depth(words[(size_t)CHAIN_PASS_KEY * count + i]) % CHAIN_DEPTHS;
-        for (uint kind = 0; kind < MUTATION_COUNT; ++kind) {
-            uint tally = words[(size_t)(CHAIN_PASS_TALLY + kind) * count + i];
-            statistics->proposals[kind][depth] += tally & 0xffffu;
-            statistics->accepted[kind][depth] += tally >> 16;
-        }
-    }
-    statistics->steps += (uint64_t)count * mmlt->options.steps;
-}
-
 /* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). It began with
  * a sample of the pool or, when it came from the generation before, with `numbers`. */
 static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
@@ -325,7 +309,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
             return false;
         mmlt->brightness_sum[half_of(mmlt, mmlt->generation)] += mmlt->brightness;
         if (chains && mmlt_population(mmlt)->brightness > 0.0) {
-            tally_chains(mmlt, count);
+            chain_statistics_pass(&run->chains, mmlt->chains.pass_words, count, mmlt->options.steps);
             bad_chains_write(mmlt, count);
         }
         mmlt->work_last = work;

@@ -66,6 +66,24 @@ void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "direct_seconds", chains->direct_seconds);
 }
 
+/* "KEY": {"3": ..., ...} of the depths that have chains. */
+static void stats_by_depth(JsonWriter *json, const char *key, const ChainStatistics *chains, const uint64_t *counts)
+{
+    json_object_begin(json, key);
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", depth);
+        if (chain_statistics_proposals(chains, depth) > 0)
+            json_unsigned(json, name, counts[depth]);
+    }
+    json_object_end(json);
+}
+
+void stats_chain_health(JsonWriter *json, const ChainStatistics *chains)
+{
+    stats_by_depth(json, "longest_rejections", chains, chains->longest_run);
+}
+
 /* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
 static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
 {
@@ -88,6 +106,7 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
         json_object_end(json);
     }
     json_object_end(json);
+    stats_chain_health(json, chains);
     json_object_end(json);
 }
 

@@ -30,4 +30,7 @@ const char *stats_chain_kind(int kind);
 /* What chains did in all, into the object that is open. */
 void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains);
 
+/* Whether they have got about, by depth. */
+void stats_chain_health(JsonWriter *json, const ChainStatistics *chains);
+
 #endif

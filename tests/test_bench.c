@@ -95,6 +95,7 @@ START_TEST(test_records)
     record.chains.shares[2] = 0.1;
     record.chains.proposals[1][31] = 9;
     record.chains.accepted[1][31] = 4;
+    record.chains.longest_run[31] = 65535;
     const char *image = test_path("image.exr");
     ck_assert_msg(bench_record_write(image, &record, &error), "%s", error.message);
     ck_assert_msg(!bench_record_read(image, &read), "a record without an image");

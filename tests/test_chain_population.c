@@ -25,6 +25,7 @@ static void chains_make(ChainPopulation *population, uint *words)
     for (uint i = 0; i < CHAINS; ++i) {
         words[CHAIN_PASS_KEY * CHAINS + i] = chain_key(3 + i, 1);
         words[CHAIN_PASS_LUMINANCE * CHAINS + i] = float_bits(i == 0 ? 0.0f : ldexpf(1.0f, 2 * (int)i - 6));
+        words[CHAIN_PASS_RUN * CHAINS + i] = 300 + i;
         words[CHAIN_PASS_NUMBERS * CHAINS + i] = 100 + i;
         words[(CHAIN_PASS_NUMBERS + 1) * CHAINS + i] = 200 + i;
     }
@@ -67,6 +68,7 @@ START_TEST(test_parts)
             uint item = population.words[CHAIN_PASS_ITEM * count + i];
             got[depth] += population.brightness / count / OFFSETS;
             ck_assert_uint_eq(item, depth < 20 ? NONE : depth - 20);
+            ck_assert_uint_eq(population.words[CHAIN_PASS_RUN * count + i], depth < 20 ? 300 + depth - 3 : 0);
             if (depth < 20) {
                 ck_assert_uint_eq(population.words[CHAIN_PASS_NUMBERS * count + i], 100 + depth - 3);
                 ck_assert_uint_eq(population.words[(CHAIN_PASS_NUMBERS + 1) * count + i], 200 + depth - 3);
