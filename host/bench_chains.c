@@ -20,7 +20,7 @@ static int chains_sum(const BenchScene *scene, int series, int time, ChainStatis
     return runs;
 }
 
-static uint64_t proposals_total(const uint64_t counts[CHAIN_DEPTHS])
+static uint64_t depths_total(const uint64_t counts[CHAIN_DEPTHS])
 {
     uint64_t total = 0;
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
@@ -28,14 +28,14 @@ static uint64_t proposals_total(const uint64_t counts[CHAIN_DEPTHS])
     return total;
 }
 
-static void acceptance_cell(FILE *stream, uint64_t accepted, uint64_t proposals)
+static void share_cell(FILE *stream, uint64_t part, uint64_t whole)
 {
-    double share = proposals > 0 ? 100.0 * (double)accepted / (double)proposals : (double)NAN;
-    if (proposals == 0)
+    double share = whole > 0 ? 100.0 * (double)part / (double)whole : (double)NAN;
+    if (whole == 0)
         fputs("<td>\u2013</td>", stream);
     else
         fprintf(stream, "<td class=\"share\" style=\"--v:%.1f\" title=\"%llu of %llu\">%.1f</td>", share,
-                (unsigned long long)accepted, (unsigned long long)proposals, share);
+                (unsigned long long)part, (unsigned long long)whole, share);
 }
 
 /* The depths that have chains: [*first, *last]. */
@@ -67,16 +67,16 @@ static void acceptance_table(FILE *stream, const ChainStatistics *chains, int fi
 {
     table_begin(stream, "<th>mutation of</th><th>proposals</th><th>all depths</th>", first, last);
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
-        uint64_t proposals = proposals_total(chains->proposals[kind]);
+        uint64_t proposals = depths_total(chains->proposals[kind]);
         if (proposals == 0)
             continue;
         fprintf(stream, "<tr><th>%s</th>", stats_chain_kind(kind));
         fputs("<td>", stream);
         html_number(stream, (double)proposals, 3);
         fputs("</td>", stream);
-        acceptance_cell(stream, proposals_total(chains->accepted[kind]), proposals);
+        share_cell(stream, depths_total(chains->accepted[kind]), proposals);
         for (int depth = first; depth <= last; ++depth)
-            acceptance_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
+            share_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
         fputs("</tr>\n", stream);
     }
     table_end(stream);
@@ -93,11 +93,25 @@ static void runs_row(FILE *stream, const ChainStatistics *chains, int first, int
     fputs("</tr>\n", stream);
 }
 
+static void starts_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    fputs("<tr><th>different starts, %</th>", stream);
+    share_cell(stream, depths_total(chains->distinct_starts), depths_total(chains->starts));
+    for (int depth = first; depth <= last; ++depth)
+        share_cell(stream, chains->distinct_starts[depth], chains->starts[depth]);
+    fputs("</tr>\n", stream);
+}
+
 static void health_table(FILE *stream, const ChainStatistics *chains, int first, int last)
 {
-    fputs("<p class=\"soft\">Whether they get about:</p>\n", stream);
+    fprintf(
+        stream,
+        "<p class=\"soft\">Do they get about? The most proposals that one has refused in a row, over generations, and "
+        "how many of the paths that they begin or go on with are different; in the worst generation %.1f %%:</p>\n",
+        100.0 * chains->least_distinct);
     table_begin(stream, "<th></th><th>all depths</th>", first, last);
     runs_row(stream, chains, first, last);
+    starts_row(stream, chains, first, last);
     table_end(stream);
 }
 

@@ -46,6 +46,7 @@ static const Field FIELDS[] = {
     WHOLE(chains.pool_samples),
     WHOLE(chains.seeds),
     WHOLE(chains.steps),
+    NUMBER(chains.least_distinct),
     NUMBER(chains.pool_seconds),
     NUMBER(chains.chain_seconds),
     NUMBER(chains.direct_seconds),
@@ -82,7 +83,8 @@ static void depths_print(FILE *stream, const ChainStatistics *chains)
 {
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
         if (chain_statistics_proposals(chains, depth) > 0)
-            fprintf(stream, "depth %d %" PRIu64 "\n", depth, chains->longest_run[depth]);
+            fprintf(stream, "depth %d %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", depth, chains->longest_run[depth],
+                    chains->starts[depth], chains->distinct_starts[depth]);
 }
 
 static void record_path(char path[PATH_MAX], const char *image)
@@ -139,8 +141,11 @@ static void depth_read(ChainStatistics *chains, const char *value)
 {
     char *end;
     unsigned long depth = strtoul(value, &end, 10);
-    if (depth < CHAIN_DEPTHS)
-        chains->longest_run[depth] = strtoull(end, &end, 10);
+    if (depth >= CHAIN_DEPTHS)
+        return;
+    chains->longest_run[depth] = strtoull(end, &end, 10);
+    chains->starts[depth] = strtoull(end, &end, 10);
+    chains->distinct_starts[depth] = strtoull(end, &end, 10);
 }
 
 /* One line; returns whether it is the last. */

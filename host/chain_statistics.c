@@ -7,6 +7,26 @@ static uint64_t larger(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
+/* Of two parts; 0: not known. */
+static double smaller_known(double a, double b)
+{
+    return a > 0.0 && (a < b || !(b > 0.0)) ? a : b;
+}
+
+void chain_statistics_starts(ChainStatistics *statistics, const ChainStarts *starts)
+{
+    uint64_t chains = 0, distinct = 0;
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        chains += starts->chains[depth];
+        distinct += starts->distinct[depth];
+        statistics->starts[depth] += starts->chains[depth];
+        statistics->distinct_starts[depth] += starts->distinct[depth];
+    }
+    statistics->seeds += chains - starts->kept;
+    if (chains > 0)
+        statistics->least_distinct = smaller_known((double)distinct / (double)chains, statistics->least_distinct);
+}
+
 void chain_statistics_pass(ChainStatistics *statistics, const uint *words, uint count, uint steps)
 {
     for (uint i = 0; i < count; ++i) {
@@ -38,9 +58,12 @@ void chain_statistics_add(ChainStatistics *sum, const ChainStatistics *other)
     sum->pool_seconds += other->pool_seconds;
     sum->chain_seconds += other->chain_seconds;
     sum->direct_seconds += other->direct_seconds;
+    sum->least_distinct = smaller_known(sum->least_distinct, other->least_distinct);
     for (int i = 0; i < 3; ++i)
         sum->shares[i] += other->shares[i];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        sum->starts[depth] += other->starts[depth];
+        sum->distinct_starts[depth] += other->distinct_starts[depth];
         sum->longest_run[depth] = larger(sum->longest_run[depth], other->longest_run[depth]);
         for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
             sum->proposals[kind][depth] += other->proposals[kind][depth];

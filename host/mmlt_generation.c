@@ -122,16 +122,16 @@ static double pool_brightness(const Mmlt *mmlt, uint pool_count)
 static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
 {
     ChainPopulation *population = mmlt_population(mmlt);
-    uint kept;
+    ChainStarts starts;
     /* A sample of a pool that is worth this begins one chain. */
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count);
     if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, !mmlt->options.unsorted,
-                                offset_of(mmlt), count, &kept, error))
+                                offset_of(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;
     mmlt->chains.pass_stride = count;
-    mmlt->run->chains.seeds += count - kept;
+    chain_statistics_starts(&mmlt->run->chains, &starts);
     return true;
 }
 

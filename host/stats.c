@@ -82,6 +82,9 @@ static void stats_by_depth(JsonWriter *json, const char *key, const ChainStatist
 void stats_chain_health(JsonWriter *json, const ChainStatistics *chains)
 {
     stats_by_depth(json, "longest_rejections", chains, chains->longest_run);
+    stats_by_depth(json, "starts", chains, chains->starts);
+    stats_by_depth(json, "distinct_starts", chains, chains->distinct_starts);
+    json_number(json, "least_distinct", chains->least_distinct);
 }
 
 /* One object a kind of mutation that was made: proposals, and acceptance of every depth. */

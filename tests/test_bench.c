@@ -96,6 +96,9 @@ START_TEST(test_records)
     record.chains.proposals[1][31] = 9;
     record.chains.accepted[1][31] = 4;
     record.chains.longest_run[31] = 65535;
+    record.chains.starts[31] = 40;
+    record.chains.distinct_starts[31] = 30;
+    record.chains.least_distinct = 0.3;
     const char *image = test_path("image.exr");
     ck_assert_msg(bench_record_write(image, &record, &error), "%s", error.message);
     ck_assert_msg(!bench_record_read(image, &read), "a record without an image");
