@@ -102,16 +102,39 @@ static void starts_row(FILE *stream, const ChainStatistics *chains, int first, i
     fputs("</tr>\n", stream);
 }
 
+/* HTML's number of a figure that is 0 where it is not known. */
+static void r_hat_cell(FILE *stream, double r_hat)
+{
+    fputs("<td>", stream);
+    if (isinf(r_hat))
+        fputs("∞", stream);
+    else
+        html_number(stream, r_hat > 0.0 ? r_hat : (double)NAN, 4);
+    fputs("</td>", stream);
+}
+
+static void r_hat_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    double largest = 0.0;
+    for (int depth = first; depth <= last; ++depth)
+        largest = fmax(largest, chains->r_hat[depth]);
+    fputs("<tr><th>R̂ over groups of chains</th>", stream);
+    r_hat_cell(stream, largest);
+    for (int depth = first; depth <= last; ++depth)
+        r_hat_cell(stream, chains->r_hat[depth]);
+    fputs("</tr>\n", stream);
+}
+
 static void health_table(FILE *stream, const ChainStatistics *chains, int first, int last)
 {
-    fprintf(
-        stream,
-        "<p class=\"soft\">Do they get about? The most proposals that one has refused in a row, over generations, and "
-        "how many of the paths that they begin or go on with are different; in the worst generation %.1f %%:</p>\n",
-        100.0 * chains->least_distinct);
+    fprintf(stream,
+            "<p class=\"soft\">Whether they get about, by the path\u2019s segments; of runs and R\u0302 the largest of "
+            "all renderings. In the worst generation %.1f %% of the starts were different:</p>\n",
+            100.0 * chains->least_distinct);
     table_begin(stream, "<th></th><th>all depths</th>", first, last);
     runs_row(stream, chains, first, last);
     starts_row(stream, chains, first, last);
+    r_hat_row(stream, chains, first, last);
     table_end(stream);
 }
 

@@ -83,8 +83,8 @@ static void depths_print(FILE *stream, const ChainStatistics *chains)
 {
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
         if (chain_statistics_proposals(chains, depth) > 0)
-            fprintf(stream, "depth %d %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", depth, chains->longest_run[depth],
-                    chains->starts[depth], chains->distinct_starts[depth]);
+            fprintf(stream, "depth %d %" PRIu64 " %" PRIu64 " %" PRIu64 " %.17g\n", depth, chains->longest_run[depth],
+                    chains->starts[depth], chains->distinct_starts[depth], chains->r_hat[depth]);
 }
 
 static void record_path(char path[PATH_MAX], const char *image)
@@ -146,6 +146,7 @@ static void depth_read(ChainStatistics *chains, const char *value)
     chains->longest_run[depth] = strtoull(end, &end, 10);
     chains->starts[depth] = strtoull(end, &end, 10);
     chains->distinct_starts[depth] = strtoull(end, &end, 10);
+    chains->r_hat[depth] = strtod(end, &end);
 }
 
 /* One line; returns whether it is the last. */

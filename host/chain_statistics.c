@@ -65,6 +65,7 @@ void chain_statistics_add(ChainStatistics *sum, const ChainStatistics *other)
         sum->starts[depth] += other->starts[depth];
         sum->distinct_starts[depth] += other->distinct_starts[depth];
         sum->longest_run[depth] = larger(sum->longest_run[depth], other->longest_run[depth]);
+        sum->r_hat[depth] = other->r_hat[depth] > sum->r_hat[depth] ? other->r_hat[depth] : sum->r_hat[depth];
         for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
             sum->proposals[kind][depth] += other->proposals[kind][depth];
             sum->accepted[kind][depth] += other->accepted[kind][depth];

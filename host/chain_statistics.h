@@ -15,6 +15,7 @@ typedef struct ChainStatistics {
     uint64_t longest_run[CHAIN_DEPTHS]; /* proposals that one chain refused in a row, over passes (CHAIN_RUN) */
     uint64_t starts[CHAIN_DEPTHS], distinct_starts[CHAIN_DEPTHS]; /* ChainStarts of all generations */
     double least_distinct; /* the smallest part of a generation's starts that were different paths; 0: there was none */
+    double r_hat[CHAIN_DEPTHS]; /* over groups of chains (chain_groups.h); 0: not known */
     double pool_seconds, chain_seconds, direct_seconds;
     double shares[3]; /* of chains, pool and path tracing in the latest generation (blend.h); 0: not blended */
 } ChainStatistics;

@@ -180,6 +180,15 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
     return true;
 }
 
+/* What the chains of a pass did, and where they are. */
+static void chains_count(Mmlt *mmlt, uint count)
+{
+    const uint *words = mmlt->chains.pass_words;
+    uint half = (uint)half_of(mmlt, mmlt->generation);
+    chain_statistics_pass(&mmlt->run->chains, words, count, mmlt->options.steps);
+    chain_groups_add(&mmlt->groups, words, count, half, mmlt->options.paper ? CHAIN_GROUPS : 1);
+}
+
 /* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). It began with
  * a sample of the pool or, when it came from the generation before, with `numbers`. */
 static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
@@ -309,7 +318,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
             return false;
         mmlt->brightness_sum[half_of(mmlt, mmlt->generation)] += mmlt->brightness;
         if (chains && mmlt_population(mmlt)->brightness > 0.0) {
-            chain_statistics_pass(&run->chains, mmlt->chains.pass_words, count, mmlt->options.steps);
+            chains_count(mmlt, count);
             bad_chains_write(mmlt, count);
         }
         mmlt->work_last = work;

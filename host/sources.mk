@@ -28,6 +28,7 @@ libtwinlight_host_la_SOURCES = \
 	host/cmd_devices.c \
 	host/cmd_info.c \
 	host/cmd_pyramid.c \
+	host/chain_groups.c host/chain_groups.h \
 	host/chain_list.c host/chain_list.h \
 	host/chain_population.c host/chain_population.h \
 	host/chain_seeds.c host/chain_seeds.h \

@@ -66,15 +66,21 @@ void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "direct_seconds", chains->direct_seconds);
 }
 
+/* The name of a member for paths of `depth` segments. */
+static const char *depth_key(int depth, char text[16])
+{
+    snprintf(text, 16, "%d", depth);
+    return text;
+}
+
 /* "KEY": {"3": ..., ...} of the depths that have chains. */
 static void stats_by_depth(JsonWriter *json, const char *key, const ChainStatistics *chains, const uint64_t *counts)
 {
     json_object_begin(json, key);
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
         char name[16];
-        snprintf(name, sizeof name, "%d", depth);
         if (chain_statistics_proposals(chains, depth) > 0)
-            json_unsigned(json, name, counts[depth]);
+            json_unsigned(json, depth_key(depth, name), counts[depth]);
     }
     json_object_end(json);
 }
@@ -85,6 +91,13 @@ void stats_chain_health(JsonWriter *json, const ChainStatistics *chains)
     stats_by_depth(json, "starts", chains, chains->starts);
     stats_by_depth(json, "distinct_starts", chains, chains->distinct_starts);
     json_number(json, "least_distinct", chains->least_distinct);
+    json_object_begin(json, "r_hat");
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        char name[16];
+        if (chains->r_hat[depth] > 0.0)
+            json_number(json, depth_key(depth, name), chains->r_hat[depth]);
+    }
+    json_object_end(json);
 }
 
 /* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
@@ -102,9 +115,9 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
         json_object_begin(json, stats_chain_kind(kind));
         for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
             char name[16];
-            snprintf(name, sizeof name, "%d", depth);
-            if (chains->proposals[kind][depth] > 0)
-                json_number(json, name, (double)chains->accepted[kind][depth] / (double)chains->proposals[kind][depth]);
+            double accepted = (double)chains->accepted[kind][depth], proposals = (double)chains->proposals[kind][depth];
+            if (proposals > 0.0)
+                json_number(json, depth_key(depth, name), accepted / proposals);
         }
         json_object_end(json);
     }

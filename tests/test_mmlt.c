@@ -188,6 +188,28 @@ START_TEST(test_runs)
 }
 END_TEST
 
+/* Small steps alone leave parts of the chains where they began; large ones bring them together. */
+START_TEST(test_groups)
+{
+    double r_hat[2];
+    for (int i = 0; i < 2; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {.text = bidirectional_text(&BIDIRECTIONAL_SCENES[0]),
+                                   .samples = 4096,
+                                   .max_depth = 4,
+                                   .threads = 2,
+                                   .integrator = integrator_mmlt(),
+                                   .chains = {.chains = 64, .paper = true, .large_step = i == 0 ? 1e-6 : 0.5}};
+        fixture_render(&setup, &image);
+        r_hat[i] = image.result.chains.r_hat[3];
+        fixture_destroy(&image);
+    }
+    printf("R-hat of paths of 3 segments: %.4f by small steps, %.4f with large ones\n", r_hat[0], r_hat[1]);
+    ck_assert_double_eq_tol(r_hat[1], 1.0, 0.01);
+    ck_assert_double_gt(r_hat[0] - 1.0, 3.0 * fabs(r_hat[1] - 1.0));
+}
+END_TEST
+
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
 /* The mean square error against what path tracing sees falls as one over the work: nothing is left over. Of chains alone
@@ -280,7 +302,9 @@ int main(void)
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
-    tcase_add_test(case_make(suite, "counts"), test_runs);
+    TCase *counts = case_make(suite, "counts");
+    tcase_add_test(counts, test_runs);
+    tcase_add_test(counts, test_groups);
     tcase_add_loop_test(case_make(suite, "slope"), test_slope, 0, 6);
     tcase_add_loop_test(case_make(suite, "brightness"), test_brightness, 0, 8);
     return test_run(suite);
