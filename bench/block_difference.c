@@ -10,12 +10,14 @@
 
 #include "image.h"
 #include "metrics.h"
+#include "student.h"
 
 #include <math.h>
 #include <string.h>
 
 #define BLOCKS_MAX 16
 #define PAIRS_MAX 64
+#define PROBABILITY 0.01 /* of all blocks together */
 
 typedef struct Means {
     double value[BLOCKS_MAX * BLOCKS_MAX];
@@ -23,29 +25,13 @@ typedef struct Means {
 
 static void means_read(const char *path, int blocks, Means *means)
 {
-    Image image;
     Error error = {0};
     float *rgb;
-    if (!image_read(path, &image, &error) || !image_linear_rgb(&image, &rgb, &error))
+    int width, height;
+    if (!image_read_rgb(path, &rgb, &width, &height, &error))
         bench_fail(error.message);
-    for (int j = 0; j < blocks; ++j)
-        for (int i = 0; i < blocks; ++i) {
-            int x0 = metrics_block_edge(i, blocks, image.width), x1 = metrics_block_edge(i + 1, blocks, image.width);
-            int y0 = metrics_block_edge(j, blocks, image.height), y1 = metrics_block_edge(j + 1, blocks, image.height);
-            double sum = 0.0;
-            for (int y = y0; y < y1; ++y)
-                for (int k = 3 * (y * image.width + x0); k < 3 * (y * image.width + x1); ++k)
-                    sum += (double)rgb[k];
-            means->value[j * blocks + i] = sum / (3.0 * (x1 - x0) * (y1 - y0));
-        }
+    metrics_block_means(rgb, width, height, blocks, means->value);
     free(rgb);
-    image_destroy(&image);
-}
-
-/* Student's two-sided value for p = 0.01 / 64 with 3, 7 and 15 degrees of freedom, as tables have it. */
-static double student(int pairs)
-{
-    return pairs >= 16 ? 5.0 : pairs >= 8 ? 7.2 : 18.0;
 }
 
 /* The difference of one block over all pairs, and its standard error; scale: what it is relative to. */
@@ -100,14 +86,14 @@ int main(int argc, char **argv)
             block_b[k][g] = b.value[k];
         }
     }
-    double whole = mean_of(picture_b, pairs);
+    double whole = mean_of(picture_b, pairs), deviations = student_threshold(PROBABILITY / cells, pairs - 1);
     Difference largest = {0.0, 0.0}, picture = difference_of(picture_a, picture_b, pairs, whole);
     for (int k = 0; k < cells; ++k) {
         double mean = mean_of(block_b[k], pairs), scale = mean + 0.01 * whole;
         Difference d = difference_of(block_a[k], block_b[k], pairs, scale);
         if (fabs(d.mean) >= fabs(largest.mean))
             largest = d;
-        beyond = fmax(beyond, fabs(d.mean) - student(pairs) * d.error);
+        beyond = fmax(beyond, fabs(d.mean) - deviations * d.error);
         seeds += spread_of(block_b[k], pairs, mean, scale) / cells;
     }
     printf("%.2e\t%.2e\t%.2e\t%.2e\t%.2e\t%.2e\n", fabs(largest.mean), largest.error, beyond, fabs(picture.mean),

@@ -4,7 +4,7 @@
 #   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
 #   bench_opencl.sh  samples/s of a device with overlap, without, with its own film, and of the CPU; rays/s of both
 #   bench_mmlt.sh    what sorting and grouping of chains bring, acceptance by depth, on the CPU and the first device
-#   bench_error.sh   error against time of all integrators on BENCH_SCENES, and a plot of it
+#   bench_error.sh   variance against time of all integrators on BENCH_SCENES
 # By hand, with a second program from a build with --enable-double:
 #   bench_double.sh  how far pictures of both are apart
 # Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
@@ -35,4 +35,4 @@ if HAVE_OPENCL
 	$(srcdir)/bench/bench_opencl.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
 endif
 	$(srcdir)/bench/bench_mmlt.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)
-	$(srcdir)/bench/bench_error.sh ./twinlight$(EXEEXT) bench/error.svg $(BENCH_SCENES)
+	$(srcdir)/bench/bench_error.sh ./twinlight$(EXEEXT) $(BENCH_SCENES)

@@ -15,21 +15,12 @@ static int chains_sum(const BenchScene *scene, int series, int time, ChainStatis
         if (!run->finished || run->series != series || run->time != time || chains->steps == 0)
             continue;
         ++runs;
-        sum->pool_samples += chains->pool_samples;
-        sum->seeds += chains->seeds;
-        sum->steps += chains->steps;
-        for (int i = 0; i < 3; ++i)
-            sum->shares[i] += chains->shares[i];
-        for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-            for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
-                sum->proposals[kind][depth] += chains->proposals[kind][depth];
-                sum->accepted[kind][depth] += chains->accepted[kind][depth];
-            }
+        chain_statistics_add(sum, chains);
     }
     return runs;
 }
 
-static uint64_t proposals_total(const uint64_t counts[CHAIN_DEPTHS])
+static uint64_t depths_total(const uint64_t counts[CHAIN_DEPTHS])
 {
     uint64_t total = 0;
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
@@ -37,49 +28,121 @@ static uint64_t proposals_total(const uint64_t counts[CHAIN_DEPTHS])
     return total;
 }
 
-static void acceptance_cell(FILE *stream, uint64_t accepted, uint64_t proposals)
+static void share_cell(FILE *stream, uint64_t part, uint64_t whole)
 {
-    double share = proposals > 0 ? 100.0 * (double)accepted / (double)proposals : (double)NAN;
-    if (proposals == 0)
+    double share = whole > 0 ? 100.0 * (double)part / (double)whole : (double)NAN;
+    if (whole == 0)
         fputs("<td>\u2013</td>", stream);
     else
         fprintf(stream, "<td class=\"share\" style=\"--v:%.1f\" title=\"%llu of %llu\">%.1f</td>", share,
-                (unsigned long long)accepted, (unsigned long long)proposals, share);
+                (unsigned long long)part, (unsigned long long)whole, share);
 }
 
-static void acceptance_table(FILE *stream, const ChainStatistics *chains)
+/* The depths that have chains: [*first, *last]. */
+static void depths_find(const ChainStatistics *chains, int *first, int *last)
 {
-    int first = CHAIN_DEPTHS, last = -1;
-    for (int kind = 0; kind < CHAIN_KINDS; ++kind)
-        for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
-            if (chains->proposals[kind][depth] > 0) {
-                first = depth < first ? depth : first;
-                last = depth > last ? depth : last;
-            }
-    fputs("<div class=\"wide\"><table>\n<thead><tr><th>mutation of</th><th>proposals</th><th>all depths</th>", stream);
+    *first = CHAIN_DEPTHS;
+    *last = -1;
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
+        if (chain_statistics_proposals(chains, depth) > 0) {
+            *first = depth < *first ? depth : *first;
+            *last = depth;
+        }
+}
+
+static void table_begin(FILE *stream, const char *columns, int first, int last)
+{
+    fprintf(stream, "<div class=\"wide\"><table>\n<thead><tr>%s", columns);
     for (int depth = first; depth <= last; ++depth)
         fprintf(stream, "<th>%d</th>", depth);
     fputs("</tr></thead>\n<tbody>\n", stream);
+}
+
+static void table_end(FILE *stream)
+{
+    fputs("</tbody></table></div>\n", stream);
+}
+
+static void acceptance_table(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    table_begin(stream, "<th>mutation of</th><th>proposals</th><th>all depths</th>", first, last);
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {
-        uint64_t proposals = proposals_total(chains->proposals[kind]);
+        uint64_t proposals = depths_total(chains->proposals[kind]);
         if (proposals == 0)
             continue;
         fprintf(stream, "<tr><th>%s</th>", stats_chain_kind(kind));
         fputs("<td>", stream);
         html_number(stream, (double)proposals, 3);
         fputs("</td>", stream);
-        acceptance_cell(stream, proposals_total(chains->accepted[kind]), proposals);
+        share_cell(stream, depths_total(chains->accepted[kind]), proposals);
         for (int depth = first; depth <= last; ++depth)
-            acceptance_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
+            share_cell(stream, chains->accepted[kind][depth], chains->proposals[kind][depth]);
         fputs("</tr>\n", stream);
     }
-    fputs("</tbody></table></div>\n", stream);
+    table_end(stream);
+}
+
+static void runs_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    uint64_t longest = 0;
+    for (int depth = first; depth <= last; ++depth)
+        longest = chains->longest_run[depth] > longest ? chains->longest_run[depth] : longest;
+    fprintf(stream, "<tr><th>longest run of rejections</th><td>%llu</td>", (unsigned long long)longest);
+    for (int depth = first; depth <= last; ++depth)
+        fprintf(stream, "<td>%llu</td>", (unsigned long long)chains->longest_run[depth]);
+    fputs("</tr>\n", stream);
+}
+
+static void starts_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    fputs("<tr><th>different starts, %</th>", stream);
+    share_cell(stream, depths_total(chains->distinct_starts), depths_total(chains->starts));
+    for (int depth = first; depth <= last; ++depth)
+        share_cell(stream, chains->distinct_starts[depth], chains->starts[depth]);
+    fputs("</tr>\n", stream);
+}
+
+/* HTML's number of a figure that is 0 where it is not known. */
+static void r_hat_cell(FILE *stream, double r_hat)
+{
+    fputs("<td>", stream);
+    if (isinf(r_hat))
+        fputs("∞", stream);
+    else
+        html_number(stream, r_hat > 0.0 ? r_hat : (double)NAN, 4);
+    fputs("</td>", stream);
+}
+
+static void r_hat_row(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    double largest = 0.0;
+    for (int depth = first; depth <= last; ++depth)
+        largest = fmax(largest, chains->r_hat[depth]);
+    fputs("<tr><th>R̂ over groups of chains</th>", stream);
+    r_hat_cell(stream, largest);
+    for (int depth = first; depth <= last; ++depth)
+        r_hat_cell(stream, chains->r_hat[depth]);
+    fputs("</tr>\n", stream);
+}
+
+static void health_table(FILE *stream, const ChainStatistics *chains, int first, int last)
+{
+    fprintf(stream,
+            "<p class=\"soft\">Whether they get about, by the path\u2019s segments; of runs and R\u0302 the largest of "
+            "all renderings. In the worst generation %.1f %% of the starts were different:</p>\n",
+            100.0 * chains->least_distinct);
+    table_begin(stream, "<th></th><th>all depths</th>", first, last);
+    runs_row(stream, chains, first, last);
+    starts_row(stream, chains, first, last);
+    r_hat_row(stream, chains, first, last);
+    table_end(stream);
 }
 
 void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
 {
     for (int s = 0; s < scene->series_count; ++s) {
         ChainStatistics chains;
+        int first, last;
         int runs = chains_sum(scene, s, time, &chains);
         if (runs == 0)
             continue;
@@ -95,6 +158,8 @@ void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
                 " mutations. In the picture of the last generation chains have %.0f %%, the pool %.0f %% and paths "
                 "%.0f %%. Acceptance in per cent, by kind of mutation and by the path\u2019s segments:</p>\n",
                 100.0 * chains.shares[0] / runs, 100.0 * chains.shares[1] / runs, 100.0 * chains.shares[2] / runs);
-        acceptance_table(stream, &chains);
+        depths_find(&chains, &first, &last);
+        acceptance_table(stream, &chains, first, last);
+        health_table(stream, &chains, first, last);
     }
 }

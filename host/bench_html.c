@@ -302,6 +302,19 @@ static bool scene_write(const Bench *bench, int number, FILE *stream, Error *err
 
 /* ---- the page --------------------------------------------------------------------------------------------------- */
 
+static void chain_terms_write(FILE *stream)
+{
+    fputs(
+        "<dt>longest run of rejections</dt><dd>the most proposals that one chain refused in a row, over "
+        "generations: long where chains cannot leave a path</dd>\n"
+        "<dt>different starts</dt><dd>of the paths that chains begin or go on with in every generation, the part "
+        "left when each counts once: small where a few paths are worth more than all others</dd>\n"
+        "<dt>R\u0302</dt><dd>potential scale reduction (Gelman and Rubin 1992; Vehtari et al. 2021) of the two "
+        "halves of the image, of the paths at which their chains end a generation: the largest of log luminance, "
+        "film x and film y. Groups that agree have 1; 1.01 is what 50 independent paths in each show by chance</dd>\n",
+        stream);
+}
+
 static void method_write(const Bench *bench, FILE *stream)
 {
     fputs("<section>\n<h2>What the figures are</h2>\n<dl class=\"facts\">\n"
@@ -327,9 +340,10 @@ static void method_write(const Bench *bench, FILE *stream)
         "and the reference\u2019s own error, and may be negative by chance</dd>\n"
         "<dt>\u00b1</dt><dd>one standard error</dd>\n"
         "<dt>seconds</dt><dd>wall-clock time of rendering, pools and seeding in it; a rendering ends with what it has "
-        "begun, and the time it took is what counts</dd>\n"
-        "</dl>\n</section>\n",
+        "begun, and the time it took is what counts</dd>\n",
         stream);
+    chain_terms_write(stream);
+    fputs("</dl>\n</section>\n", stream);
 }
 
 bool bench_html_write(const Bench *bench, FILE *stream, Error *error)

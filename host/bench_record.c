@@ -46,6 +46,7 @@ static const Field FIELDS[] = {
     WHOLE(chains.pool_samples),
     WHOLE(chains.seeds),
     WHOLE(chains.steps),
+    NUMBER(chains.least_distinct),
     NUMBER(chains.pool_seconds),
     NUMBER(chains.chain_seconds),
     NUMBER(chains.direct_seconds),
@@ -78,6 +79,14 @@ static void mutations_print(FILE *stream, const ChainStatistics *chains)
                         chains->accepted[kind][depth]);
 }
 
+static void depths_print(FILE *stream, const ChainStatistics *chains)
+{
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
+        if (chain_statistics_proposals(chains, depth) > 0)
+            fprintf(stream, "depth %d %" PRIu64 " %" PRIu64 " %" PRIu64 " %.17g\n", depth, chains->longest_run[depth],
+                    chains->starts[depth], chains->distinct_starts[depth], chains->r_hat[depth]);
+}
+
 static void record_path(char path[PATH_MAX], const char *image)
 {
     snprintf(path, PATH_MAX, "%.*s.record", PATH_MAX - 8, image);
@@ -93,6 +102,7 @@ bool bench_record_write(const char *image, const BenchRecord *record, Error *err
     fprintf(stream, RECORD_HEAD "\ndevice %s\n", record->device);
     fields_print(stream, record);
     mutations_print(stream, &record->chains);
+    depths_print(stream, &record->chains);
     fputs(RECORD_END "\n", stream);
     bool whole = fclose(stream) == 0;
     record_path(path, image);
@@ -127,6 +137,18 @@ static void mutation_read(ChainStatistics *chains, const char *value)
     chains->accepted[kind][depth] = accepted;
 }
 
+static void depth_read(ChainStatistics *chains, const char *value)
+{
+    char *end;
+    unsigned long depth = strtoul(value, &end, 10);
+    if (depth >= CHAIN_DEPTHS)
+        return;
+    chains->longest_run[depth] = strtoull(end, &end, 10);
+    chains->starts[depth] = strtoull(end, &end, 10);
+    chains->distinct_starts[depth] = strtoull(end, &end, 10);
+    chains->r_hat[depth] = strtod(end, &end);
+}
+
 /* One line; returns whether it is the last. */
 static bool line_read(BenchRecord *record, char *line)
 {
@@ -138,6 +160,8 @@ static bool line_read(BenchRecord *record, char *line)
         snprintf(record->device, sizeof record->device, "%s", value);
     else if (strcmp(line, "mutation") == 0)
         mutation_read(&record->chains, value);
+    else if (strcmp(line, "depth") == 0)
+        depth_read(&record->chains, value);
     else
         field_read(record, line, value);
     return false;

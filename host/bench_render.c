@@ -2,7 +2,6 @@
 
 #include "bench_options.h"
 #include "bench_task.h"
-#include "exr.h"
 #include "hash.h"
 #include "log.h"
 #include "path_name.h"
@@ -83,28 +82,15 @@ static bool scene_prepare(BenchWorkshop *shop, Error *error)
 
 /* ---- the reference ---------------------------------------------------------------------------------------------- */
 
-/* Mean of both halves with both as layers, as `twinlight render` writes them. */
+/* The reference is the mean of both, and keeps them as its halves. */
 static bool halves_join(const BenchScene *scene, const char paths[2][PATH_MAX], Error *error)
 {
     Rendering halves[2] = {{0}, {0}};
-    size_t values = 3 * (size_t)scene->width * (size_t)scene->height;
-    float *mean = malloc(values * sizeof *mean);
-    if (!mean)
-        return error_memory(error, values * sizeof *mean, "a reference");
     bool good = rendering_load(paths[0], &halves[0], error) && rendering_load(paths[1], &halves[1], error);
-    if (good) {
-        const float *a = halves[0].rgb, *b = halves[1].rgb;
-        for (size_t i = 0; i < values; ++i)
-            mean[i] = 0.5f * (a[i] + b[i]);
-        const ExrChannel channels[] = {
-            {"R", mean, 3, false},    {"G", mean + 1, 3, false},    {"B", mean + 2, 3, false},
-            {"halfA.R", a, 3, false}, {"halfA.G", a + 1, 3, false}, {"halfA.B", a + 2, 3, false},
-            {"halfB.R", b, 3, false}, {"halfB.G", b + 1, 3, false}, {"halfB.B", b + 2, 3, false}};
-        good = exr_write(scene->reference.path, channels, 9, scene->width, scene->height, NULL, NULL, 0, error);
-    }
+    float *const pictures[2] = {halves[0].rgb, halves[1].rgb};
+    good = good && rendering_mean_write(scene->reference.path, pictures, scene->width, scene->height, true, error);
     rendering_destroy(&halves[0]);
     rendering_destroy(&halves[1]);
-    free(mean);
     return good;
 }
 

@@ -119,12 +119,7 @@ static void json_series(JsonWriter *json, const BenchOptions *options, const Ben
 static void json_chains(JsonWriter *json, const ChainStatistics *chains)
 {
     json_object_begin(json, "chains");
-    json_unsigned(json, "pool_samples", chains->pool_samples);
-    json_unsigned(json, "seeds", chains->seeds);
-    json_unsigned(json, "mutations", chains->steps);
-    json_number(json, "pool_seconds", chains->pool_seconds);
-    json_number(json, "chain_seconds", chains->chain_seconds);
-    json_number(json, "direct_seconds", chains->direct_seconds);
+    stats_chain_counts(json, chains);
     json_array_begin(json, "mutation_counts");
     for (int kind = 0; kind < CHAIN_KINDS; ++kind)
         for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
@@ -138,6 +133,7 @@ static void json_chains(JsonWriter *json, const ChainStatistics *chains)
             json_object_end(json);
         }
     json_array_end(json);
+    stats_chain_health(json, chains);
     json_object_end(json);
 }
 

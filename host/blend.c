@@ -1,5 +1,6 @@
 #include "blend.h"
 
+#include "sample_statistics.h"
 #include "vec.h"
 
 #include <math.h>
@@ -154,20 +155,14 @@ static void tiles_sum(Blend *blend)
     pool_correct(blend);
 }
 
-static int value_compare(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
-/* The median over the tiles of a stream's variance over the tile's light. */
+/* The median (the upper one of an even number) over the tiles of a stream's variance over the tile's light. */
 static double ratio_median(const Blend *blend, int s, double *ratios)
 {
     size_t count = 0;
     for (size_t i = 0; i < tile_count(blend); ++i)
         if (blend->known[i].indirect > 0.0)
             ratios[count++] = blend->known[i].spread[s] / blend->known[i].indirect;
-    qsort(ratios, count, sizeof *ratios, value_compare);
+    sample_sort(ratios, count);
     return count > 0 ? ratios[count / 2] : 0.0;
 }
 

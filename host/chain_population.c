@@ -57,27 +57,37 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
 }
 
 /* The words of the chains chosen: of one that goes on its coordinates, of a new one its number in the pool. */
-static uint words_gather(const ChainPopulation *population, const Candidates *candidates, const uint *seeds, uint count,
+static void words_gather(const ChainPopulation *population, const Candidates *candidates, const uint *seeds, uint count,
                          uint *words)
 {
-    uint kept = 0;
     for (uint i = 0; i < count; ++i) {
         bool old = seeds[i] < candidates->chains;
         words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
         words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
-        if (old)
+        if (old) {
             words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
-        kept += old;
+            words[(size_t)CHAIN_PASS_RUN * count + i] = word_of(population, CHAIN_PASS_RUN, seeds[i]);
+        }
     }
-    for (uint field = CHAIN_PASS_NUMBERS; kept > 0 && field < population->fields; ++field)
+    for (uint field = CHAIN_PASS_NUMBERS; candidates->chains > 0 && field < population->fields; ++field)
         for (uint i = 0; i < count; ++i)
             if (seeds[i] < candidates->chains)
                 words[(size_t)field * count + i] = word_of(population, field, seeds[i]);
-    return kept;
+}
+
+/* A candidate that was chosen several times stands there several times in a row. */
+static void starts_count(const Candidates *candidates, const uint *seeds, uint count, ChainStarts *starts)
+{
+    for (uint i = 0; i < count; ++i) {
+        uint depth = chain_key_depth(candidates->keys[seeds[i]]) % CHAIN_DEPTHS;
+        ++starts->chains[depth];
+        starts->distinct[depth] += i == 0 || seeds[i] != seeds[i - 1];
+        starts->kept += seeds[i] < candidates->chains;
+    }
 }
 
 static bool population_choose(ChainPopulation *population, Candidates *candidates, const uint *pool, double threshold,
-                              bool sorted, double offset, uint count, uint *kept, Error *error)
+                              bool sorted, double offset, uint count, ChainStarts *starts, Error *error)
 {
     uint *words = calloc((size_t)count * population->fields, sizeof *words), *seeds = malloc(count * sizeof *seeds);
     double brightness = 0.0;
@@ -89,8 +99,11 @@ static bool population_choose(ChainPopulation *population, Candidates *candidate
     } else {
         error_memory(error, (size_t)count * population->fields * sizeof *words, "chains");
     }
-    if (done && brightness > 0.0)
-        *kept = words_gather(population, candidates, seeds, count, words);
+    if (done && brightness > 0.0) {
+        words_gather(population, candidates, seeds, count, words);
+        if (starts)
+            starts_count(candidates, seeds, count, starts);
+    }
     free(seeds);
     if (!done) {
         free(words);
@@ -105,20 +118,18 @@ static bool population_choose(ChainPopulation *population, Candidates *candidate
 }
 
 bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
-                            bool sorted, double offset, uint count, uint *kept, Error *error)
+                            bool sorted, double offset, uint count, ChainStarts *starts, Error *error)
 {
     Candidates candidates = {.chains = population->brightness > 0.0 ? population->count : 0};
-    uint unused = 0;
     candidates.all = candidates.chains + pool_count;
     candidates.weights = malloc(candidates.all * sizeof *candidates.weights);
     candidates.keys = malloc(candidates.all * sizeof *candidates.keys);
     bool done = candidates.weights && candidates.keys;
     if (!done)
         error_memory(error, candidates.all * (sizeof *candidates.weights + sizeof *candidates.keys), "a pool's paths");
-    if (kept)
-        *kept = 0;
-    done = done && population_choose(population, &candidates, pool, threshold, sorted, offset, count,
-                                     kept ? kept : &unused, error);
+    if (starts)
+        *starts = (ChainStarts){0};
+    done = done && population_choose(population, &candidates, pool, threshold, sorted, offset, count, starts, error);
     free(candidates.weights);
     free(candidates.keys);
     return done;

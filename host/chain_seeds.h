@@ -7,7 +7,7 @@
 
 /* Chooses `count` of the `candidates` paths by systematic resampling over the sum of all weights: one of weight w is
  * taken floor or ceil of count w / sum times, count w / sum on average over offset, uniform in [0, 1). keys: chain_key of
- * each; 0: there is none. seeds[i]: its number. With `sorted`, in the order of depth and then strategy; without, in that
+ * each; 0: there is none. seeds[i]: its number; the same ones stand together. With `sorted`, in the order of depth and then strategy; without, in that
  * given. *sum: of the weights. When it is zero nothing is chosen. */
 bool chain_seeds_choose(const double *weights, const uint *keys, uint candidates, bool sorted, double offset,
                         uint count, uint *seeds, double *sum, Error *error);

@@ -10,13 +10,13 @@
 #include "render.h"
 #include "render_options.h"
 #include "render_output.h"
+#include "render_settings.h"
 #include "render_verify.h"
 #include "scene_advice.h"
 #include "stats.h"
 #include "timing.h"
 #include "trace_output.h"
 
-#include <math.h>
 #include <string.h>
 
 static const RenderOptionSet OPTIONS = {
@@ -48,107 +48,6 @@ typedef struct RenderJob {
 } RenderJob;
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
-
-/* The scene's crop window on a film of another size: the same part of the picture (pbrt rounds both ends up). */
-static void crop_scale(const SceneSettings *settings, const int size[2], int crop[4])
-{
-    const int old[2] = {settings->width, settings->height};
-    for (int i = 0; i < 4; ++i) {
-        double part = (double)settings->crop[i] / old[i % 2];
-        crop[i] = (int)ceil(part * size[i % 2] - 1e-9);
-    }
-    for (int i = 0; i < 2; ++i)
-        if (crop[i] >= crop[i + 2])
-            crop[i] = crop[i + 2] - 1;
-}
-
-/* Size, crop, depth and samples: the command line's where it says so, else the scene's. */
-static bool settings_override(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    SceneSettings *settings = &job->scene.settings;
-    int size[2] = {settings->width, settings->height};
-    int crop[4];
-    memcpy(crop, settings->crop, sizeof crop);
-    if (command->resolution[0] > 0) {
-        memcpy(size, command->resolution, sizeof size);
-        crop_scale(settings, size, crop);
-    }
-    if (command->has_crop)
-        memcpy(crop, command->crop, sizeof crop);
-    if (command->max_depth > 0)
-        settings->max_depth = command->max_depth;
-    return scene_film_set(&job->scene, size[0], size[1], crop, error);
-}
-
-/* Whether --strategy, --heuristic and --unweighted mean something to the integrator. */
-static bool strategy_check(const RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
-    if (command->unweighted && !command->only_strategy) {
-        error_set(error, "--unweighted without --strategy would count every path several times");
-        return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
-    }
-    if (option && job->integrator == integrator_pt()) {
-        error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
-        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
-    }
-    if (option && job->integrator == integrator_mmlt()) {
-        error_set(error, "--%s is not for mmlt, whose chains go over all strategies by the balance heuristic", option);
-        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
-    }
-    if (command->chain_option && job->integrator != integrator_mmlt()) {
-        error_set(error, "--%s is for mmlt, and %s has no Markov chains", command->chain_option, job->integrator->name);
-        return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);
-    }
-    if (command->chains.large_step > 0.0 && !command->chains.paper) {
-        error_set(error,
-                  "--large-step is for --mlt-scheme=paper: generations begin anew instead of making large steps");
-        return error_fix(error, "add --mlt-scheme=paper, or leave --large-step out");
-    }
-    unsigned s = command->strategy[0], t = command->strategy[1];
-    if (!command->only_strategy || strategy_taken(job->integrator->strategies, s, s + t - 1))
-        return true;
-    error_set(error, "--strategy=%u,%u: %s has no such strategy", s, t, job->integrator->name);
-    return error_fix(error, "%s",
-                     s + t == 2 ? "lights are seen directly by 0,2 alone" : "use --integrator=bdpt, which has all");
-}
-
-/* Which layers the image will have. */
-static bool layers_check(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    bool chains = job->integrator == integrator_mmlt();
-    job->layers.wanted = command->has_layers ? command->layers : chains ? LAYERS_ALL : 0;
-    if (chains || command->layers == LAYERS_ALL)
-        job->layers.wanted &= chains ? LAYERS_ALL : LAYERS_AOV;
-    else if ((command->layers & ~LAYERS_AOV) != 0) {
-        error_set(error, "--layers: the image of %s has no layers of light", job->integrator->name);
-        return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");
-    }
-    return true;
-}
-
-/* What is longer than the integrator can make or the user wants is said, not dropped. */
-static bool depth_check(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    int *depth = &job->scene.settings.max_depth, limit = job->integrator->depth_limit;
-    if (*depth > limit) {
-        log_message(LOG_WARNING, "%s makes paths of up to %d segments; longer ones, up to %d, are left out",
-                    job->integrator->name, limit, *depth);
-        *depth = limit;
-    }
-    unsigned segments = command->strategy[0] + command->strategy[1] - 1;
-    if (!command->only_strategy || segments <= (unsigned)*depth)
-        return true;
-    error_set(error, "--strategy=%u,%u makes paths of %u segments, and the longest have %d", command->strategy[0],
-              command->strategy[1], segments, *depth);
-    if (segments > (unsigned)limit)
-        return error_fix(error, "%s makes no longer ones than %d", job->integrator->name, limit);
-    return error_fix(error, "add --max-depth=%u", segments);
-}
 
 static bool outputs_name(RenderJob *job, Error *error)
 {
@@ -204,7 +103,7 @@ static bool job_save(void *context, const Film *film, Error *error)
     return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
 }
 
-static RenderOptions render_settings(RenderJob *job)
+static RenderOptions job_options(RenderJob *job)
 {
     const RenderCommand *command = job->command;
     const SceneSettings *settings = &job->scene.settings;
@@ -232,7 +131,7 @@ static bool film_render(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     const SceneSettings *settings = &job->scene.settings;
-    RenderOptions options = render_settings(job);
+    RenderOptions options = job_options(job);
     RenderCallbacks callbacks = {job_progress, job_save, job};
     progress_init(&job->progress, stderr, command->quiet);
     bool rendered = interrupt_install(error) &&
@@ -348,7 +247,7 @@ static void film_rescue(RenderJob *job, Error *error)
 
 static int job_verify(RenderJob *job, Error *error)
 {
-    const RenderOptions options = render_settings(job);
+    const RenderOptions options = job_options(job);
     if (!interrupt_install(error) || !render_verify(job->command, job->integrator, &job->scene, &options, error))
         return EXIT_FAILED;
     return *options.stop ? EXIT_STOPPED : EXIT_OK;
@@ -368,13 +267,14 @@ static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     job->integrator = integrator_find(command->integrator, error);
-    if (!job->integrator || !strategy_check(job, error) || !layers_check(job, error))
+    if (!job->integrator || !render_settings_check(command, job->integrator, error) ||
+        !render_settings_layers(command, job->integrator, &job->layers.wanted, error))
         return EXIT_USAGE;
     if (command->output && !render_output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;
-    if (!settings_override(job, error) || !depth_check(job, error))
+    if (!render_settings_apply(command, job->integrator, &job->scene, error))
         return EXIT_USAGE;
     if (command->memory)
         return memory_print(job);

@@ -4,6 +4,7 @@
 #include "image_formats.h"
 #include "path_name.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -140,6 +141,7 @@ float image_value(const Image *image, size_t i)
 bool image_linear_rgb(const Image *image, float **rgb, Error *error)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+    assert(pixels > 0); /* no empty picture is read: image_size_check */
     float *out = malloc(pixels * 3 * sizeof *out);
     if (!out)
         return error_memory(error, pixels * 3 * sizeof *out, "an image");
@@ -151,4 +153,17 @@ bool image_linear_rgb(const Image *image, float **rgb, Error *error)
     }
     *rgb = out;
     return true;
+}
+
+bool image_read_rgb(const char *path, float **rgb, int *width, int *height, Error *error)
+{
+    Image image;
+    *rgb = NULL;
+    if (!image_read(path, &image, error))
+        return false;
+    *width = image.width;
+    *height = image.height;
+    bool good = image_linear_rgb(&image, rgb, error);
+    image_destroy(&image);
+    return good;
 }

@@ -37,4 +37,8 @@ float image_value(const Image *image, size_t i);
  * sRGB decoded. */
 bool image_linear_rgb(const Image *image, float **rgb, Error *error);
 
+/* Both at once: the file's pixels as linear RGB, *width x *height x 3, in a new array that the caller frees. On failure
+ * *rgb is NULL. */
+bool image_read_rgb(const char *path, float **rgb, int *width, int *height, Error *error);
+
 #endif

@@ -177,6 +177,8 @@ static bool mmlt_render(RenderRun *run, Error *error)
     bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, total, error);
     for (int s = 0; s < BLEND_STREAMS; ++s)
         run->chains.shares[s] = mmlt.blends[0].share[s];
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
+        run->chains.r_hat[depth] = chain_groups_r_hat(&mmlt.groups, depth);
     mmlt_destroy(&mmlt);
     return done;
 }

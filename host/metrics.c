@@ -1,5 +1,7 @@
 #include "metrics.h"
 
+#include "sample_statistics.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,20 +52,14 @@ static void metrics_add(Metrics *metrics, const Pixel *p)
     }
 }
 
-static int descending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
-}
-
 /* Sets both relMSEs from every pixel's; sorts the array. */
 static void rel_mse_set(Metrics *metrics, double *values, size_t count)
 {
     size_t dropped = count / TRIMMED_SHARE;
     double kept_sum = 0.0, dropped_sum = 0.0;
-    qsort(values, count, sizeof *values, descending);
-    for (size_t i = count; i-- > 0;)
-        *(i < dropped ? &dropped_sum : &kept_sum) += values[i];
+    sample_sort(values, count);
+    for (size_t i = 0; i < count; ++i)
+        *(i < count - dropped ? &kept_sum : &dropped_sum) += values[i];
     metrics->rel_mse = (kept_sum + dropped_sum) / (double)count;
     metrics->rel_mse_trimmed = kept_sum / (double)(count - dropped);
 }
@@ -88,15 +84,13 @@ static double block_mean(const float *rgb, int width, int x0, int x1, int y0, in
     return sum / (3.0 * (x1 - x0) * (y1 - y0));
 }
 
-/* means: n x n for the image, then n x n for the reference. */
-static void blocks_fill(const float *image, const float *reference, int width, int height, int n, double *means)
+void metrics_block_means(const float *rgb, int width, int height, int n, double *means)
 {
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < n; ++i) {
             int x0 = metrics_block_edge(i, n, width), x1 = metrics_block_edge(i + 1, n, width);
             int y0 = metrics_block_edge(j, n, height), y1 = metrics_block_edge(j + 1, n, height);
-            means[j * n + i] = block_mean(image, width, x0, x1, y0, y1);
-            means[n * n + j * n + i] = block_mean(reference, width, x0, x1, y0, y1);
+            means[j * n + i] = block_mean(rgb, width, x0, x1, y0, y1);
         }
     }
 }
@@ -108,7 +102,8 @@ static bool blocks_compare(const float *image, const float *reference, int width
     double *means = calloc(2 * count, sizeof *means), floor_value = 0.0;
     if (!means)
         return error_memory(error, 2 * count * sizeof *means, "block means");
-    blocks_fill(image, reference, width, height, metrics->blocks, means);
+    metrics_block_means(image, width, height, metrics->blocks, means);
+    metrics_block_means(reference, width, height, metrics->blocks, means + count);
     for (size_t i = 0; i < count; ++i)
         floor_value += means[count + i];
     floor_value = RELATIVE_FLOOR * fabs(floor_value / (double)count);

@@ -39,4 +39,8 @@ double metrics_relative_square(double square, double reference);
 /* Where block i of n begins in `size` pixels: round(i size / n), halves to even. */
 int metrics_block_edge(int i, int n, int size);
 
+/* means[j * n + i]: of block (i, j) of n x n of a picture of width x height x 3, over pixels and channels. n is no more
+ * than the shorter side. */
+void metrics_block_means(const float *rgb, int width, int height, int n, double *means);
+
 #endif

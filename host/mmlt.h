@@ -3,6 +3,7 @@
 #define TWINLIGHT_MMLT_H
 
 #include "blend.h"
+#include "chain_groups.h"
 #include "chain_list.h"
 #include "chain_population.h"
 #include "integrator.h"
@@ -38,6 +39,7 @@ typedef struct Mmlt {
     uint *pool_words;
     uint *begun; /* words of the chains as their pass began, where somebody wants to know */
     ChainPopulation populations[MMLT_HALVES];
+    ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Blend blends[MMLT_HALVES];
     double brightness; /* of the latest pool: mean luminance of a sample */

@@ -142,16 +142,16 @@ static double pool_brightness(const Mmlt *mmlt, uint pool_count)
 static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
 {
     ChainPopulation *population = mmlt_population(mmlt);
-    uint kept;
+    ChainStarts starts;
     /* A sample of a pool that is worth this begins one chain. */
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count);
     if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, !mmlt->options.unsorted,
-                                offset_of(mmlt), count, &kept, error))
+                                offset_of(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;
     mmlt->chains.pass_stride = count;
-    mmlt->run->chains.seeds += count - kept;
+    chain_statistics_starts(&mmlt->run->chains, &starts);
     return true;
 }
 
@@ -207,20 +207,13 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
     return true;
 }
 
-/* How often chains of each depth took what they proposed. */
-static void tally_chains(Mmlt *mmlt, uint count)
+/* What the chains of a pass did, and where they are. */
+static void chains_count(Mmlt *mmlt, uint count)
 {
-    ChainStatistics *statistics = &mmlt->run->chains;
     const uint *words = mmlt->chains.pass_words;
-    for (uint i = 0; i < count; ++i) {
-        uint depth = chain_key_depth(words[(size_t)CHAIN_PASS_KEY * count + i]) % CHAIN_DEPTHS;
-        for (uint kind = 0; kind < MUTATION_COUNT; ++kind) {
-            uint tally = words[(size_t)(CHAIN_PASS_TALLY + kind) * count + i];
-            statistics->proposals[kind][depth] += tally & 0xffffu;
-            statistics->accepted[kind][depth] += tally >> 16;
-        }
-    }
-    statistics->steps += (uint64_t)count * mmlt->options.steps;
+    uint half = (uint)half_of(mmlt, mmlt->generation);
+    chain_statistics_pass(&mmlt->run->chains, words, count, mmlt->options.steps);
+    chain_groups_add(&mmlt->groups, words, count, half, mmlt->options.paper ? CHAIN_GROUPS : 1);
 }
 
 /* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). It began with
@@ -352,7 +345,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
             return false;
         mmlt->brightness_sum[half_of(mmlt, mmlt->generation)] += mmlt->brightness;
         if (chains && mmlt_population(mmlt)->brightness > 0.0) {
-            tally_chains(mmlt, count);
+            chains_count(mmlt, count);
             bad_chains_write(mmlt, count);
         }
         mmlt->work_last = work;

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_RENDER_H
 #define TWINLIGHT_RENDER_H
 
+#include "chain_statistics.h"
 #include "film.h"
 #include "integrator.h"
 #include "scene.h"
@@ -53,17 +54,6 @@ typedef struct RenderCallbacks {
     bool (*save)(void *context, const Film *film, Error *error); /* every save_every seconds; may be NULL */
     void *context;
 } RenderCallbacks;
-
-#define CHAIN_KINDS 4 /* MUTATION_* */
-#define CHAIN_DEPTHS 32
-
-/* What Markov chains did. */
-typedef struct ChainStatistics {
-    uint64_t pool_samples, seeds, steps;
-    uint64_t proposals[CHAIN_KINDS][CHAIN_DEPTHS], accepted[CHAIN_KINDS][CHAIN_DEPTHS]; /* by depth */
-    double pool_seconds, chain_seconds, direct_seconds;
-    double shares[3]; /* of chains, pool and path tracing in the latest generation (blend.h); 0: not blended */
-} ChainStatistics;
 
 /* What happened inside the kernels: names from diagnostics.h. */
 typedef struct RenderResult {

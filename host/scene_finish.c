@@ -1,4 +1,4 @@
-/* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables, buffers. */
+/* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables. */
 #include "scene.h"
 
 #include "box.h"
@@ -7,6 +7,7 @@
 #include "filter_setup.h"
 #include "light_setup.h"
 #include "material.h"
+#include "scene_pack.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -284,71 +285,6 @@ static bool scene_coat_tables(Scene *scene, Error *error)
     return true;
 }
 
-/* ---- packing ------------------------------------------------------------------------------------------------------ */
-
-/* Copies `array` behind the words already in `words`, from a multiple of four words on. */
-static bool words_append(Array *words, const Array *array, uint *first, Error *error)
-{
-    size_t bytes = array->count * array->element_size, start = (words->count + 3) / 4 * 4;
-    size_t count = start - words->count + bytes / 4;
-    if (start + bytes / 4 > 0xfffffff0u) {
-        error_set(error, "the scene needs more than 16 GiB in one buffer");
-        return error_fix(error, "use object instances or smaller textures");
-    }
-    uint *out = array_grow(words, count, error);
-    if (!out)
-        return false;
-    *first = (uint)start;
-    if (bytes > 0)
-        memcpy((uint *)words->data + start, array->data, bytes);
-    return true;
-}
-
-static bool scene_pack_tables(Scene *scene, Error *error)
-{
-    SceneLayout *layout = &scene->frame.layout;
-    Array *words = &scene->tables_words;
-    words->count = 0;
-    return words_append(words, &scene->materials, &layout->materials, error) &&
-           words_append(words, &scene->texture_ops, &layout->texture_ops, error) &&
-           words_append(words, &scene->images, &layout->images, error) &&
-           words_append(words, &scene->lights, &layout->lights, error) &&
-           words_append(words, &scene->light_alias, &layout->light_alias, error) &&
-           words_append(words, &scene->infinite_lights, &layout->infinite_lights, error) &&
-           words_append(words, &scene->distributions2d, &layout->distributions2d, error) &&
-           words_append(words, &scene->lookup, &layout->lookup, error);
-}
-
-/* The unpacked vertex and primitive arrays are freed on the way: a large scene is held once. */
-static bool scene_pack_geometry(Scene *scene, Error *error)
-{
-    SceneLayout *layout = &scene->frame.layout;
-    struct {
-        Array *array;
-        uint *first;
-    } parts[] = {{&scene->positions, &layout->positions},
-                 {&scene->normals, &layout->normals},
-                 {&scene->uvs, &layout->uvs},
-                 {&scene->primitives, &layout->primitives},
-                 {&scene->shapes, &layout->shapes},
-                 {&scene->patches, &layout->patches},
-                 {&scene->quadrics, &layout->quadrics},
-                 {&scene->objects, &layout->objects},
-                 {&scene->instances, &layout->instances}};
-    size_t total = 64;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i)
-        total += parts[i].array->count * parts[i].array->element_size / 4 + 4;
-    if (!array_reserve(&scene->geometry_words, total, error))
-        return false;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
-        if (!words_append(&scene->geometry_words, parts[i].array, parts[i].first, error))
-            return false;
-        if (i < 4)
-            array_destroy(parts[i].array);
-    }
-    return true;
-}
-
 /* ---- entry points ------------------------------------------------------------------------------------------------- */
 
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
@@ -391,25 +327,6 @@ bool scene_finish(Scene *scene, Error *error)
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
     scene->frame.pixel_stride = 1;
     scene->frame.max_depth = (uint)scene->settings.max_depth;
-    return scene_pack_tables(scene, error) && scene_pack_geometry(scene, error) &&
+    return scene_pack(scene, error) &&
            scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
-}
-
-BackendScene scene_backend_view(const Scene *scene)
-{
-    return (BackendScene){.frame = &scene->frame,
-                          .geometry = scene->geometry_words.data,
-                          .geometry_words = scene->geometry_words.count,
-                          .tables = scene->tables_words.data,
-                          .tables_words = scene->tables_words.count,
-                          .texels = scene->texels.data,
-                          .texel_words = scene->texels.count,
-                          .primitive_count = scene->primitive_count,
-                          .object_count = scene->objects.count,
-                          .instance_count = scene->instances.count};
-}
-
-size_t scene_bytes(const Scene *scene)
-{
-    return 4 * (scene->geometry_words.count + scene->tables_words.count + scene->texels.count);
 }

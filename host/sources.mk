@@ -28,9 +28,11 @@ libtwinlight_host_la_SOURCES = \
 	host/cmd_devices.c \
 	host/cmd_info.c \
 	host/cmd_pyramid.c \
+	host/chain_groups.c host/chain_groups.h \
 	host/chain_list.c host/chain_list.h \
 	host/chain_population.c host/chain_population.h \
 	host/chain_seeds.c host/chain_seeds.h \
+	host/chain_statistics.c host/chain_statistics.h \
 	host/cmd_render.c \
 	host/coat_table.c host/coat_table.h \
 	host/color.c host/color.h \
@@ -105,12 +107,14 @@ libtwinlight_host_la_SOURCES = \
 	host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
+	host/render_settings.c host/render_settings.h \
 	host/render_verify.c host/render_verify.h \
 	host/rendering_file.c host/rendering_file.h \
 	host/sample_statistics.c host/sample_statistics.h \
 	host/scene.c host/scene.h \
 	host/scene_finish.c \
 	host/scene_advice.c host/scene_advice.h \
+	host/scene_pack.c host/scene_pack.h \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
 	host/stats.c host/stats.h \

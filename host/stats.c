@@ -2,7 +2,6 @@
 
 #include "config.h"
 
-#include "json.h"
 #include "log.h"
 #include "timing.h"
 
@@ -57,16 +56,55 @@ const char *stats_chain_kind(int kind)
     return KINDS[kind];
 }
 
-/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
-static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
+void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
 {
-    json_object_begin(json, "chains");
     json_unsigned(json, "pool_samples", chains->pool_samples);
     json_unsigned(json, "seeds", chains->seeds);
     json_unsigned(json, "mutations", chains->steps);
     json_number(json, "pool_seconds", chains->pool_seconds);
     json_number(json, "chain_seconds", chains->chain_seconds);
     json_number(json, "direct_seconds", chains->direct_seconds);
+}
+
+/* The name of a member for paths of `depth` segments. */
+static const char *depth_key(int depth, char text[16])
+{
+    snprintf(text, 16, "%d", depth);
+    return text;
+}
+
+/* "KEY": {"3": ..., ...} of the depths that have chains. */
+static void stats_by_depth(JsonWriter *json, const char *key, const ChainStatistics *chains, const uint64_t *counts)
+{
+    json_object_begin(json, key);
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        char name[16];
+        if (chain_statistics_proposals(chains, depth) > 0)
+            json_unsigned(json, depth_key(depth, name), counts[depth]);
+    }
+    json_object_end(json);
+}
+
+void stats_chain_health(JsonWriter *json, const ChainStatistics *chains)
+{
+    stats_by_depth(json, "longest_rejections", chains, chains->longest_run);
+    stats_by_depth(json, "starts", chains, chains->starts);
+    stats_by_depth(json, "distinct_starts", chains, chains->distinct_starts);
+    json_number(json, "least_distinct", chains->least_distinct);
+    json_object_begin(json, "r_hat");
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
+        char name[16];
+        if (chains->r_hat[depth] > 0.0)
+            json_number(json, depth_key(depth, name), chains->r_hat[depth]);
+    }
+    json_object_end(json);
+}
+
+/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
+static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
+{
+    json_object_begin(json, "chains");
+    stats_chain_counts(json, chains);
     json_object_begin(json, "shares");
     json_number(json, "chains", chains->shares[0]);
     json_number(json, "pool", chains->shares[1]);
@@ -77,13 +115,14 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
         json_object_begin(json, stats_chain_kind(kind));
         for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
             char name[16];
-            snprintf(name, sizeof name, "%d", depth);
-            if (chains->proposals[kind][depth] > 0)
-                json_number(json, name, (double)chains->accepted[kind][depth] / (double)chains->proposals[kind][depth]);
+            double accepted = (double)chains->accepted[kind][depth], proposals = (double)chains->proposals[kind][depth];
+            if (proposals > 0.0)
+                json_number(json, depth_key(depth, name), accepted / proposals);
         }
         json_object_end(json);
     }
     json_object_end(json);
+    stats_chain_health(json, chains);
     json_object_end(json);
 }
 

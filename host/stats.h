@@ -3,6 +3,7 @@
 #ifndef TWINLIGHT_STATS_H
 #define TWINLIGHT_STATS_H
 
+#include "json.h"
 #include "render.h"
 
 #define STATS_FORMAT 1
@@ -25,5 +26,11 @@ bool stats_write(const char *path, const RenderStats *stats, Error *error);
 
 /* The name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */
 const char *stats_chain_kind(int kind);
+
+/* What chains did in all, into the object that is open. */
+void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains);
+
+/* Whether they have got about, by depth. */
+void stats_chain_health(JsonWriter *json, const ChainStatistics *chains);
 
 #endif

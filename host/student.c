@@ -5,6 +5,7 @@
 #define STEPS_MAX 500
 #define TINY 1e-300
 #define PRECISION 1e-15
+#define BISECTIONS 64 /* more than a double has bits */
 
 /* The continued fraction of the incomplete beta function (DLMF 8.17.22) by the modified method of Lentz, for
  * x < (a + 1) / (a + b + 2), where it converges fast. */
@@ -48,4 +49,16 @@ double student_two_sided(double t, double freedom)
         return 0.0;
     double sum = freedom + t * t;
     return beta_regularised(0.5 * freedom, 0.5, freedom / sum, t * t / sum);
+}
+
+double student_threshold(double probability, double freedom)
+{
+    double low = 0.0, high = 1.0;
+    while (student_two_sided(high, freedom) > probability)
+        high *= 2.0;
+    for (int i = 0; i < BISECTIONS; ++i) {
+        double t = 0.5 * (low + high);
+        *(student_two_sided(t, freedom) > probability ? &low : &high) = t;
+    }
+    return high;
 }

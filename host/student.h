@@ -6,4 +6,7 @@
  * infinite t. */
 double student_two_sided(double t, double freedom);
 
+/* The t > 0 that |T| exceeds with that probability, 0 < probability < 1. */
+double student_threshold(double probability, double freedom);
+
 #endif

@@ -1,8 +1,8 @@
 /* The mean of an even number of independent renderings, as an EXR of half floats, and how far from the truth it is: half
  * of them against the other half have four times its mean square error. usage: average_images OUT.exr IN... */
-#include "exr.h"
 #include "image.h"
 #include "metrics.h"
+#include "rendering_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,23 +12,11 @@ typedef struct Halves {
     float *rgb[2]; /* sums of the images with even and odd numbers */
 } Halves;
 
-static bool picture_read(const char *path, float **rgb, int *width, int *height, Error *error)
-{
-    Image image;
-    if (!image_read(path, &image, error))
-        return false;
-    *width = image.width;
-    *height = image.height;
-    bool good = image_linear_rgb(&image, rgb, error);
-    image_destroy(&image);
-    return good;
-}
-
 static bool image_add(Halves *halves, const char *path, int half, Error *error)
 {
     float *rgb, *sum = halves->rgb[half];
     int width, height;
-    if (!picture_read(path, &rgb, &width, &height, error))
+    if (!image_read_rgb(path, &rgb, &width, &height, error))
         return false;
     if (halves->rgb[0] && (width != halves->width || height != halves->height)) {
         free(rgb);
@@ -46,7 +34,7 @@ static bool image_add(Halves *halves, const char *path, int half, Error *error)
     return true;
 }
 
-/* From sums of n images each to means, and in the first the mean of both. */
+/* From sums of n images each to means, and from both the mean to the file. */
 static bool halves_finish(Halves *halves, int n, const char *path, Error *error)
 {
     size_t count = (size_t)halves->width * (size_t)halves->height * 3;
@@ -59,11 +47,7 @@ static bool halves_finish(Halves *halves, int n, const char *path, Error *error)
         return false;
     printf("%s: relMSE %.2g, without the worst 0.1 %% %.2g; error of the means of 16 x 16 blocks %.2g %%\n", path,
            metrics.rel_mse / 4.0, metrics.rel_mse_trimmed / 4.0, 50.0 * metrics.block_mean);
-    float *mean = halves->rgb[0];
-    for (size_t i = 0; i < count; ++i)
-        mean[i] = 0.5f * (mean[i] + halves->rgb[1][i]);
-    ExrChannel channels[] = {{"R", mean, 3, true}, {"G", mean + 1, 3, true}, {"B", mean + 2, 3, true}};
-    return exr_write(path, channels, 3, halves->width, halves->height, NULL, NULL, 0, error);
+    return rendering_mean_write(path, halves->rgb, halves->width, halves->height, false, error);
 }
 
 int main(int argc, char **argv)

@@ -26,8 +26,9 @@
 #define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 11u) /* 2 */
 #define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
 #define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* number of the first proposal whose f was not finite; NONE: all were */
+#define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals refused in a row: run_after */
 /* What the connection has to know of a half of the path, twice for each side: chain_half. */
-#define CHAIN_HALVES (BD_HEADER_WORDS + 18u)
+#define CHAIN_HALVES (BD_HEADER_WORDS + 19u)
 #define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_HALF_WORDS + CHAIN_CAMERA_HALF_WORDS))
 
 /* Places in CHAIN_MOVE. */
@@ -112,7 +113,33 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
 #define CHAIN_PASS_TALLY 3u /* after the pass, 4 */
 #define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
 #define CHAIN_PASS_BAD 8u /* after the pass: CHAIN_BAD */
-#define CHAIN_PASS_NUMBERS 9u /* the coordinates, where the pass keeps them */
+#define CHAIN_PASS_RUN 9u /* CHAIN_RUN of the pass before, 0: there was none; after the pass, of this one */
+#define CHAIN_PASS_NUMBERS 10u /* the coordinates, where the pass keeps them */
+
+/* ---- runs of refused proposals ----------------------------------------------------------------------------------- */
+
+/* The longest run of the pass is in the upper half of a word, the one under way, which began maybe in a pass before, in the
+ * lower. RUN_MOST means so many or more. */
+#define RUN_MOST 0xffffu
+
+SHARED_FUNCTION uint run_longest(uint run)
+{
+    return run >> 16;
+}
+
+/* At the beginning of a pass. */
+SHARED_FUNCTION uint run_begin(uint run)
+{
+    return run & RUN_MOST;
+}
+
+/* After a proposal. */
+SHARED_FUNCTION uint run_after(uint run, bool taken)
+{
+    uint now = run & RUN_MOST, longest = run >> 16;
+    now = taken ? 0u : now < RUN_MOST ? now + 1u : RUN_MOST;
+    return now | (now > longest ? now : longest) << 16;
+}
 
 /* ---- coordinates ------------------------------------------------------------------------------------------------- */
 

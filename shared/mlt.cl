@@ -52,6 +52,7 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     state_store(paths, stride, CHAIN_COLOR, t, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, t)); /* until it has one */
     state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
     state_store(paths, stride, CHAIN_BAD, t, NONE);
+    state_store(paths, stride, CHAIN_RUN, t, run_begin(pass_load(frame, pass, CHAIN_PASS_RUN, t)));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
         state_store(paths, stride, CHAIN_TALLY + i, t, 0u);
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
@@ -334,6 +335,7 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
     pass_store(frame, pass, CHAIN_PASS_LUMINANCE, t, state_load(paths, stride, CHAIN_LUMINANCE, t));
     pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));
     pass_store(frame, pass, CHAIN_PASS_BAD, t, state_load(paths, stride, CHAIN_BAD, t));
+    pass_store(frame, pass, CHAIN_PASS_RUN, t, state_load(paths, stride, CHAIN_RUN, t));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
         pass_store(frame, pass, CHAIN_PASS_TALLY + i, t, state_load(paths, stride, CHAIN_TALLY + i, t));
     if (frame->keep_chains == 0u)

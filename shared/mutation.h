@@ -153,6 +153,7 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     bool taken = f > 0.0f && random_float(random.x[0]) < accept;
     uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, t);
     state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
+    state_store(paths, stride, CHAIN_RUN, t, run_after(state_load(paths, stride, CHAIN_RUN, t), taken));
     if (taken) {
         chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept));
         chain_take(frame, paths, t, f, color, accept);

@@ -1,6 +1,7 @@
 #include "render_fixture.h"
 
 #include "backend_cpu.h"
+#include "image.h"
 #include "pbrt_import.h"
 
 #include <check.h>
@@ -98,6 +99,15 @@ double fixture_block_mean(const float *rgb, int width, int x0, int y0, int x1, i
 double fixture_mean(const RenderedImage *image)
 {
     return fixture_block_mean(image->rgb, image->width, 0, 0, image->width, image->height);
+}
+
+float *fixture_picture_read(const char *path, PictureView *view)
+{
+    Error error = {0};
+    float *rgb;
+    require(image_read_rgb(path, &rgb, &view->width, &view->height, &error), &error);
+    view->rgb = rgb;
+    return rgb;
 }
 
 /* The mean of block (i, j) of grid x grid. */

@@ -55,6 +55,9 @@ typedef struct PictureView {
     int width, height;
 } PictureView;
 
+/* Reads a picture; the caller frees what is returned, which the view shows. Fails the test when it cannot be read. */
+float *fixture_picture_read(const char *path, PictureView *view);
+
 /* Mean over a grid x grid of blocks of |a - b| / (b + 0.01 mean b), b the blocks of `reference`, which may have another
  * size. */
 double fixture_block_difference(PictureView picture, PictureView reference, int grid);

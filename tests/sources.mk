@@ -13,6 +13,7 @@ check_PROGRAMS += \
 	tests/test_chain \
 	tests/test_chain_population \
 	tests/test_chain_seeds \
+	tests/test_chain_statistics \
 	tests/test_compare \
 	tests/test_emit \
 	tests/test_film \

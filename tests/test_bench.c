@@ -36,6 +36,33 @@ START_TEST(test_lines)
 }
 END_TEST
 
+static SampleMoments moments_of(const double *values, size_t count)
+{
+    SampleMoments moments = {0};
+    for (size_t i = 0; i < count; ++i)
+        sample_moments_add(&moments, values[i]);
+    return moments;
+}
+
+START_TEST(test_r_hat)
+{
+    /* By hand: variances 1 and 1, means 2 and 3 with variance 1/2: sqrt(2/3 + 1/2). */
+    const double a[] = {1.0, 2.0, 3.0}, b[] = {2.0, 3.0, 4.0}, c[] = {7.0, 1.0, 4.0, 0.0, 3.0};
+    SampleMoments groups[4] = {moments_of(a, 3), moments_of(b, 3), moments_of(c, 5), moments_of(a, 1)};
+    ck_assert_double_eq_tol(groups[2].mean, 3.0, 1e-15);
+    ck_assert_double_eq_tol(groups[2].squares, 30.0, 1e-12);
+    ck_assert_double_eq_tol(sample_r_hat(groups, 2), sqrt(7.0 / 6.0), 1e-12);
+    /* With the third: W = (1 + 1 + 7.5) / 3, means 2, 3, 3 with variance 1/3, n = 11/3. One draw is no group. */
+    ck_assert_double_eq_tol(sample_r_hat(groups, 3), sqrt(8.0 / 11.0 + (1.0 / 3.0) / (9.5 / 3.0)), 1e-12);
+    ck_assert_double_eq(sample_r_hat(groups, 4), sample_r_hat(groups, 3));
+    ck_assert(isnan(sample_r_hat(groups, 1)) && isnan(sample_r_hat(groups + 2, 2)));
+    const double ones[] = {1.0, 1.0}, twos[] = {2.0, 2.0};
+    const SampleMoments same[] = {moments_of(ones, 2), moments_of(ones, 2)};
+    const SampleMoments stuck[] = {moments_of(ones, 2), moments_of(twos, 2)};
+    ck_assert(isnan(sample_r_hat(same, 2)) && isinf(sample_r_hat(stuck, 2)));
+}
+END_TEST
+
 static void number_is(double value, int digits, const char *expected)
 {
     char text[64];
@@ -95,6 +122,11 @@ START_TEST(test_records)
     record.chains.shares[2] = 0.1;
     record.chains.proposals[1][31] = 9;
     record.chains.accepted[1][31] = 4;
+    record.chains.longest_run[31] = 65535;
+    record.chains.starts[31] = 40;
+    record.chains.distinct_starts[31] = 30;
+    record.chains.least_distinct = 0.3;
+    record.chains.r_hat[31] = HUGE_VAL;
     const char *image = test_path("image.exr");
     ck_assert_msg(bench_record_write(image, &record, &error), "%s", error.message);
     ck_assert_msg(!bench_record_read(image, &read), "a record without an image");
@@ -158,6 +190,7 @@ int main(void)
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, test_quantiles);
     tcase_add_test(tcase, test_lines);
+    tcase_add_test(tcase, test_r_hat);
     tcase_add_test(tcase, test_numbers);
     tcase_add_test(tcase, test_text);
     tcase_add_test(tcase, test_records);

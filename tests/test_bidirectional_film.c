@@ -1,6 +1,8 @@
 /* Where splats go: crop windows, filters, borders; energy through glass both ways; scale; the narrow corner. */
 #include "bidirectional.h"
 
+#include "sample_statistics.h"
+
 /* BDPT and light tracing (t = 1) against path tracing. */
 static void pictures_agree(const char *name, const char *text, int depth, unsigned samples, const unsigned strategy[2])
 {
@@ -112,12 +114,6 @@ END_TEST
 
 /* ---- the corner of one degree ------------------------------------------------------------------------------------ */
 
-static int double_compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Two planes that meet at one degree, lit from the open side: connections deep inside are arbitrarily close. No pixel is
  * brighter than 100 times the median, over pictures of 16 samples. */
 START_TEST(test_corner)
@@ -143,7 +139,7 @@ START_TEST(test_corner)
     double worst = 0.0;
     for (int g = 0; g < setup.groups; ++g) {
         double *values = picture.values + g * PIXELS;
-        qsort(values, PIXELS, sizeof *values, double_compare);
+        sample_sort(values, PIXELS);
         ck_assert(values[PIXELS / 2] > 0.0);
         worst = fmax(worst, values[PIXELS - 1] / values[PIXELS / 2]);
     }

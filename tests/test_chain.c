@@ -235,6 +235,30 @@ START_TEST(test_zero_never_accepted)
 }
 END_TEST
 
+/* A chain that carries a million times as much as what is around it stays: its run is every step since it began, as far as
+ * the count goes, and is remembered when it has ended. */
+START_TEST(test_stuck)
+{
+    Toy toy;
+    toy_begin(&toy, 7u, 0.0f, true);
+    draw(&toy, 0, false);
+    state_store_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0, 8e9f);
+    for (uint k = 1; k <= 1000; ++k) {
+        step(&toy, 0);
+        ck_assert_uint_eq(state_load(toy.paths, STRIDE, CHAIN_RUN, 0), k | k << 16);
+    }
+    chain_propose(&toy.frame, toy.paths, 0);
+    chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(9e9f));
+    ck_assert_uint_eq(state_load(toy.paths, STRIDE, CHAIN_RUN, 0), 1000u << 16);
+    for (uint k = 0; k < 70000; ++k)
+        step(&toy, 0);
+    ck_assert_uint_eq(run_longest(state_load(toy.paths, STRIDE, CHAIN_RUN, 0)), RUN_MOST);
+    ck_assert_uint_eq(run_longest(run_begin(1000u << 16 | 7u)), 0);
+    ck_assert_uint_eq(run_after(run_begin(1000u << 16 | 7u), false), 8u | 8u << 16);
+    toy_end(&toy);
+}
+END_TEST
+
 /* State and densities of 524,288 chains of 10 segments: at most 185 MB (Frolov 2018, section 2). */
 START_TEST(test_memory)
 {
@@ -256,6 +280,7 @@ int main(void)
     tcase_add_test(tcase, test_offsets_symmetric);
     tcase_add_loop_test(tcase, test_null_mutations, 0, 2);
     tcase_add_test(tcase, test_zero_never_accepted);
+    tcase_add_test(tcase, test_stuck);
     tcase_add_test(tcase, test_memory);
     suite_add_tcase(suite, tcase);
     return test_run(suite);

@@ -25,6 +25,7 @@ static void chains_make(ChainPopulation *population, uint *words)
     for (uint i = 0; i < CHAINS; ++i) {
         words[CHAIN_PASS_KEY * CHAINS + i] = chain_key(3 + i, 1);
         words[CHAIN_PASS_LUMINANCE * CHAINS + i] = float_bits(i == 0 ? 0.0f : ldexpf(1.0f, 2 * (int)i - 6));
+        words[CHAIN_PASS_RUN * CHAINS + i] = 300 + i;
         words[CHAIN_PASS_NUMBERS * CHAINS + i] = 100 + i;
         words[(CHAIN_PASS_NUMBERS + 1) * CHAINS + i] = 200 + i;
     }
@@ -57,23 +58,25 @@ START_TEST(test_parts)
     for (uint k = 0; k < OFFSETS; ++k) {
         ChainPopulation population;
         Error error = {0};
-        uint kept, found = 0;
+        ChainStarts starts;
+        uint found = 0;
         const uint count = 16;
         chains_make(&population, words);
-        ck_assert(chain_population_renew(&population, pool, POOL, threshold, true, (k + 0.5) / OFFSETS, count, &kept,
+        ck_assert(chain_population_renew(&population, pool, POOL, threshold, true, (k + 0.5) / OFFSETS, count, &starts,
                                          &error));
         for (uint i = 0; i < count; ++i) {
             uint depth = chain_key_depth(population.words[CHAIN_PASS_KEY * count + i]);
             uint item = population.words[CHAIN_PASS_ITEM * count + i];
             got[depth] += population.brightness / count / OFFSETS;
             ck_assert_uint_eq(item, depth < 20 ? NONE : depth - 20);
+            ck_assert_uint_eq(population.words[CHAIN_PASS_RUN * count + i], depth < 20 ? 300 + depth - 3 : 0);
             if (depth < 20) {
                 ck_assert_uint_eq(population.words[CHAIN_PASS_NUMBERS * count + i], 100 + depth - 3);
                 ck_assert_uint_eq(population.words[(CHAIN_PASS_NUMBERS + 1) * count + i], 200 + depth - 3);
                 ++found;
             }
         }
-        ck_assert_uint_eq(kept, found);
+        ck_assert_uint_eq(starts.kept, found);
         ck_assert_double_eq(population.samples, 80.0);
         chain_population_destroy(&population);
     }
@@ -85,6 +88,53 @@ START_TEST(test_parts)
         double f = (double)bits_float(pool[POOL_LUMINANCE * POOL + i]);
         ck_assert_double_eq_tol(got[20 + i], 1.5 * f / POOL * (1.0 - most * f / (f + threshold)), 2e-3);
     }
+}
+END_TEST
+
+/* ---- what they begin with ---------------------------------------------------------------------------------------- */
+
+/* The next population of eight, its starts counted; every chain then carries 1. */
+static void eight_renew(ChainPopulation *population, const uint *pool, ChainStarts *starts, ChainStatistics *statistics)
+{
+    Error error = {0};
+    ck_assert(chain_population_renew(population, pool, 4, 0.0, true, 0.4, 8, starts, &error));
+    chain_statistics_starts(statistics, starts);
+    for (uint i = 0; i < 8; ++i)
+        population->words[CHAIN_PASS_LUMINANCE * 8 + i] = float_bits(1.0f);
+}
+
+/* Eight chains from samples worth 4, 2, 1 and 1, of 3, 5, 3 and 5 segments. Then half of everything is the chains': of a
+ * comb of eight teeth, (k + 0.4) / 4, five meet chains, whose weights are 1/8, and three the samples of 1/2, 1/4, 1/8, 1/8. */
+START_TEST(test_starts)
+{
+    uint pool[POOL_WORDS * 4];
+    ChainPopulation population;
+    ChainStarts starts;
+    ChainStatistics statistics = {0};
+    for (uint i = 0; i < 4; ++i) {
+        pool[POOL_LUMINANCE * 4 + i] = float_bits(1.0f);
+        pool[POOL_WEIGHT * 4 + i] = float_bits(i == 0 ? 4.0f : i == 1 ? 2.0f : 1.0f);
+        pool[POOL_KEY * 4 + i] = chain_key(i % 2 == 0 ? 3 : 5, 1);
+    }
+    chain_population_init(&population, FIELDS);
+    eight_renew(&population, pool, &starts, &statistics);
+    ck_assert_uint_eq(starts.kept, 0);
+    ck_assert(starts.chains[3] == 5 && starts.distinct[3] == 2 && starts.chains[5] == 3 && starts.distinct[5] == 2);
+    eight_renew(&population, pool, &starts, &statistics);
+    ck_assert_uint_eq(starts.kept, 5);
+    ck_assert(starts.chains[3] == 5 && starts.distinct[3] == 4 && starts.chains[5] == 3 && starts.distinct[5] == 3);
+    ck_assert(statistics.starts[3] == 10 && statistics.distinct_starts[3] == 6);
+    ck_assert(statistics.starts[5] == 6 && statistics.distinct_starts[5] == 5);
+    ck_assert_uint_eq(statistics.seeds, 11);
+    ck_assert_double_eq(statistics.least_distinct, 0.5);
+    /* A dark pool begins none. */
+    for (uint i = 0; i < 4; ++i)
+        pool[POOL_KEY * 4 + i] = 0;
+    chain_population_destroy(&population);
+    chain_population_init(&population, FIELDS);
+    eight_renew(&population, pool, &starts, &statistics);
+    ck_assert(starts.kept == 0 && starts.chains[3] == 0 && statistics.seeds == 11 && statistics.least_distinct == 0.5);
+    chain_population_destroy(&population);
 }
 END_TEST
 
@@ -188,6 +238,7 @@ int main(void)
     TCase *tcase = tcase_create("chain_population");
     tcase_set_timeout(tcase, 120);
     tcase_add_test(tcase, test_parts);
+    tcase_add_test(tcase, test_starts);
     tcase_add_test(tcase, test_unbiased);
     suite_add_tcase(suite, tcase);
     return test_run(suite);

@@ -104,6 +104,9 @@ START_TEST(test_student)
     ck_assert_double_eq_tol(student_two_sided(-5.0, 30.0), 2.32966854670078e-05, 1e-15);
     ck_assert_double_eq_tol(student_two_sided(12.0, 128.0) * 1e22, 1.0757144645018564, 1e-9);
     ck_assert(student_two_sided(0.0, 3.0) == 1.0 && student_two_sided(HUGE_VAL, 3.0) == 0.0);
+    ck_assert_double_eq_tol(student_threshold(0.5, 1.0), 1.0, 1e-12);
+    ck_assert_double_eq_tol(student_threshold(0.05, 2.0), 4.302652729749464, 1e-9); /* 0.95 sqrt(2 / (1 - 0.95^2)) */
+    ck_assert_double_eq_tol(student_two_sided(student_threshold(1e-9, 7.0), 7.0), 1e-9, 1e-20);
 }
 END_TEST
 

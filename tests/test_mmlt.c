@@ -156,6 +156,60 @@ START_TEST(test_shared)
 }
 END_TEST
 
+/* ---- what is counted --------------------------------------------------------------------------------------------- */
+
+/* Chains of `paper` know nothing of passes: in short ones or long ones they refuse as many proposals in a row. */
+START_TEST(test_runs)
+{
+    ChainStatistics counted[2];
+    for (int i = 0; i < 2; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {.text = TWO_CAUSTICS,
+                                   .width = 16,
+                                   .height = 16,
+                                   .samples = 24,
+                                   .max_depth = 6,
+                                   .threads = 2,
+                                   .integrator = integrator_mmlt(),
+                                   .chains = {.chains = 16, .steps = i == 0 ? 8 : 64, .paper = true}};
+        fixture_render(&setup, &image);
+        counted[i] = image.result.chains;
+        fixture_destroy(&image);
+    }
+    for (int depth = 3; depth <= 6; ++depth)
+        printf("longest run of refused proposals at depth %d: %u\n", depth, (unsigned)counted[0].longest_run[depth]);
+    ck_assert_uint_eq(counted[0].steps, counted[1].steps); /* 24 samples are enough for 128 of each chain */
+    ck_assert_mem_eq(counted[0].accepted, counted[1].accepted, sizeof counted[0].accepted);
+    ck_assert_mem_eq(counted[0].longest_run, counted[1].longest_run, sizeof counted[0].longest_run);
+    uint64_t longest = 0;
+    for (int depth = 3; depth <= 6; ++depth)
+        longest = counted[0].longest_run[depth] > longest ? counted[0].longest_run[depth] : longest;
+    ck_assert_uint_gt(longest, 8); /* over several passes */
+}
+END_TEST
+
+/* Small steps alone leave parts of the chains where they began; large ones bring them together. */
+START_TEST(test_groups)
+{
+    double r_hat[2];
+    for (int i = 0; i < 2; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {.text = bidirectional_text(&BIDIRECTIONAL_SCENES[0]),
+                                   .samples = 4096,
+                                   .max_depth = 4,
+                                   .threads = 2,
+                                   .integrator = integrator_mmlt(),
+                                   .chains = {.chains = 64, .paper = true, .large_step = i == 0 ? 1e-6 : 0.5}};
+        fixture_render(&setup, &image);
+        r_hat[i] = image.result.chains.r_hat[3];
+        fixture_destroy(&image);
+    }
+    printf("R-hat of paths of 3 segments: %.4f by small steps, %.4f with large ones\n", r_hat[0], r_hat[1]);
+    ck_assert_double_eq_tol(r_hat[1], 1.0, 0.01);
+    ck_assert_double_gt(r_hat[0] - 1.0, 3.0 * fabs(r_hat[1] - 1.0));
+}
+END_TEST
+
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
 /* The mean square error against what path tracing sees falls as one over the work: nothing is left over. Of chains alone
@@ -248,6 +302,9 @@ int main(void)
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
+    TCase *counts = case_make(suite, "counts");
+    tcase_add_test(counts, test_runs);
+    tcase_add_test(counts, test_groups);
     tcase_add_loop_test(case_make(suite, "slope"), test_slope, 0, 6);
     tcase_add_loop_test(case_make(suite, "brightness"), test_brightness, 0, 8);
     return test_run(suite);

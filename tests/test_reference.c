@@ -1,7 +1,6 @@
 /* Pictures of the public scenes against other renderers': gray.pbrt holds each scene without colour, so that a spectral
  * renderer and this one must agree, and gray_pbrt-v4.exr is pbrt-v4's converged picture of it. TungstenRender.exr is
  * Tungsten's picture of the scene in colour, in RGB as ours. */
-#include "image.h"
 #include "render_fixture.h"
 #include "test_util.h"
 
@@ -41,18 +40,6 @@ static const ReferenceCase CASES[] = {
     {integrator_bdpt, CORNELL_COLOR, 16, 256, 8, 0.02, 0.01, false},
 };
 
-static float *reference_read(const char *path, PictureView *view)
-{
-    Image reference;
-    Error error = {0};
-    float *rgb;
-    ck_assert_msg(image_read(path, &reference, &error), "%s", error.message);
-    ck_assert_msg(image_linear_rgb(&reference, &rgb, &error), "%s", error.message);
-    *view = (PictureView){rgb, reference.width, reference.height};
-    image_destroy(&reference);
-    return rgb;
-}
-
 START_TEST(test_reference)
 {
     const ReferenceCase *test = &CASES[_i];
@@ -70,7 +57,7 @@ START_TEST(test_reference)
     RenderedImage image;
     PictureView view;
     fixture_render(&setup, &image);
-    float *reference = reference_read(reference_path, &view);
+    float *reference = fixture_picture_read(reference_path, &view);
     double reference_mean = fixture_block_mean(reference, view.width, 0, 0, view.width, view.height);
     double ratio = fixture_mean(&image) / reference_mean;
     double blocks = fixture_block_difference((PictureView){image.rgb, image.width, image.height}, view, 16);

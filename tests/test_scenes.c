@@ -1,7 +1,7 @@
 /* Every scene of scenes/ by every integrator, against the pictures in scenes/reference/, which are path traced or
  * bidirectionally path traced (scenes/make_references.sh). */
-#include "image.h"
 #include "render_fixture.h"
+#include "sample_statistics.h"
 #include "test_util.h"
 
 #include <math.h>
@@ -26,26 +26,6 @@ static const struct {
 
 static const unsigned SAMPLES[INTEGRATORS] = {64, 32, 16, 512};
 
-static float *reference_read(const char *name, PictureView *view)
-{
-    char path[1200];
-    Image image;
-    Error error = {0};
-    float *rgb;
-    snprintf(path, sizeof path, "%s/scenes/reference/%s.exr", test_source_folder(), name);
-    ck_assert_msg(image_read(path, &image, &error), "%s", error.message);
-    ck_assert_msg(image_linear_rgb(&image, &rgb, &error), "%s", error.message);
-    *view = (PictureView){rgb, image.width, image.height};
-    image_destroy(&image);
-    return rgb;
-}
-
-static int number_compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double blocks_median(const float *rgb, PictureView reference)
 {
     enum { BLOCKS = GRID * GRID, STEP = SIDE / GRID };
@@ -58,8 +38,7 @@ static double blocks_median(const float *rgb, PictureView reference)
             fixture_block_mean(reference.rgb, reference.width, x * wide, y * high, (x + 1) * wide, (y + 1) * high);
         differences[i] = fabs(a - b) / b;
     }
-    qsort(differences, BLOCKS, sizeof *differences, number_compare);
-    return 0.5 * (differences[BLOCKS / 2 - 1] + differences[BLOCKS / 2]);
+    return sample_quantile(differences, BLOCKS, 0.5);
 }
 
 static double noise_limit(int scene, int which)
@@ -89,7 +68,8 @@ START_TEST(test_scene)
     RenderedImage image;
     PictureView view;
     fixture_render(&setup, &image);
-    float *reference = reference_read(name, &view);
+    snprintf(path, sizeof path, "%s/scenes/reference/%s.exr", test_source_folder(), name);
+    float *reference = fixture_picture_read(path, &view);
     double median = blocks_median(image.rgb, view);
     printf("%-8s %-5s blocks differ by %.2f %%, limit %.2f %%\n", name, integrators[which]->name, 100.0 * median,
            100.0 * limit);
