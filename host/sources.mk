@@ -118,6 +118,7 @@ libtwinlight_host_la_SOURCES = \
 	host/svg_chart.c host/svg_chart.h \
 	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
+	host/text_window.c host/text_window.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h \
