@@ -243,11 +243,13 @@ static bool roughness_is_textured(const Material *m)
     return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
 }
 
+/* Each takes milliseconds, and every coated material is compared with all. */
+#define COATS_MAX 4096
+
 /* Whether the table of `other` serves m. */
 static bool coat_serves(const Material *m, const Material *other)
 {
-    if (other->kind != MATERIAL_COATED_DIFFUSE || other->coat_table == NONE || other->eta != m->eta ||
-        roughness_is_textured(m) != roughness_is_textured(other))
+    if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
         return false;
     return roughness_is_textured(m) ||
            (material_alpha(m, &m->roughness_u) == material_alpha(other, &other->roughness_u) &&
@@ -262,26 +264,44 @@ static bool coat_build(Material *m, Array *lookup, Error *error)
                             &m->coat_table, error);
 }
 
+/* The table of m: that of a material in `owners` (uint), or a new one, which makes m an owner. */
+static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
+{
+    Material *m = &ARRAY_AT(&scene->materials, Material, index);
+    for (size_t j = 0; j < owners->count; ++j) {
+        const Material *other = &ARRAY_AT(&scene->materials, Material, ARRAY_AT(owners, uint, j));
+        if (coat_serves(m, other)) {
+            m->coat_table = other->coat_table;
+            return true;
+        }
+    }
+    if (owners->count >= COATS_MAX) {
+        error_set(error, "the scene has more than %d different rough coats", COATS_MAX);
+        return error_fix(error, "give materials of \"coateddiffuse\" fewer values of roughness and eta");
+    }
+    uint *owner = array_grow(owners, 1, error);
+    if (!owner)
+        return false;
+    *owner = index;
+    return coat_build(m, &scene->lookup, error);
+}
+
 /* Materials of equal coat share a table. */
 static bool scene_coat_tables(Scene *scene, Error *error)
 {
-    for (size_t i = 0; i < scene->materials.count; ++i) {
+    Array owners;
+    bool good = true;
+    array_init(&owners, sizeof(uint));
+    for (size_t i = 0; good && i < scene->materials.count; ++i) {
         Material *m = &ARRAY_AT(&scene->materials, Material, i);
         m->coat_table = NONE;
         if (m->kind != MATERIAL_COATED_DIFFUSE)
             continue;
         m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        if (!scene_material_is_rough(m))
-            continue;
-        for (size_t j = 0; j < i && m->coat_table == NONE; ++j) {
-            const Material *other = &ARRAY_AT(&scene->materials, Material, j);
-            if (coat_serves(m, other))
-                m->coat_table = other->coat_table;
-        }
-        if (m->coat_table == NONE && !coat_build(m, &scene->lookup, error))
-            return false;
+        good = !scene_material_is_rough(m) || coat_find(scene, &owners, (uint)i, error);
     }
-    return true;
+    array_destroy(&owners);
+    return good;
 }
 
 /* ---- packing ------------------------------------------------------------------------------------------------------ */
@@ -291,7 +311,7 @@ static bool words_append(Array *words, const Array *array, uint *first, Error *e
 {
     size_t bytes = array->count * array->element_size, start = (words->count + 3) / 4 * 4;
     size_t count = start - words->count + bytes / 4;
-    if (start + bytes / 4 > 0xfffffff0u) {
+    if (start + bytes / 4 > SCENE_WORDS_MAX) {
         error_set(error, "the scene needs more than 16 GiB in one buffer");
         return error_fix(error, "use object instances or smaller textures");
     }
@@ -319,6 +339,17 @@ static bool scene_pack_tables(Scene *scene, Error *error)
            words_append(words, &scene->lookup, &layout->lookup, error);
 }
 
+size_t scene_geometry_words(const Scene *scene)
+{
+    const Array *const arrays[] = {&scene->positions,  &scene->normals, &scene->uvs,
+                                   &scene->primitives, &scene->shapes,  &scene->patches,
+                                   &scene->quadrics,   &scene->objects, &scene->instances};
+    size_t words = 64;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
+        words += arrays[i]->count * arrays[i]->element_size / 4 + 4;
+    return words;
+}
+
 /* The unpacked vertex and primitive arrays are freed on the way: a large scene is held once. */
 static bool scene_pack_geometry(Scene *scene, Error *error)
 {
@@ -335,10 +366,7 @@ static bool scene_pack_geometry(Scene *scene, Error *error)
                  {&scene->quadrics, &layout->quadrics},
                  {&scene->objects, &layout->objects},
                  {&scene->instances, &layout->instances}};
-    size_t total = 64;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i)
-        total += parts[i].array->count * parts[i].array->element_size / 4 + 4;
-    if (!array_reserve(&scene->geometry_words, total, error))
+    if (!array_reserve(&scene->geometry_words, scene_geometry_words(scene), error))
         return false;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
         if (!words_append(&scene->geometry_words, parts[i].array, parts[i].first, error))

@@ -16,6 +16,9 @@ typedef struct TextureImageOptions {
 } TextureImageOptions;
 
 /* What has been loaded already, so that the same file with the same encoding is kept once; one per scene being read. */
+/* Each is compared with all that came before it. */
+#define SCENE_IMAGES_MAX 65536
+
 typedef struct TextureCache {
     Array entries;
 } TextureCache;
