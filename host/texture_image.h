@@ -6,6 +6,9 @@
 #include "scene.h"
 
 /* How the numbers of an 8- or 16-bit file become linear. Float files (EXR, HDR, PFM) are linear. */
+/* Of a scene: each is compared with all that came before it. */
+#define SCENE_IMAGES_MAX 65536
+
 typedef enum TextureEncoding { ENCODING_SRGB, ENCODING_LINEAR, ENCODING_GAMMA } TextureEncoding;
 
 typedef struct TextureImageOptions {
@@ -16,9 +19,6 @@ typedef struct TextureImageOptions {
 } TextureImageOptions;
 
 /* What has been loaded already, so that the same file with the same encoding is kept once; one per scene being read. */
-/* Each is compared with all that came before it. */
-#define SCENE_IMAGES_MAX 65536
-
 typedef struct TextureCache {
     Array entries;
 } TextureCache;
