@@ -46,7 +46,8 @@ bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *fi
     if (failure != 0) {
         if (descriptor >= 0)
             close(descriptor);
-        return file_read_error(path, failure, place, error);
+        file_read_error(path, failure, place, error);
+        return false;
     }
     *file = (FileOpened){descriptor, (size_t)status.st_size, status.st_dev, status.st_ino};
     return true;

@@ -138,6 +138,7 @@ static bool import_read(PbrtImport *im)
     if (!directives_read(im))
         return false;
     counts_report(im->scene);
+    im->scene->movable = true;
     return true;
 }
 

@@ -74,11 +74,12 @@ typedef struct Scene {
     Array lookup; /* float */
     Array texels; /* uint */
 
+    bool movable; /* nobody keeps coordinates of it: scene_finish may move it (scene_center.h) */
     Array shape_objects; /* uint: the object of every shape */
     uint current_object;
 
     /* made by scene_finish */
-    float bounds_min[3], bounds_max[3]; /* world space, everything */
+    float bounds_min[3], bounds_max[3]; /* world space of the file, everything; see scene_center.h */
     uint features;
     size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */

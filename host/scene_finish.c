@@ -7,6 +7,7 @@
 #include "filter_setup.h"
 #include "light_setup.h"
 #include "material.h"
+#include "scene_center.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -145,10 +146,15 @@ static bool scene_bounds(Scene *scene, Error *error)
     float largest = 0.0f;
     if (!world_box(scene, &world, &largest, error))
         return false;
-    for (int i = 0; i < 3; ++i)
-        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
+    if (scene->movable && scene_center(scene, &world)) {
+        largest = 0.0f;
+        if (!world_box(scene, &world, &largest, error))
+            return false;
+    }
+    for (int i = 0; i < 3; ++i)
+        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
     if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");

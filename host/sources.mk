@@ -109,6 +109,7 @@ libtwinlight_host_la_SOURCES = \
 	host/rendering_file.c host/rendering_file.h \
 	host/sample_statistics.c host/sample_statistics.h \
 	host/scene.c host/scene.h \
+	host/scene_center.c host/scene_center.h \
 	host/scene_finish.c \
 	host/scene_advice.c host/scene_advice.h \
 	host/scene_summary.c host/scene_summary.h \
