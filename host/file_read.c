@@ -31,36 +31,40 @@ static int bytes_read(int descriptor, char *data, size_t size, size_t *used)
     return 0;
 }
 
-static int descriptor_read(int descriptor, size_t limit, FileData *file)
+bool file_read_error(const char *path, int failure, SourcePlace place, Error *error)
+{
+    error_at(error, place, "cannot read %s: %s", path, strerror(failure));
+    return error_fix_errno(error, failure);
+}
+
+bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *file, Error *error)
 {
     struct stat status;
-    if (fstat(descriptor, &status) != 0)
-        return errno;
-    int refusal = status_refusal(&status, limit);
-    if (refusal != 0)
-        return refusal;
-    size_t size = (size_t)status.st_size;
-    *file = (FileData){.data = malloc(size > 0 ? size : 1), .device = status.st_dev, .inode = status.st_ino};
-    if (!file->data)
-        return ENOMEM;
-    int failure = bytes_read(descriptor, file->data, size, &file->size);
+    /* O_NONBLOCK: a FIFO without a writer must not hang the program. */
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    int failure = descriptor < 0 || fstat(descriptor, &status) != 0 ? errno : status_refusal(&status, limit);
     if (failure != 0) {
-        free(file->data);
-        file->data = NULL;
+        if (descriptor >= 0)
+            close(descriptor);
+        file_read_error(path, failure, place, error);
+        return false;
     }
-    return failure;
+    *file = (FileOpened){descriptor, (size_t)status.st_size, status.st_dev, status.st_ino};
+    return true;
 }
 
 bool file_read(const char *path, size_t limit, SourcePlace place, FileData *file, Error *error)
 {
+    FileOpened opened;
     *file = (FileData){0};
-    /* O_NONBLOCK: a FIFO without a writer must not hang the program. */
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    int failure = descriptor < 0 ? errno : descriptor_read(descriptor, limit, file);
-    if (descriptor >= 0)
-        close(descriptor);
+    if (!file_open(path, limit, place, &opened, error))
+        return false;
+    file->data = malloc(opened.size > 0 ? opened.size : 1);
+    int failure = file->data ? bytes_read(opened.descriptor, file->data, opened.size, &file->size) : ENOMEM;
+    close(opened.descriptor);
     if (failure == 0)
         return true;
-    error_at(error, place, "cannot read %s: %s", path, strerror(failure));
-    return error_fix_errno(error, failure);
+    free(file->data);
+    file->data = NULL;
+    return file_read_error(path, failure, place, error);
 }

@@ -18,26 +18,30 @@ bool image_error(Error *error, const char *path, const char *why)
     return error_fix(error, "convert it again, or use another of: exr, hdr, pfm, png, jpg, tga");
 }
 
-bool image_size_check(const char *path, long long width, long long height, Error *error)
+bool image_size_check(FILE *file, const char *path, ImageSize size, Error *error)
 {
-    if (width < 1 || height < 1) {
-        error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, width, height);
+    struct stat status;
+    if (size.width < 1 || size.height < 1) {
+        error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, size.width, size.height);
         return error_fix(error, "scale it down");
     }
-    if (width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX || width * height > IMAGE_PIXELS_MAX) {
-        error_set(error, "the image %s is too large: %lld x %lld pixels", path, width, height);
+    if (size.width > IMAGE_SIDE_MAX || size.height > IMAGE_SIDE_MAX || size.width * size.height > IMAGE_PIXELS_MAX) {
+        error_set(error, "the image %s is too large: %lld x %lld pixels", path, size.width, size.height);
         return error_fix(error, "use one of at most %u pixels, no side longer than %d", IMAGE_PIXELS_MAX,
                          IMAGE_SIDE_MAX);
     }
-    return true;
+    if (fstat(fileno(file), &status) == 0 && size.width * size.height / size.density <= (long long)status.st_size)
+        return true;
+    error_set(error, "cannot read the image %s: it is too short for %lld x %lld pixels", path, size.width, size.height);
+    return error_fix(error, "it is damaged or truncated: convert or copy it again");
 }
 
-bool image_allocate_float(const char *path, long long width, long long height, int channels, Image *image, Error *error)
+bool image_allocate_float(FILE *file, const char *path, ImageSize size, int channels, Image *image, Error *error)
 {
-    if (!image_size_check(path, width, height, error))
+    if (!image_size_check(file, path, size, error))
         return false;
-    size_t count = (size_t)width * (size_t)height * (size_t)channels;
-    *image = (Image){.width = (int)width, .height = (int)height, .channels = channels, .is_float = true};
+    size_t count = (size_t)size.width * (size_t)size.height * (size_t)channels;
+    *image = (Image){.width = (int)size.width, .height = (int)size.height, .channels = channels, .is_float = true};
     image->data = calloc(count, sizeof(float));
     return image->data || error_memory(error, count * sizeof(float), path);
 }

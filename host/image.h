@@ -7,8 +7,10 @@
 
 #include <stddef.h>
 
-/* No file with more pixels than this, or a side longer than this, is read. */
+/* No file with more pixels than this, or a side longer than this, is read. Fuzzers are built with fewer, to be fast. */
+#ifndef IMAGE_PIXELS_MAX
 #define IMAGE_PIXELS_MAX (1u << 28)
+#endif
 #define IMAGE_SIDE_MAX 65536
 
 /* width x height pixels of 1 (grey), 3 (RGB) or 4 (RGBA) interleaved channels, row by row, row 0 on top. */

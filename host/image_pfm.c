@@ -35,13 +35,13 @@ static bool pfm_rows_read(FILE *file, Image *image, bool little_endian, float fa
 bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error)
 {
     char kind = 0, after = 0;
-    long long width = 0, height = 0;
+    ImageSize size = {.density = 1};
     double scale = 0.0;
     /* At most 9 digits a side, so that neither the numbers nor their product overflow. NOLINTNEXTLINE(cert-err34-c) */
-    if (fscanf(file, "P%c%9lld%9lld%31lf%c", &kind, &width, &height, &scale, &after) != 5 || !isfinite(scale) ||
-        scale == 0.0)
+    if (fscanf(file, "P%c%9lld%9lld%31lf%c", &kind, &size.width, &size.height, &scale, &after) != 5 ||
+        !isfinite(scale) || scale == 0.0)
         return image_error(error, path, "its PFM header is damaged");
-    if (!image_allocate_float(path, width, height, kind == 'F' ? 3 : 1, image, error))
+    if (!image_allocate_float(file, path, size, kind == 'F' ? 3 : 1, image, error))
         return false;
     if (!pfm_rows_read(file, image, scale < 0.0, (float)fabs(scale)))
         return image_error(error, path, "the file is truncated");

@@ -86,13 +86,20 @@ static int channels_wanted(StbKind kind, int present)
     return kind == STB_TGA ? 3 : present;
 }
 
+/* PNG: deflate makes 1032 bytes of one at most, each of them eight pixels. JPEG: a bit for a block of 64 pixels at least,
+ * 9 for the 1024 of the thinnest sampling. TGA and HDR: runs of 128 in two bytes. */
+static long long density(StbKind kind)
+{
+    return kind == STB_PNG ? 8 * 1032 : kind == STB_JPEG ? 1024 : 64;
+}
+
 bool image_read_stb(FILE *file, const char *path, StbKind kind, bool sixteen_bits, Image *image, Error *error)
 {
     StbSource source = {.file = file, .kind = kind};
     int present = 0;
     if (!stbi_info_from_callbacks(&SOURCE_CALLBACKS, &source, &image->width, &image->height, &present))
         return image_error(error, path, source.truncated ? "the file is truncated" : stbi_failure_reason());
-    if (!image_size_check(path, image->width, image->height, error))
+    if (!image_size_check(file, path, (ImageSize){image->width, image->height, density(kind)}, error))
         return false;
     rewind(file);
     source.truncated = false;

@@ -14,8 +14,12 @@
 #define IMPORT_NESTING_MAX 65536 /* AttributeBegin and ObjectBegin */
 #define IMPORT_INCLUDE_MAX 64 /* Include and Import inside each other */
 #define IMPORT_FILES_MAX 65536 /* Include and Import in all */
-#define IMPORT_ATTRIBUTES_MAX 1024 /* Attribute directives in force at once */
+#define IMPORT_FILE_BYTES_MAX 0x7ffffffe /* of one file: lines and columns are ints */
+#define IMPORT_ATTRIBUTES_MAX                                                                                          \
+    1024 /* parameters of Attribute directives in force at once: every directive looks at all */
+#define IMPORT_COORDINATE_SYSTEMS_MAX 65536
 #define IMPORT_LIGHTS_MAX (1u << 24) /* area lights by instances of emissive objects */
+#define IMPORT_COPIES_MAX (1u << 26) /* vertices of these instances, of which each has its own */
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
 #define IMPORT_COORDINATE_MAX 1e12 /* of a point in world space: products of three must fit a float */
 #define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
@@ -87,7 +91,7 @@ typedef struct ImportObject {
 /* A file being read, or the text that pbrt_import_text was given. */
 typedef struct SourceFile {
     Lexer lexer;
-    char *text; /* owned; NULL for borrowed text */
+    bool is_file; /* and not text in memory */
     dev_t device;
     ino_t inode;
     bool is_import; /* ends a scope of its own */
@@ -121,6 +125,7 @@ typedef struct PbrtImport {
     Array object_definitions; /* ImportObject */
     int open_object; /* index into object_definitions, -1 outside */
     size_t object_first_primitive;
+    size_t copied_vertices; /* by instances of emissive objects */
 
     /* named things */
     NameTable materials; /* scene's material or MATERIAL_INTERFACE */

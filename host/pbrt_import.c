@@ -138,6 +138,7 @@ static bool import_read(PbrtImport *im)
     if (!directives_read(im))
         return false;
     counts_report(im->scene);
+    im->scene->movable = true;
     return true;
 }
 
@@ -159,7 +160,9 @@ bool pbrt_import_text(const char *text, size_t length, const char *name, const c
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.directory = directory;
-    bool good = parser_open_text(&im, text, length, name, false, error) && import_read(&im);
+    TextWindow window;
+    text_window_from_memory(&window, text, length);
+    bool good = parser_open_text(&im, &window, name) && import_read(&im);
     import_destroy(&im);
     return good;
 }

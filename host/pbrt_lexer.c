@@ -7,62 +7,49 @@
 /* How much of a token an error message shows. */
 #define TOKEN_SHOWN 40
 
-bool lexer_init(Lexer *lexer, const char *text, size_t length, const char *file, Error *error)
+bool lexer_init(Lexer *lexer, const TextWindow *window, const char *file, Error *error)
 {
-    *lexer = (Lexer){.position = text, .end = text + length, .line_start = text, .file = file, .line = 1};
-    const unsigned char *b = (const unsigned char *)text;
-    SourcePlace place = {file, 1, 1};
+    *lexer = (Lexer){.window = *window, .file = file, .line = 1};
+    text_window_reaches(&lexer->window, 2);
+    const unsigned char *b = (const unsigned char *)lexer->window.position;
+    size_t length = (size_t)(lexer->window.end - lexer->window.position);
     if (length >= 2 && ((b[0] == 0xfe && b[1] == 0xff) || (b[0] == 0xff && b[1] == 0xfe))) {
-        error_at(error, place, "the file is UTF-16");
+        error_at(error, (SourcePlace){file, 1, 1}, "the file is UTF-16");
+        lexer_destroy(lexer);
         return error_fix(error, "store it as UTF-8 or ASCII");
     }
-    if (length >= 3 && b[0] == 0xef && b[1] == 0xbb && b[2] == 0xbf)
-        lexer->position = lexer->line_start = text + 3;
+    if (length >= 3 && b[0] == 0xef && b[1] == 0xbb && b[2] == 0xbf) {
+        lexer->window.position += 3;
+        lexer->line_start = 3;
+    }
     return true;
 }
 
-static void newline_count(Lexer *lexer, const char *after)
+void lexer_destroy(Lexer *lexer)
 {
-    ++lexer->line;
-    lexer->line_start = after;
+    text_window_close(&lexer->window);
 }
 
+/* Up to the next token, or the end of what can be read. */
 static void space_skip(Lexer *lexer)
 {
-    const char *p = lexer->position;
-    for (; p < lexer->end; ++p) {
-        if (*p == '\n') {
-            newline_count(lexer, p + 1);
-        } else if (*p == '#') {
-            const char *newline = memchr(p, '\n', (size_t)(lexer->end - p));
-            p = newline ? newline - 1 : lexer->end - 1;
-        } else if (*p != ' ' && *p != '\t' && *p != '\r') {
+    TextWindow *window = &lexer->window;
+    bool comment = false;
+    for (; text_window_reaches(window, 0); ++window->position) {
+        char c = *window->position;
+        if (c == '\n') {
+            comment = false;
+            ++lexer->line;
+            lexer->line_start = text_window_offset(window) + 1;
+        } else if (comment) {
+            const char *newline = memchr(window->position, '\n', (size_t)(window->end - window->position));
+            window->position = (newline ? newline : window->end) - 1;
+        } else if (c == '#') {
+            comment = true;
+        } else if (c != ' ' && c != '\t' && c != '\r') {
             break;
         }
     }
-    lexer->position = p;
-}
-
-/* From the opening quote on. */
-static bool string_scan(Lexer *lexer, Token *token, Error *error)
-{
-    const char *p = lexer->position + 1;
-    token->kind = TOKEN_STRING;
-    token->text = p;
-    for (; p < lexer->end && *p != '"'; ++p) {
-        if (*p == '\\' && p + 1 < lexer->end)
-            ++p;
-        if (*p == '\n' || *p == '\0')
-            break;
-    }
-    if (p >= lexer->end || *p != '"') {
-        bool nul = p < lexer->end && *p == '\0';
-        error_at(error, token->place, nul ? "a string holds a NUL byte" : "the string that begins here has no end");
-        return error_fix(error, "close it with \" on the same line");
-    }
-    token->length = (size_t)(p - token->text);
-    lexer->position = p + 1;
-    return true;
 }
 
 static bool ends_word(char c)
@@ -70,22 +57,72 @@ static bool ends_word(char c)
     return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '"' || c == '[' || c == ']';
 }
 
+/* The length of the word at the lexer's position. */
+static size_t word_length(Lexer *lexer)
+{
+    TextWindow *window = &lexer->window;
+    size_t n = 1;
+    while (n <= TOKEN_LENGTH_MAX && text_window_reaches(window, n) && !ends_word(window->position[n]))
+        ++n;
+    return n;
+}
+
+/* The length of the string at the lexer's position with its opening quote, up to the closing quote or to where one is
+ * missing. */
+static size_t string_length(Lexer *lexer)
+{
+    TextWindow *window = &lexer->window;
+    size_t n = 1;
+    for (; n <= TOKEN_LENGTH_MAX + 1 && text_window_reaches(window, n) && window->position[n] != '"'; ++n) {
+        if (window->position[n] == '\\' && text_window_reaches(window, n + 1))
+            ++n;
+        if (window->position[n] == '\n' || window->position[n] == '\0')
+            break;
+    }
+    return n;
+}
+
+static bool string_end_check(Lexer *lexer, const Token *token, size_t length, Error *error)
+{
+    char end = text_window_reaches(&lexer->window, length) ? lexer->window.position[length] : '\n';
+    if (end == '"')
+        return true;
+    error_at(error, token->place, end == '\0' ? "a string holds a NUL byte" : "the string that begins here has no end");
+    return error_fix(error, "close it with \" on the same line");
+}
+
+/* What ended the text before its time. */
+static bool failure_report(const Lexer *lexer, SourcePlace place, Error *error)
+{
+    int failure = lexer->window.failure;
+    if (failure == 0)
+        return true;
+    error_at(error, place, "cannot read on: %s", strerror(failure));
+    return error_fix_errno(error, failure);
+}
+
 bool lexer_next(Lexer *lexer, Token *token, Error *error)
 {
+    TextWindow *window = &lexer->window;
     space_skip(lexer);
-    const char *p = lexer->position;
-    *token = (Token){.kind = TOKEN_END, .text = p};
-    token->place = (SourcePlace){lexer->file, lexer->line, (int)(p - lexer->line_start) + 1};
-    if (p == lexer->end)
-        return true;
-    if (*p == '"')
-        return string_scan(lexer, token, error);
-    token->kind = *p == '[' ? TOKEN_OPEN : *p == ']' ? TOKEN_CLOSE : TOKEN_WORD;
-    do
-        ++p;
-    while (token->kind == TOKEN_WORD && p < lexer->end && !ends_word(*p));
-    token->length = (size_t)(p - token->text);
-    lexer->position = p;
+    *token = (Token){.kind = TOKEN_END, .text = window->position};
+    token->place = (SourcePlace){lexer->file, lexer->line, (int)(text_window_offset(window) - lexer->line_start) + 1};
+    if (!text_window_reaches(window, 0))
+        return failure_report(lexer, token->place, error);
+    char c = *window->position;
+    bool string = c == '"';
+    token->kind = string ? TOKEN_STRING : c == '[' ? TOKEN_OPEN : c == ']' ? TOKEN_CLOSE : TOKEN_WORD;
+    size_t length = string ? string_length(lexer) : token->kind == TOKEN_WORD ? word_length(lexer) : 1;
+    if (length - string > TOKEN_LENGTH_MAX) {
+        error_at(error, token->place, "%s of more than %d characters", string ? "a string" : "a word",
+                 TOKEN_LENGTH_MAX);
+        return error_fix(error, string ? "shorten it, or close it with \"" : "put spaces between its parts");
+    }
+    if (!failure_report(lexer, token->place, error) || (string && !string_end_check(lexer, token, length, error)))
+        return false;
+    token->text = window->position + string;
+    token->length = length - string;
+    window->position += length + string;
     return true;
 }
 

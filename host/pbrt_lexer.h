@@ -3,6 +3,10 @@
 #define TWINLIGHT_PBRT_LEXER_H
 
 #include "arena.h"
+#include "text_window.h"
+
+/* Characters of a word or of a string: no scene met so far comes near, and memory for a token is bounded. */
+#define TOKEN_LENGTH_MAX 65536
 
 typedef enum TokenKind {
     TOKEN_END,
@@ -14,20 +18,22 @@ typedef enum TokenKind {
 
 typedef struct Token {
     TokenKind kind;
-    const char *text; /* borrowed from the file's text */
+    const char *text; /* borrowed from the lexer until its next token; the text's own when that lies in memory */
     size_t length;
     SourcePlace place;
 } Token;
 
 typedef struct Lexer {
-    const char *position, *end;
-    const char *line_start;
+    TextWindow window;
+    size_t line_start; /* offset in the text */
     const char *file;
     int line;
 } Lexer;
 
-/* `text` and `file` are borrowed for as long as the lexer and its tokens are used. Fails on UTF-16. */
-bool lexer_init(Lexer *lexer, const char *text, size_t length, const char *file, Error *error);
+/* The lexer takes the window, of fewer than INT_MAX bytes, and closes it when it fails: on UTF-16. `file`, a name for
+ * messages, is borrowed for as long as the lexer and its tokens are used. */
+bool lexer_init(Lexer *lexer, const TextWindow *window, const char *file, Error *error);
+void lexer_destroy(Lexer *lexer);
 
 /* Reads the next token; comments (# to the end of the line) are skipped. */
 bool lexer_next(Lexer *lexer, Token *token, Error *error);

@@ -84,8 +84,16 @@ static bool type_unknown(const Token *declaration, const char *type, Error *erro
                             "blackbody, spectrum or texture");
 }
 
+static bool too_many(SourcePlace place, int limit, const char *what, Error *error)
+{
+    error_at(error, place, "more than %d %s in one directive", limit, what);
+    return error_fix(error, "delete those that it does not need");
+}
+
 bool param_declare(ParamBuffer *buffer, const Token *declaration, Error *error)
 {
+    if (buffer->params.count >= PARAMS_MAX)
+        return too_many(declaration->place, PARAMS_MAX, "parameters", error);
     const char *text = token_text(declaration, &buffer->texts, error);
     if (!text)
         return false;
@@ -122,6 +130,8 @@ static Array *values_array(ParamBuffer *buffer, const Param *param)
 
 static bool string_add(ParamBuffer *buffer, const Token *value, Error *error)
 {
+    if (buffer->strings.count >= PARAM_STRINGS_MAX)
+        return too_many(value->place, PARAM_STRINGS_MAX, "strings", error);
     const char *text = token_text(value, &buffer->texts, error);
     const char **slot = text ? array_grow(&buffer->strings, 1, error) : NULL;
     if (!slot)
@@ -266,6 +276,6 @@ const ParamSet *param_set_make(const ParamBuffer *buffer, const ParamSet *older,
     for (size_t i = 0; i < count; ++i)
         if (!param_copy(&ARRAY_AT(&buffer->params, Param, i), &params[i], arena, error))
             return NULL;
-    *set = (ParamSet){.params = params, .count = count, .older = older, .depth = older ? older->depth + 1 : 1};
+    *set = (ParamSet){.params = params, .count = count, .older = older, .total = count + (older ? older->total : 0)};
     return set;
 }

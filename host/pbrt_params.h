@@ -51,6 +51,11 @@ typedef struct ParamBuffer {
     Arena texts;
 } ParamBuffer;
 
+/* Limits of one directive, far beyond what any takes: parameters and strings are several times larger in memory than in
+ * the file. Numbers may be as many as the file holds. */
+#define PARAMS_MAX 1024
+#define PARAM_STRINGS_MAX 1024
+
 void param_buffer_init(ParamBuffer *buffer);
 void param_buffer_destroy(ParamBuffer *buffer);
 
@@ -74,7 +79,7 @@ typedef struct ParamSet {
     const Param *params;
     size_t count;
     const struct ParamSet *older;
-    unsigned depth; /* sets in the chain, this one included */
+    size_t total; /* parameters in the chain, this set's included */
 } ParamSet;
 
 /* A copy of the buffer's parameters in `arena`, before `older`. NULL when memory is out. */

@@ -2,27 +2,23 @@
 
 #include "file_read.h"
 
-#include <limits.h>
-#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-bool parser_open_text(PbrtImport *im, const char *text, size_t length, const char *name, bool owned, Error *error)
+bool parser_open_text(PbrtImport *im, const TextWindow *window, const char *name)
 {
     SourceFile *file = &im->files[im->file_count];
-    *file = (SourceFile){.text = owned ? (char *)text : NULL, .nesting = im->saved.count};
-    if (!lexer_init(&file->lexer, text, length, name, error)) {
-        if (owned)
-            free(file->text);
+    *file = (SourceFile){.nesting = im->saved.count};
+    if (!lexer_init(&file->lexer, window, name, im->error))
         return false;
-    }
     ++im->file_count;
     return true;
 }
 
-static bool include_cyclic(const PbrtImport *im, const FileData *file)
+static bool include_cyclic(const PbrtImport *im, const FileOpened *opened)
 {
     for (int i = 0; i < im->file_count; ++i)
-        if (im->files[i].text && im->files[i].device == file->device && im->files[i].inode == file->inode)
+        if (im->files[i].is_file && im->files[i].device == opened->device && im->files[i].inode == opened->inode)
             return true;
     return false;
 }
@@ -46,26 +42,33 @@ bool parser_open_file(PbrtImport *im, const char *name, SourcePlace place, bool 
     const char *shown = path ? arena_text(&im->arena, path, strlen(path), im->error) : NULL;
     if (!shown || !include_counted(im, place))
         return false;
-    FileData data;
-    if (!file_read(path, INT_MAX, place, &data, im->error))
+    FileOpened opened;
+    TextWindow window;
+    if (!file_open(path, IMPORT_FILE_BYTES_MAX, place, &opened, im->error))
         return false;
-    if (include_cyclic(im, &data)) {
-        free(data.data);
+    if (include_cyclic(im, &opened)) {
+        close(opened.descriptor);
         error_at(im->error, place, "%s includes itself", path);
         return error_fix(im->error, "delete this line");
     }
-    if (!parser_open_text(im, data.data, data.size, shown, true, im->error))
+    if (!text_window_from_file(&window, opened.descriptor, IMPORT_FILE_BYTES_MAX)) {
+        file_read_error(path, window.failure, place, im->error);
+        text_window_close(&window);
+        return false;
+    }
+    if (!parser_open_text(im, &window, shown))
         return false;
     SourceFile *file = &im->files[im->file_count - 1];
-    file->device = data.device;
-    file->inode = data.inode;
+    file->is_file = true;
+    file->device = opened.device;
+    file->inode = opened.inode;
     file->is_import = is_import;
     return true;
 }
 
 void parser_close(PbrtImport *im)
 {
-    free(im->files[--im->file_count].text);
+    lexer_destroy(&im->files[--im->file_count].lexer);
 }
 
 void parser_close_all(PbrtImport *im)

@@ -197,6 +197,11 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
                  IMPORT_LIGHTS_MAX);
         return error_fix(im->error, "take the light source out of the object");
     }
+    im->copied_vertices += shape->mesh.vertex_count;
+    if (im->copied_vertices > IMPORT_COPIES_MAX) {
+        error_at(im->error, im->place, "instances of emissive objects copy more than %u vertices", IMPORT_COPIES_MAX);
+        return error_fix(im->error, "give the light source a mesh of its own, of few vertices");
+    }
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
     /* An instance is its object's image (surface.h). A mesh's normal is a cross product in world space, which a mirror
      * turns; a quadric's is transformed. */

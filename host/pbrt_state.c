@@ -72,6 +72,10 @@ bool state_coordinate_system(PbrtImport *im, const char *name, const Matrix tran
 {
     uint known = name_table_find(&im->coordinate_systems, name);
     if (known == NONE) {
+        if (im->coordinate_systems.entries.count >= IMPORT_COORDINATE_SYSTEMS_MAX) {
+            error_at(im->error, im->place, "more than %d coordinate systems", IMPORT_COORDINATE_SYSTEMS_MAX);
+            return error_fix(im->error, "use a name again where the old one is not needed any more");
+        }
         known = (uint)(im->coordinate_matrices.count / 2);
         name = arena_text(&im->arena, name, strlen(name), im->error);
         if (!name || !array_grow(&im->coordinate_matrices, 2, im->error) ||
@@ -104,8 +108,9 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
         const ParamSet *older = im->state.attributes[i];
         if (im->params.params.count == 0)
             return true;
-        if (older && older->depth >= IMPORT_ATTRIBUTES_MAX) {
-            error_at(im->error, im->place, "more than %d Attribute directives in force", IMPORT_ATTRIBUTES_MAX);
+        if (im->params.params.count + (older ? older->total : 0) > IMPORT_ATTRIBUTES_MAX) {
+            error_at(im->error, im->place, "more than %d parameters of Attribute directives in force",
+                     IMPORT_ATTRIBUTES_MAX);
             return error_fix(im->error, "put AttributeBegin and AttributeEnd around what they are for");
         }
         im->state.attributes[i] = param_set_make(&im->params, older, &im->arena, im->error);

@@ -337,7 +337,11 @@ void ply_destroy(PlyMesh *mesh)
     *mesh = (PlyMesh){0};
 }
 
-/* Inflates all members of a gzip'd file. Deflate expands at most 1032 times, so memory stays within that multiple. */
+/* Of a file, packed or not: four times the 13 bytes a face and 32 bytes for every other vertex of 10^8 triangles. Deflate
+ * expands up to 1032 times, so that without a limit a small file might take all memory. */
+#define PLY_BYTES_MAX ((size_t)12 << 30)
+
+/* Inflates all members of a gzip'd file. */
 static bool gzip_inflate(const PlySource *source, const FileData *file, Array *out)
 {
     z_stream stream = {.next_in = (Bytef *)file->data};
@@ -353,6 +357,10 @@ static bool gzip_inflate(const PlySource *source, const FileData *file, Array *o
             left -= stream.avail_in;
         }
         size_t used = out->count, room = file->size < (1u << 20) ? 1u << 16 : 1u << 24;
+        if (used > PLY_BYTES_MAX) {
+            inflateEnd(&stream);
+            return ply_error(source, "the gzip'd data are more than 12 GiB");
+        }
         char *target = array_grow(out, room, source->error);
         if (!target) {
             inflateEnd(&stream);
@@ -372,7 +380,7 @@ bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error)
     PlySource source = {path, place, error};
     FileData file;
     *mesh = (PlyMesh){0};
-    if (!file_read(path, SIZE_MAX, place, &file, error))
+    if (!file_read(path, PLY_BYTES_MAX, place, &file, error))
         return false;
     bool gzip = file.size >= 2 && (unsigned char)file.data[0] == 0x1f && (unsigned char)file.data[1] == 0x8b;
     Array inflated;

@@ -97,9 +97,9 @@ static bool element_read(const PlySource *source, const Line *line, PlyHeader *h
         return ply_error(source, "line %d: malformed element, or more than %d of them", line->number, PLY_ELEMENTS_MAX);
     for (size_t i = 0; i < line->lengths[2]; ++i) {
         char c = line->words[2][i];
-        if (c < '0' || c > '9' || count > UINT32_MAX)
+        count = c < '0' || c > '9' ? -1 : 10 * count + (c - '0');
+        if (count < 0 || count > UINT32_MAX)
             return ply_error(source, "line %d: an element's count is not a number below 2^32", line->number);
-        count = 10 * count + (c - '0');
     }
     PlyElement *element = &header->elements[header->element_count++];
     *element = (PlyElement){.count = (size_t)count};

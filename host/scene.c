@@ -68,11 +68,21 @@ static bool object_ensure_world(Scene *scene, Error *error)
     return scene->objects.count > 0 || SCENE_GROW(scene, objects, Object, 1, error) != NULL;
 }
 
+/* Before memory is taken: what does not fit the packed buffer must not be gathered first. */
+static bool geometry_fits(const Scene *scene, const MeshData *mesh, size_t primitive_words, Error *error)
+{
+    size_t vertex_words = 3u + (mesh->normals ? 3u : 0u) + (mesh->uvs ? 2u : 0u), words = scene_geometry_words(scene);
+    if (mesh->vertex_count < NONE && mesh->triangle_count < NONE &&
+        words + mesh->vertex_count * vertex_words + mesh->triangle_count * primitive_words <= SCENE_WORDS_MAX)
+        return true;
+    error_set(error, "the scene needs more than 16 GiB of vertices and primitives");
+    return error_fix(error, "use object instances, or split the scene");
+}
+
 /* Appends `shape` to the current object, and its vertices. */
 static bool shape_add(Scene *scene, const MeshData *mesh, Shape *shape, uint *index, Error *error)
 {
-    if (!object_ensure_world(scene, error) || !count_fits(scene->shapes.count, PRIMITIVE_SHAPE_MASK, "shapes", error) ||
-        !count_fits(scene->positions.count + mesh->vertex_count, NONE, "vertices", error))
+    if (!object_ensure_world(scene, error) || !count_fits(scene->shapes.count, PRIMITIVE_SHAPE_MASK, "shapes", error))
         return false;
     shape->first_primitive = (uint)scene->primitives.count;
     shape->first_vertex = (uint)scene->positions.count;
@@ -173,8 +183,7 @@ bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float
                     Error *error)
 {
     uint index;
-    if (!shape_add(scene, mesh, &shape, &index, error) ||
-        !count_fits(scene->primitives.count + mesh->triangle_count, NONE, "primitives", error))
+    if (!geometry_fits(scene, mesh, sizeof(Primitive) / 4, error) || !shape_add(scene, mesh, &shape, &index, error))
         return false;
     Primitive *out = SCENE_GROW(scene, primitives, Primitive, mesh->triangle_count, error);
     if (!out && mesh->triangle_count > 0)
@@ -201,8 +210,8 @@ bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const fl
                        Error *error)
 {
     uint index;
-    if (!shape_add(scene, mesh, &shape, &index, error) ||
-        !count_fits(scene->primitives.count + mesh->triangle_count, NONE, "primitives", error))
+    if (!geometry_fits(scene, mesh, (sizeof(Primitive) + sizeof(Patch)) / 4, error) ||
+        !shape_add(scene, mesh, &shape, &index, error))
         return false;
     for (size_t i = 0; i < mesh->triangle_count; ++i) {
         Patch patch;
@@ -246,6 +255,55 @@ static double similarity_scale(const double m[16])
     return length;
 }
 
+/* Factor by which the affine map stretches the area element with object-space normal n: |det M| |M^-T n|. */
+static double area_stretch(const Quadric *quadric, const double n[3])
+{
+    const float *m = quadric->world_from_object.m;
+    const float *w = quadric->object_from_world.m;
+    double a[3] = {(double)m[0], (double)m[4], (double)m[8]};
+    double b[3] = {(double)m[1], (double)m[5], (double)m[9]};
+    double c[3] = {(double)m[2], (double)m[6], (double)m[10]};
+    double bc[3], transformed[3];
+    vector_cross(b, c, bc);
+    double determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
+    for (int j = 0; j < 3; ++j)
+        transformed[j] = (double)w[j] * n[0] + (double)w[4 + j] * n[1] + (double)w[8 + j] * n[2];
+    return fabs(determinant) * length3(transformed);
+}
+
+#define SPHERE_STEPS 64 /* of the area of a light */
+
+/* By the midpoint rule with `steps` squared places. */
+static double sphere_area(const Quadric *quadric, int steps)
+{
+    double r = (double)quadric->radius;
+    double low = fmax(-r, (double)quadric->z_min), high = fmin(r, (double)quadric->z_max);
+    double sum = 0.0;
+    if (!(high > low) || !(quadric->phi_max > 0.0f))
+        return 0.0;
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            double z = (low + (high - low) * (j + 0.5) / steps) / r;
+            double phi = (double)quadric->phi_max * (i + 0.5) / steps;
+            double s = sqrt(fmax(0.0, 1.0 - z * z));
+            double n[3] = {s * cos(phi), s * sin(phi), z};
+            sum += area_stretch(quadric, n);
+        }
+    return (double)quadric->phi_max * r * (high - low) * sum / (steps * steps);
+}
+
+static double disk_area(const Quadric *quadric)
+{
+    double n[3] = {0.0, 0.0, 1.0};
+    double r = (double)quadric->radius, inner = (double)quadric->inner_radius;
+    return 0.5 * (double)quadric->phi_max * fmax(0.0, r * r - inner * inner) * area_stretch(quadric, n);
+}
+
+static double quadric_area(const Quadric *quadric, uint kind, int steps)
+{
+    return kind == PRIMITIVE_SPHERE ? sphere_area(quadric, steps) : disk_area(quadric);
+}
+
 bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double world_from_object[16],
                        const double object_from_world[16], Shape shape, const float *emission, uint light_flags,
                        Error *error)
@@ -261,7 +319,7 @@ bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double wo
     quadric.center =
         vec3(quadric.world_from_object.m[3], quadric.world_from_object.m[7], quadric.world_from_object.m[11]);
     quadric.world_radius = (float)(scale * (double)quadric.radius);
-    if (!shape_add(scene, &no_vertices, &shape, &index, error))
+    if (!geometry_fits(scene, &no_vertices, 0, error) || !shape_add(scene, &no_vertices, &shape, &index, error))
         return false;
     uint quadric_index = (uint)scene->quadrics.count;
     Quadric *stored = SCENE_GROW(scene, quadrics, Quadric, 1, error);
@@ -271,7 +329,8 @@ bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double wo
     *stored = quadric;
     primitive->a = quadric_index;
     primitive->shape_and_kind = shape_and_kind(index, kind, &shape);
-    if (!((float)scene_primitive_area(scene, (uint)scene->primitives.count - 1) > 0.0f)) {
+    /* Whether there is any area is seen with few steps; scenes of a million spheres that are no lights are read fast. */
+    if (!((float)quadric_area(stored, kind, emission ? SPHERE_STEPS : 4) > 0.0f)) {
         --scene->primitives.count;
         scene->counts.zero_area_lights += emission ? 1 : 0;
         ++scene->counts.degenerate_triangles;
@@ -303,7 +362,7 @@ bool scene_object_end(Scene *scene, Error *error)
 bool scene_add_instance(Scene *scene, uint object, const double world_from_object[16],
                         const double object_from_world[16], Error *error)
 {
-    if (!count_fits(scene->instances.count, NONE, "instances", error))
+    if (!count_fits(scene->instances.count, SCENE_WORDS_MAX / (sizeof(Instance) / 4), "instances", error))
         return false;
     Instance *instance = SCENE_GROW(scene, instances, Instance, 1, error);
     if (!instance)
@@ -316,6 +375,8 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
 
 bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error)
 {
+    if (!count_fits(scene->materials.count, SCENE_WORDS_MAX / (sizeof(Material) / 4), "materials", error))
+        return false;
     *index = (uint)scene->materials.count;
     Material *stored = SCENE_GROW(scene, materials, Material, 1, error);
     if (!stored)
@@ -326,6 +387,8 @@ bool scene_add_material(Scene *scene, const Material *material, uint *index, Err
 
 bool scene_add_light(Scene *scene, const Light *light, Error *error)
 {
+    if (!count_fits(scene->lights.count, NONE, "lights", error))
+        return false;
     Light *stored = SCENE_GROW(scene, lights, Light, 1, error);
     if (!stored)
         return false;
@@ -357,48 +420,6 @@ static double patch_area(const Vec3 *positions, const Patch *patch)
     return sum / (STEPS * STEPS);
 }
 
-/* Factor by which the affine map stretches the area element with object-space normal n: |det M| |M^-T n|. */
-static double area_stretch(const Quadric *quadric, const double n[3])
-{
-    const float *m = quadric->world_from_object.m;
-    const float *w = quadric->object_from_world.m;
-    double a[3] = {(double)m[0], (double)m[4], (double)m[8]};
-    double b[3] = {(double)m[1], (double)m[5], (double)m[9]};
-    double c[3] = {(double)m[2], (double)m[6], (double)m[10]};
-    double bc[3], transformed[3];
-    vector_cross(b, c, bc);
-    double determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
-    for (int j = 0; j < 3; ++j)
-        transformed[j] = (double)w[j] * n[0] + (double)w[4 + j] * n[1] + (double)w[8 + j] * n[2];
-    return fabs(determinant) * length3(transformed);
-}
-
-static double sphere_area(const Quadric *quadric)
-{
-    enum { STEPS = 64 };
-    double r = (double)quadric->radius;
-    double low = fmax(-r, (double)quadric->z_min), high = fmin(r, (double)quadric->z_max);
-    double sum = 0.0;
-    if (!(high > low) || !(quadric->phi_max > 0.0f))
-        return 0.0;
-    for (int j = 0; j < STEPS; ++j)
-        for (int i = 0; i < STEPS; ++i) {
-            double z = (low + (high - low) * (j + 0.5) / STEPS) / r;
-            double phi = (double)quadric->phi_max * (i + 0.5) / STEPS;
-            double s = sqrt(fmax(0.0, 1.0 - z * z));
-            double n[3] = {s * cos(phi), s * sin(phi), z};
-            sum += area_stretch(quadric, n);
-        }
-    return (double)quadric->phi_max * r * (high - low) * sum / (STEPS * STEPS);
-}
-
-static double disk_area(const Quadric *quadric)
-{
-    double n[3] = {0.0, 0.0, 1.0};
-    double r = (double)quadric->radius, inner = (double)quadric->inner_radius;
-    return 0.5 * (double)quadric->phi_max * fmax(0.0, r * r - inner * inner) * area_stretch(quadric, n);
-}
-
 double scene_primitive_area(const Scene *scene, uint primitive)
 {
     const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, primitive);
@@ -408,9 +429,8 @@ double scene_primitive_area(const Scene *scene, uint primitive)
         return triangle_area(positions[p->a], positions[p->b], positions[p->c]);
     case PRIMITIVE_BILINEAR:
         return patch_area(positions, &ARRAY_AT(&scene->patches, Patch, p->a));
-    case PRIMITIVE_SPHERE:
-        return sphere_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a));
     default:
-        return disk_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a));
+        return quadric_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a), p->shape_and_kind >> PRIMITIVE_KIND_SHIFT,
+                            SPHERE_STEPS);
     }
 }

@@ -74,11 +74,12 @@ typedef struct Scene {
     Array lookup; /* float */
     Array texels; /* uint */
 
+    bool movable; /* nobody keeps coordinates of it: scene_finish may move it (scene_center.h) */
     Array shape_objects; /* uint: the object of every shape */
     uint current_object;
 
     /* made by scene_finish */
-    float bounds_min[3], bounds_max[3]; /* world space, everything */
+    float bounds_min[3], bounds_max[3]; /* world space of the file, everything; see scene_center.h */
     uint features;
     size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
@@ -136,6 +137,10 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
 
 /* Whether a conductor, dielectric or coat has a microfacet lobe anywhere, and not a delta. */
 bool scene_material_is_rough(const Material *m);
+
+/* Words of 32 bits that the packed geometry takes, as the arrays are now. A buffer may have SCENE_WORDS_MAX, 16 GiB. */
+size_t scene_geometry_words(const Scene *scene);
+#define SCENE_WORDS_MAX 0xfffffff0u
 
 /* What a backend gets of a finished scene, which must outlive it. */
 BackendScene scene_backend_view(const Scene *scene);

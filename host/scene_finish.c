@@ -7,6 +7,7 @@
 #include "filter_setup.h"
 #include "light_setup.h"
 #include "material.h"
+#include "scene_center.h"
 #include "scene_pack.h"
 
 #include <math.h>
@@ -146,10 +147,15 @@ static bool scene_bounds(Scene *scene, Error *error)
     float largest = 0.0f;
     if (!world_box(scene, &world, &largest, error))
         return false;
-    for (int i = 0; i < 3; ++i)
-        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
     memcpy(scene->bounds_min, world.low, sizeof world.low);
     memcpy(scene->bounds_max, world.high, sizeof world.high);
+    if (scene->movable && scene_center(scene, &world)) {
+        largest = 0.0f;
+        if (!world_box(scene, &world, &largest, error))
+            return false;
+    }
+    for (int i = 0; i < 3; ++i)
+        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
     if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
@@ -244,11 +250,13 @@ static bool roughness_is_textured(const Material *m)
     return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
 }
 
+/* Each takes milliseconds, and every coated material is compared with all. */
+#define COATS_MAX 4096
+
 /* Whether the table of `other` serves m. */
 static bool coat_serves(const Material *m, const Material *other)
 {
-    if (other->kind != MATERIAL_COATED_DIFFUSE || other->coat_table == NONE || other->eta != m->eta ||
-        roughness_is_textured(m) != roughness_is_textured(other))
+    if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
         return false;
     return roughness_is_textured(m) ||
            (material_alpha(m, &m->roughness_u) == material_alpha(other, &other->roughness_u) &&
@@ -263,26 +271,44 @@ static bool coat_build(Material *m, Array *lookup, Error *error)
                             &m->coat_table, error);
 }
 
+/* The table of m: that of a material in `owners` (uint), or a new one, which makes m an owner. */
+static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
+{
+    Material *m = &ARRAY_AT(&scene->materials, Material, index);
+    for (size_t j = 0; j < owners->count; ++j) {
+        const Material *other = &ARRAY_AT(&scene->materials, Material, ARRAY_AT(owners, uint, j));
+        if (coat_serves(m, other)) {
+            m->coat_table = other->coat_table;
+            return true;
+        }
+    }
+    if (owners->count >= COATS_MAX) {
+        error_set(error, "the scene has more than %d different rough coats", COATS_MAX);
+        return error_fix(error, "give materials of \"coateddiffuse\" fewer values of roughness and eta");
+    }
+    uint *owner = array_grow(owners, 1, error);
+    if (!owner)
+        return false;
+    *owner = index;
+    return coat_build(m, &scene->lookup, error);
+}
+
 /* Materials of equal coat share a table. */
 static bool scene_coat_tables(Scene *scene, Error *error)
 {
-    for (size_t i = 0; i < scene->materials.count; ++i) {
+    Array owners;
+    bool good = true;
+    array_init(&owners, sizeof(uint));
+    for (size_t i = 0; good && i < scene->materials.count; ++i) {
         Material *m = &ARRAY_AT(&scene->materials, Material, i);
         m->coat_table = NONE;
         if (m->kind != MATERIAL_COATED_DIFFUSE)
             continue;
         m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        if (!scene_material_is_rough(m))
-            continue;
-        for (size_t j = 0; j < i && m->coat_table == NONE; ++j) {
-            const Material *other = &ARRAY_AT(&scene->materials, Material, j);
-            if (coat_serves(m, other))
-                m->coat_table = other->coat_table;
-        }
-        if (m->coat_table == NONE && !coat_build(m, &scene->lookup, error))
-            return false;
+        good = !scene_material_is_rough(m) || coat_find(scene, &owners, (uint)i, error);
     }
-    return true;
+    array_destroy(&owners);
+    return good;
 }
 
 /* ---- entry points ------------------------------------------------------------------------------------------------- */

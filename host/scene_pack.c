@@ -8,7 +8,7 @@ static bool words_append(Array *words, const Array *array, uint *first, Error *e
 {
     size_t bytes = array->count * array->element_size, start = (words->count + 3) / 4 * 4;
     size_t count = start - words->count + bytes / 4;
-    if (start + bytes / 4 > 0xfffffff0u) {
+    if (start + bytes / 4 > SCENE_WORDS_MAX) {
         error_set(error, "the scene needs more than 16 GiB in one buffer");
         return error_fix(error, "use object instances or smaller textures");
     }
@@ -36,6 +36,17 @@ static bool tables_pack(Scene *scene, Error *error)
            words_append(words, &scene->lookup, &layout->lookup, error);
 }
 
+size_t scene_geometry_words(const Scene *scene)
+{
+    const Array *const arrays[] = {&scene->positions,  &scene->normals, &scene->uvs,
+                                   &scene->primitives, &scene->shapes,  &scene->patches,
+                                   &scene->quadrics,   &scene->objects, &scene->instances};
+    size_t words = 64;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
+        words += arrays[i]->count * arrays[i]->element_size / 4 + 4;
+    return words;
+}
+
 /* The unpacked vertex and primitive arrays are freed on the way: a large scene is held once. */
 static bool geometry_pack(Scene *scene, Error *error)
 {
@@ -52,10 +63,7 @@ static bool geometry_pack(Scene *scene, Error *error)
                  {&scene->quadrics, &layout->quadrics},
                  {&scene->objects, &layout->objects},
                  {&scene->instances, &layout->instances}};
-    size_t total = 64;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i)
-        total += parts[i].array->count * parts[i].array->element_size / 4 + 4;
-    if (!array_reserve(&scene->geometry_words, total, error))
+    if (!array_reserve(&scene->geometry_words, scene_geometry_words(scene), error))
         return false;
     for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
         if (!words_append(&scene->geometry_words, parts[i].array, parts[i].first, error))

@@ -112,6 +112,7 @@ libtwinlight_host_la_SOURCES = \
 	host/rendering_file.c host/rendering_file.h \
 	host/sample_statistics.c host/sample_statistics.h \
 	host/scene.c host/scene.h \
+	host/scene_center.c host/scene_center.h \
 	host/scene_finish.c \
 	host/scene_advice.c host/scene_advice.h \
 	host/scene_pack.c host/scene_pack.h \
@@ -122,6 +123,7 @@ libtwinlight_host_la_SOURCES = \
 	host/svg_chart.c host/svg_chart.h \
 	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
+	host/text_window.c host/text_window.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h \

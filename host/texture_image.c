@@ -128,6 +128,10 @@ static size_t words_needed(const Image *image, uint channels)
 
 static bool image_append(Scene *scene, const TextureImage *texture, uint *index, Error *error)
 {
+    if (scene->images.count >= SCENE_IMAGES_MAX) {
+        error_set(error, "the scene has more than %d images", SCENE_IMAGES_MAX);
+        return error_fix(error, "use one image with one encoding, wrap and filter in place of several");
+    }
     TextureImage *to = array_grow(&scene->images, 1, error);
     if (!to)
         return false;

@@ -6,6 +6,9 @@
 #include "scene.h"
 
 /* How the numbers of an 8- or 16-bit file become linear. Float files (EXR, HDR, PFM) are linear. */
+/* Of a scene: each is compared with all that came before it. */
+#define SCENE_IMAGES_MAX 65536
+
 typedef enum TextureEncoding { ENCODING_SRGB, ENCODING_LINEAR, ENCODING_GAMMA } TextureEncoding;
 
 typedef struct TextureImageOptions {

@@ -46,7 +46,7 @@ EFFORT = 8
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
 	  TESTS='tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_opencl \
-	    tests/test_reference tests/test_scenes'
+	    tests/test_reference tests/test_scenes tests/test_hostile.sh'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
@@ -148,6 +148,7 @@ tests_test_import_SOURCES = tests/test_import.c \
 	tests/test_import_bad.c \
 	tests/test_import_files.c \
 	tests/test_import_lights.c \
+	tests/test_import_limits.c \
 	tests/test_import_materials.c \
 	tests/test_import_params.c \
 	tests/test_import_ply.c \
@@ -198,6 +199,7 @@ script_tests = \
 	tests/check_opencl.sh \
 	tests/test_bench.sh \
 	tests/test_cli.sh \
-	tests/test_devices.sh
+	tests/test_devices.sh \
+	tests/test_hostile.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

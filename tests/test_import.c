@@ -88,6 +88,7 @@ int main(void)
     suite_add_tcase(suite, import_lights_case());
     suite_add_tcase(suite, import_ply_case());
     suite_add_tcase(suite, import_files_case());
+    suite_add_tcase(suite, import_limits_case());
     suite_add_tcase(suite, import_bad_case());
     suite_add_tcase(suite, import_corpus_case());
     return test_run(suite);

@@ -16,6 +16,7 @@ TCase *import_textures_case(void);
 TCase *import_lights_case(void);
 TCase *import_ply_case(void);
 TCase *import_files_case(void); /* Include, Import, limits, the public scenes */
+TCase *import_limits_case(void); /* counts of 32 bits and more */
 TCase *import_bad_case(void); /* tests/bad */
 TCase *import_corpus_case(void); /* tests/corpus */
 

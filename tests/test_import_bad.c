@@ -1,5 +1,5 @@
-/* tests/bad: each file must be refused with the message of its first line, "# expect: MESSAGE". tests/corpus, the seeds
- * of the fuzzer: valid files that use much of the format. */
+/* tests/bad: each file must be refused with the message of its first line, "# expect: MESSAGE". tests/corpus/scene,
+ * the seeds of the fuzzer with a name: valid files that use much of the format. */
 #include "test_import.h"
 
 #include <dirent.h>
@@ -76,12 +76,9 @@ START_TEST(corpus_file)
     Scene scene;
     Error error = {{0}, {0}};
     ImportOptions options = {.lenient = false};
-    snprintf(path, sizeof path, "%s/corpus/%s", import_tests_dir(), corpus_files[_i]->d_name);
+    snprintf(path, sizeof path, "%s/corpus/scene/%s", import_tests_dir(), corpus_files[_i]->d_name);
     scene_init(&scene);
-    bool good = pbrt_import(path, &options, &scene, &error);
-    /* What the fuzzer found may be refused, but not crash. */
-    bool found = strncmp(corpus_files[_i]->d_name, "fuzz-", 5) == 0;
-    ck_assert_msg(good || found, "%s", error.message);
+    ck_assert_msg(pbrt_import(path, &options, &scene, &error), "%s", error.message);
     scene_destroy(&scene);
 }
 END_TEST
@@ -96,7 +93,7 @@ TCase *import_corpus_case(void)
 {
     char directory[1100];
     TCase *tcase = tcase_create("corpus");
-    snprintf(directory, sizeof directory, "%s/corpus", import_tests_dir());
+    snprintf(directory, sizeof directory, "%s/corpus/scene", import_tests_dir());
     corpus_count = scandir(directory, &corpus_files, is_scene, alphasort);
     tcase_add_test(tcase, there_is_a_corpus);
     tcase_add_loop_test(tcase, corpus_file, 0, corpus_count);

@@ -11,7 +11,9 @@ static void declare(ParamBuffer *buffer, const char *text)
     Lexer lexer;
     Token token;
     Error error = {{0}, {0}};
-    ck_assert(lexer_init(&lexer, text, strlen(text), "p.pbrt", &error));
+    TextWindow window;
+    text_window_from_memory(&window, text, strlen(text));
+    ck_assert(lexer_init(&lexer, &window, "p.pbrt", &error));
     ck_assert(lexer_next(&lexer, &token, &error));
     ck_assert_msg(param_declare(buffer, &token, &error), "%s", error.message);
     while (lexer_next(&lexer, &token, &error) && token.kind != TOKEN_END)

@@ -1,4 +1,5 @@
 /* Tokens, numbers and tables of names. */
+#include "test_files.h"
 #include "test_import.h"
 
 #include "name_table.h"
@@ -15,6 +16,13 @@ static Token next(Lexer *lexer)
     return token;
 }
 
+static bool lexer_open(Lexer *lexer, const char *text, size_t length, Error *error)
+{
+    TextWindow window;
+    text_window_from_memory(&window, text, length);
+    return lexer_init(lexer, &window, "a.pbrt", error);
+}
+
 START_TEST(tokens_have_kinds_and_places)
 {
     const char *text = "Shape \"sphere\" # a comment \"with\" [ things ]\n  \"float radius\"[2.5]\r\n\ttrue#not\n";
@@ -28,7 +36,7 @@ START_TEST(tokens_have_kinds_and_places)
         {TOKEN_WORD, "true#not", 3, 2}, {TOKEN_END, "", 4, 1},          {TOKEN_END, "", 4, 1}};
     Lexer lexer;
     Error error;
-    ck_assert(lexer_init(&lexer, text, strlen(text), "a.pbrt", &error));
+    ck_assert(lexer_open(&lexer, text, strlen(text), &error));
     for (size_t i = 0; i < sizeof expected / sizeof *expected; ++i) {
         Token token = next(&lexer);
         ck_assert_int_eq(token.kind, expected[i].kind);
@@ -47,7 +55,7 @@ START_TEST(strings_decode_escapes)
     Lexer lexer;
     Error error = {{0}, {0}};
     Arena arena = {0};
-    ck_assert(lexer_init(&lexer, text, strlen(text), "a.pbrt", &error));
+    ck_assert(lexer_open(&lexer, text, strlen(text), &error));
     Token token = next(&lexer);
     ck_assert_str_eq(token_text(&token, &arena, &error), "a\"b\\c\n\t'");
     token = next(&lexer);
@@ -63,15 +71,84 @@ START_TEST(encodings)
 {
     Lexer lexer;
     Error error;
-    ck_assert(lexer_init(&lexer, "\xef\xbb\xbfIdentity", 11, "a", &error));
+    ck_assert(lexer_open(&lexer, "\xef\xbb\xbfIdentity", 11, &error));
     Token token = next(&lexer);
     ck_assert(token_is(&token, "Identity"));
     ck_assert_int_eq(token.place.column, 1);
-    ck_assert(!lexer_init(&lexer, "\xff\xfeI\0", 4, "a", &error));
-    ck_assert_str_eq(error.message, "a:1:1: error: the file is UTF-16");
-    ck_assert(lexer_init(&lexer, "\"a\0b\"", 5, "a", &error));
+    ck_assert(!lexer_open(&lexer, "\xff\xfeI\0", 4, &error));
+    ck_assert_str_eq(error.message, "a.pbrt:1:1: error: the file is UTF-16");
+    ck_assert(lexer_open(&lexer, "\"a\0b\"", 5, &error));
     ck_assert(!lexer_next(&lexer, &token, &error));
-    ck_assert_str_eq(error.message, "a:1:1: error: a string holds a NUL byte");
+    ck_assert_str_eq(error.message, "a.pbrt:1:1: error: a string holds a NUL byte");
+}
+END_TEST
+
+/* Tokens of a file come through a window: those at its edges are the ones of the same text in memory. */
+START_TEST(files_have_the_tokens_of_text)
+{
+    enum { SIZE = 5 * TEXT_WINDOW_BYTES };
+    char *text = malloc(SIZE);
+    unsigned state = 1;
+    for (size_t i = 0; i < SIZE; ++i) {
+        unsigned r = test_random(&state) % 1000;
+        text[i] = "w\" []#\n\\"[r < 900 ? 0 : r < 980 ? 1 + 2 * (r % 2) : r % 8];
+    }
+    test_folder_make();
+    test_file_write(test_path("text"), text, SIZE);
+    FILE *file = fopen(test_path("text"), "rb");
+    TextWindow window;
+    ck_assert(text_window_from_file(&window, dup(fileno(file)), SIZE));
+    fclose(file);
+    Lexer lexer, reference;
+    Error error = {{0}, {0}}, expected = {{0}, {0}};
+    ck_assert(lexer_init(&lexer, &window, "a.pbrt", &error));
+    ck_assert(lexer_open(&reference, text, SIZE, &expected));
+    size_t count = 0, bad = 0;
+    for (Token a, b; window.failure == 0; ++count) {
+        bool good = lexer_next(&reference, &b, &expected);
+        ck_assert(lexer_next(&lexer, &a, &error) == good);
+        ck_assert_int_eq(a.place.line, b.place.line);
+        ck_assert_int_eq(a.place.column, b.place.column);
+        if (!good) { /* an open string: go on behind its quote */
+            ck_assert_str_eq(error.message, expected.message);
+            ++lexer.window.position;
+            ++reference.window.position;
+            ++bad;
+            continue;
+        }
+        ck_assert_int_eq(a.kind, b.kind);
+        ck_assert_uint_eq(a.length, b.length);
+        ck_assert_mem_eq(a.text, b.text, a.length);
+        if (a.kind == TOKEN_END)
+            break;
+    }
+    ck_assert_uint_gt(count, 1000);
+    ck_assert_uint_gt(bad, 10);
+    lexer_destroy(&lexer);
+    free(text);
+    test_folder_remove();
+}
+END_TEST
+
+START_TEST(tokens_are_bounded)
+{
+    static char text[TOKEN_LENGTH_MAX + 2];
+    Lexer lexer;
+    Error error = {{0}, {0}};
+    Token token;
+    memset(text, '1', sizeof text);
+    ck_assert(lexer_open(&lexer, text, TOKEN_LENGTH_MAX, &error));
+    ck_assert_uint_eq(next(&lexer).length, TOKEN_LENGTH_MAX);
+    ck_assert(lexer_open(&lexer, text, sizeof text, &error));
+    ck_assert(!lexer_next(&lexer, &token, &error));
+    ck_assert_str_eq(error.message, "a.pbrt:1:1: error: a word of more than 65536 characters");
+    text[0] = '"';
+    ck_assert(lexer_open(&lexer, text, sizeof text, &error));
+    ck_assert(!lexer_next(&lexer, &token, &error));
+    ck_assert_str_eq(error.message, "a.pbrt:1:1: error: a string of more than 65536 characters");
+    text[sizeof text - 1] = '"';
+    ck_assert(lexer_open(&lexer, text, sizeof text, &error));
+    ck_assert_uint_eq(next(&lexer).length, TOKEN_LENGTH_MAX);
 }
 END_TEST
 
@@ -205,6 +282,8 @@ TCase *import_text_case(void)
     tcase_add_test(tcase, tokens_have_kinds_and_places);
     tcase_add_test(tcase, strings_decode_escapes);
     tcase_add_test(tcase, encodings);
+    tcase_add_test(tcase, files_have_the_tokens_of_text);
+    tcase_add_test(tcase, tokens_are_bounded);
     tcase_add_test(tcase, numbers_are_those_of_strtof);
     tcase_add_test(tcase, numbers_round_once);
     tcase_add_test(tcase, numbers_refused);

@@ -14,11 +14,10 @@ typedef struct Placement {
 } Placement;
 
 /* The seed is the same, so only paths whose rounding decides something, a hit or a lobe, differ at all: nothing for a
- * power of two. 10^4 away a float has steps of 10^-3, a ray leaves a surface of this scene of size 8 by 0.01, and many
- * paths take another turn somewhere: what is left there is noise, and test_far looks for more. */
+ * power of two. 10^4 away the vertices of the mesh are rounded to 10^-3 when they are read. */
 static const Placement PLACEMENTS[] = {{1.0, 0.0, 0.0, 0.0},    {1.0 / 1024.0, 0.0, 0.0, 0.0}, {1e-3, 0.0, 1e-6, 1e-3},
-                                       {37.0, 0.0, 1e-6, 1e-3}, {1e4, 0.0, 1e-6, 1e-3},        {1.0, 100.0, 1e-4, 2e-3},
-                                       {1.0, 1e4, 2e-3, 0.03}};
+                                       {37.0, 0.0, 1e-6, 1e-3}, {1e4, 0.0, 1e-6, 1e-3},        {1.0, 100.0, 1e-6, 1e-3},
+                                       {1.0, 1e4, 1e-4, 5e-3}};
 #define PLACEMENT_COUNT ((int)(sizeof PLACEMENTS / sizeof PLACEMENTS[0]))
 
 /* Glass, a mesh with normals, a lamp, a floor. */
@@ -90,6 +89,59 @@ START_TEST(test_far)
     groups_compare(name, &got, &expected, 4, false);
     groups_destroy(&got);
     groups_destroy(&expected);
+}
+END_TEST
+
+/* A scene whose coordinates floats hold, all of them a multiple of 1/64 and none of the camera's 0, with the origin in
+ * the middle of its box: everything that has a place. */
+static const char *moved_text(const double offset[3])
+{
+    static const double EYE[3] = {0.25, 0.5, -5.0};
+    static char text[4096];
+    const double *o = offset;
+    snprintf(
+        text, sizeof text,
+        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\nPixelFilter \"box\"\n"
+        "LookAt %.17g %.17g %.17g  %.17g %.17g %.17g  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+        "Translate %.17g %.17g %.17g\n"
+        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 3 3 3 ]\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -1 1.75 -1  1 1.75 -1  -1 1.75 1  1 1.75 1 ] AttributeEnd\n"
+        "AttributeBegin Translate 1 0.5 -1 AreaLightSource \"diffuse\" \"rgb L\" [ 2 1 1 ]\n"
+        "Shape \"disk\" \"float radius\" 0.25 AttributeEnd\n"
+        "LightSource \"point\" \"rgb I\" [ 4 4 4 ] \"point3 from\" [ 1.5 1.5 -3 ]\n"
+        "LightSource \"spot\" \"rgb I\" [ 4 4 2 ] \"point3 from\" [ -1.5 1.5 -3 ] \"point3 to\" [ 0 0 0 ]\n"
+        "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [ .2 .5 .2 ]\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+        "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 1 3 2 ]\n"
+        "\"point3 P\" [ -2 -1.75 -2  2 -1.75 -2  -2 -1.75 2  2 -1.75 2 ]\n"
+        "Material \"dielectric\"\n"
+        "AttributeBegin Translate -1 0 0 Shape \"sphere\" \"float radius\" 0.75 AttributeEnd\n"
+        "Material \"conductor\" \"float roughness\" 0.25\n"
+        "ObjectBegin \"ball\" Translate %.17g %.17g %.17g Shape \"sphere\" \"float radius\" 0.5 \"float zmax\" 0.25 "
+        "ObjectEnd\nAttributeBegin Translate 1 -1 1 ObjectInstance \"ball\" AttributeEnd\n",
+        o[0] + EYE[0], o[1] + EYE[1], o[2] + EYE[2], o[0] - 0.25, o[1] - 0.25, o[2] + 0.25, o[0], o[1], o[2], -o[0],
+        -o[1], -o[2]);
+    return text;
+}
+
+/* What is far away is moved to the origin (scene_center.h), and nothing is lost: the same sums. */
+START_TEST(test_moved)
+{
+    static const double OFFSETS[4][3] = {{0, 0, 0}, {4096, -8192, 16384}, {-1000, 0, 0}, {0, 0, 1e5}};
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt()};
+    RenderedImage first, image;
+    for (int i = 0; i < 4; ++i) {
+        RenderSetup setup = {
+            .text = moved_text(OFFSETS[i]), .samples = 16, .max_depth = 6, .integrator = integrators[_i]};
+        fixture_render(&setup, &image);
+        if (i == 0) {
+            first = image;
+            continue;
+        }
+        ck_assert_mem_eq(first.film.sums, image.film.sums, 3 * film_pixels(&image.film) * sizeof *image.film.sums);
+        fixture_destroy(&image);
+    }
+    fixture_destroy(&first);
 }
 END_TEST
 
@@ -204,6 +256,7 @@ TCase *numerics_scale_case(void)
     TCase *tcase = tcase_create("scale");
     tcase_set_timeout(tcase, 300);
     tcase_add_loop_test(tcase, test_placements, 0, 2);
+    tcase_add_loop_test(tcase, test_moved, 0, 2);
     tcase_add_loop_test(tcase, test_far, 0, 3);
     tcase_add_test(tcase, test_coincident);
     tcase_add_test(tcase, test_sun_scaled);

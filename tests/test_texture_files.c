@@ -268,6 +268,40 @@ START_TEST(test_exr_channels)
 }
 END_TEST
 
+/* Any choice among the channels of a file, of either size: their order is the picture's, and those not wanted do not
+ * matter. Channel i is i + pixel / 8. */
+START_TEST(test_exr_choices)
+{
+    static const struct {
+        const char *file, *image; /* channels, as letters */
+    } CHOICES[] = {{"ABGR", "RGBA"}, {"ABGRZ", "RGBA"}, {"BGR", "RGB"}, {"BGRZ", "RGB"},
+                   {"AYZ", "Y"},     {"ABYZ", "Y"},     {"YZ", "Y"},    {"V", "V"}};
+    for (int i = 0; i < 2 * (int)(sizeof CHOICES / sizeof *CHOICES); ++i) {
+        const char *letters = CHOICES[i / 2].file, *wanted = CHOICES[i / 2].image;
+        float data[5][6];
+        char names[5][2];
+        ExrChannel channels[5];
+        size_t count = strlen(letters);
+        Error error;
+        for (size_t c = 0; c < count; ++c) {
+            for (int k = 0; k < 6; ++k)
+                data[c][k] = (float)c + (float)k / 8.0f;
+            names[c][0] = letters[c];
+            names[c][1] = '\0';
+            channels[c] = (ExrChannel){names[c], data[c], 1, i % 2 == 1};
+        }
+        ck_assert(exr_write(test_path("c.exr"), channels, count, 3, 2, NULL, NULL, 0, &error));
+        Image image = read_good(test_path("c.exr"));
+        ck_assert_int_eq(image.channels, (int)strlen(wanted));
+        for (int k = 0; k < 6; ++k)
+            for (int c = 0; c < image.channels; ++c)
+                TEST_NEAR(((float *)image.data)[k * image.channels + c], data[strchr(letters, wanted[c]) - letters][k],
+                          0.0);
+        image_destroy(&image);
+    }
+}
+END_TEST
+
 static void samples_write(void)
 {
     unsigned char bytes[3 * WIDTH * HEIGHT];
@@ -345,6 +379,9 @@ START_TEST(test_refused)
     const char png_huge[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\1\0\0\0\1\0\0\x08\2\0\0\0\x12\x34\x56\x78";
     const char pfm_huge[] = "PF\n60000 60000\n-1\n", pfm_empty[] = "PF\n0 5\n-1\n", pfm_bad[] = "PF\nx 5\n-1\n";
     const char pfm_long[] = "PF\n99999999999999999999 1\n-1\n", gif[] = "GIF89a\1\0\1\0\x80\0\0\0\0\0\xff\xff\xff,";
+    const char png_short[] =
+        "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0\x08\2\0\0\0\x12\x34\x56\x78\0\0\0\1IDAT";
+    const char pfm_short[] = "PF\n16384 16384\n-1\n";
     read_bad("no/such/file.png", "No such file or directory");
     read_bad(test_folder, "not a file");
     test_file_write(test_path("empty.png"), "", 0);
@@ -357,6 +394,10 @@ START_TEST(test_refused)
     read_bad(test_path("huge.png"), "");
     test_file_write(test_path("huge.pfm"), pfm_huge, sizeof pfm_huge - 1);
     read_bad(test_path("huge.pfm"), "too large: 60000 x 60000");
+    test_file_write(test_path("short.pfm"), pfm_short, sizeof pfm_short - 1);
+    read_bad(test_path("short.pfm"), "too short for 16384 x 16384 pixels");
+    test_file_write(test_path("short.png"), png_short, sizeof png_short - 1);
+    read_bad(test_path("short.png"), "too short for 16384 x 16384 pixels");
     test_file_write(test_path("empty.pfm"), pfm_empty, sizeof pfm_empty - 1);
     read_bad(test_path("empty.pfm"), "0 x 5");
     test_file_write(test_path("bad.pfm"), pfm_bad, sizeof pfm_bad - 1);
@@ -395,6 +436,7 @@ TCase *texture_files_tcase(void)
     tcase_add_test(tcase, test_exr_kinds);
     tcase_add_test(tcase, test_exr_dwa);
     tcase_add_test(tcase, test_exr_channels);
+    tcase_add_test(tcase, test_exr_choices);
     tcase_add_loop_test(tcase, test_truncated, 0, SAMPLE_COUNT);
     tcase_add_loop_test(tcase, test_damaged, 0, SAMPLE_COUNT);
     tcase_add_test(tcase, test_refused);
