@@ -238,10 +238,10 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
     walk_step_store(paths, rays, stride, t, depth, &step);
 }
 
-/* The connection of the two last vertices. */
+/* The connection of the two last vertices. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
                                    __global const uint *restrict vertices, uint t, uint s, uint camera,
-                                   Connection *connection)
+                                   Random4 film, Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
@@ -257,9 +257,9 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
         z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), t);
         back_z = state_load_float(paths, stride, camera_half + CHAIN_HALF_BACK, t);
     }
-    Random4 random = chain_camera(frame, paths, t);
+    Random4 random = film;
     if (camera == 1u)
-        random = connection_random_lens(random, random);
+        random = connection_random_lens(film, film);
     else if (s == 1u)
         random = connection_random_light(chain_select(frame, paths, t), chain_emit(frame, paths, t));
     bool possible = connect_ends(scene, s, camera, &y, back_y, &z, back_z, random, connection);
@@ -282,8 +282,8 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
     uint camera = chain_key_depth(key) + 1u - s;
+    Random4 film = chain_camera(frame, paths, t);
     if (camera > 1u) {
-        Random4 film = chain_camera(frame, paths, t);
         Vec2 position = film_position(frame, film.x[0], film.x[1]);
         state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, position.x);
         state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, position.y);
@@ -292,7 +292,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
-    if (!chain_connect(&scene, paths, vertices, t, s, camera, &connection))
+    if (!chain_connect(&scene, paths, vertices, t, s, camera, film, &connection))
         return;
     if (camera == 1u) {
         state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, connection.film.x);
@@ -330,7 +330,8 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
     if (t >= frame->item_count)
         return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
-    chain_splat_current(&scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t));
+    chain_splat_current(&scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
+                        chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE));
     pass_store(frame, pass, CHAIN_PASS_KEY, t, state_load(paths, stride, CHAIN_KEY, t));
     pass_store(frame, pass, CHAIN_PASS_LUMINANCE, t, state_load(paths, stride, CHAIN_LUMINANCE, t));
     pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));

@@ -61,17 +61,16 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-/* A path at `film` whose contribution is f times `color` is visited `visits` times. What a path has above the limit is kept
- * apart (blend.h): all of a visit or nothing of it, by chance. */
-SHARED_FUNCTION void chain_splat(const SceneView *scene, __global const uint *restrict paths,
-                                 __global uint *restrict splats, __global uint *restrict diagnostics, uint t, Vec2 film,
-                                 float f, Vec3 color, float visits)
+/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What a
+ * path has above the limit is kept apart (blend.h): all of a visit or nothing of it, by chance. */
+SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
+                                 __global uint *restrict diagnostics, uint t, Vec2 film, float f, Vec3 color,
+                                 float visits, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, pixel = NONE, flags = SPLAT_FROM_LIGHT;
     float weight = 0.0f;
     if (visits > 0.0f) {
-        Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
         flags = random_float(random.x[3]) * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
     }
@@ -89,12 +88,12 @@ SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint s
 
 SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const uint *restrict paths,
                                          __global uint *restrict splats, __global uint *restrict diagnostics, uint t,
-                                         float visits)
+                                         float visits, Random4 random)
 {
     uint stride = scene->frame->stride;
-    chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_FILM, t),
+    chain_splat(scene, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_FILM, t),
                 state_load_float(paths, stride, CHAIN_LUMINANCE, t), state_load_vec3(paths, stride, CHAIN_COLOR, t),
-                visits);
+                visits, random);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
@@ -155,13 +154,13 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
     state_store(paths, stride, CHAIN_RUN, t, run_after(state_load(paths, stride, CHAIN_RUN, t), taken));
     if (taken) {
-        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept));
+        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept), random);
         chain_take(frame, paths, t, f, color, accept);
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, paths, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f,
-                    color, accept);
+        chain_splat(scene, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color,
+                    accept, random);
         state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
     }
 }
