@@ -1,9 +1,9 @@
 #!/bin/sh
 # What sorting chains and grouping their mutations bring (Frolov 2018, tables 1 to 3): mutations per second without
-# either, with one, with both, of the published scheme and of generations, on the CPU and on the first OpenCL device; then
-# how often proposals of each kind are taken, by depth. Tab separated, on standard output. Figures are medians of RUNS runs;
-# the ways take turns, so that what else the machine does meets all of them. Only chains count: neither pools nor direct
-# light. usage: bench_mmlt.sh TWINLIGHT SCENE...
+# either, with one, with both, and with both where chains are sorted by depth alone, of the published scheme and of
+# generations, on the CPU and on the first OpenCL device; then how often proposals of each kind are taken, by depth. Tab
+# separated, on standard output. Figures are medians of RUNS runs; the ways take turns, so that what else the machine does
+# meets all of them. Only chains count: neither pools nor direct light. usage: bench_mmlt.sh TWINLIGHT SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -41,7 +41,8 @@ rate() {
 head_print
 printf '# setting\t%s segments, %s pixels, %s chains at most, %s s a run, median of %s runs\n' "$DEPTH" "$RESOLUTION" \
     "$CHAINS" "$SECONDS_EACH" "$RUNS"
-printf 'scene\tbackend\tscheme\tneither\tsorted\tgrouped\tboth\tgain of sorting\tgain of grouping\tgain of both\n'
+printf 'scene\tbackend\tscheme\tneither\tsorted\tgrouped\tboth\tboth, by depth\t'
+printf 'gain of sorting\tgain of grouping\tgain of both\tgain of both, by depth\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
     for backend in $backends; do
@@ -58,11 +59,15 @@ for scene in "$@"; do
                     run sorted "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-group
                     run grouped "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-sort
                     run both "$scene" --backend="$backend" --mlt-scheme=$scheme $blend
+                    run depth "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --sort=depth
                 }
             done
-            echo "$(rate neither) $(rate sorted) $(rate grouped) $(rate both)" |
-                awk -v head="$name	$backend	$scheme" '{ printf "%s\t%.0f\t%.0f\t%.0f\t%.0f\t%+.0f %%\t%+.0f %%\t%+.0f %%\n", head,
-                    $1, $2, $3, $4, 100 * ($2 / $1 - 1), 100 * ($3 / $1 - 1), 100 * ($4 / $1 - 1) }'
+            echo "$(rate neither) $(rate sorted) $(rate grouped) $(rate both) $(rate depth)" |
+                awk -v head="$name	$backend	$scheme" '{
+                    printf "%s", head
+                    for (i = 1; i <= 5; ++i) printf "\t%.0f", $i
+                    for (i = 2; i <= 5; ++i) printf "\t%+.0f %%", 100 * ($i / $1 - 1)
+                    print "" }'
             # The acceptance of the last run, as the statistics have it: kind, depth, part.
             [ "$backend" = opencl ] || awk -v head="$name	$scheme" '
                 /"acceptance"/ { found = 1; next }

@@ -1,7 +1,6 @@
 #include "chain_population.h"
 
 #include "chain.h"
-#include "chain_seeds.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -87,14 +86,14 @@ static void starts_count(const Candidates *candidates, const uint *seeds, uint c
 }
 
 static bool population_choose(ChainPopulation *population, Candidates *candidates, const uint *pool, double threshold,
-                              bool sorted, double offset, uint count, ChainStarts *starts, Error *error)
+                              ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error)
 {
     uint *words = calloc((size_t)count * population->fields, sizeof *words), *seeds = malloc(count * sizeof *seeds);
     double brightness = 0.0;
     bool done = words && seeds;
     if (done) {
         candidates_weigh(candidates, population, pool, threshold);
-        done = chain_seeds_choose(candidates->weights, candidates->keys, candidates->all, sorted, offset, count, seeds,
+        done = chain_seeds_choose(candidates->weights, candidates->keys, candidates->all, order, offset, count, seeds,
                                   &brightness, error);
     } else {
         error_memory(error, (size_t)count * population->fields * sizeof *words, "chains");
@@ -118,7 +117,7 @@ static bool population_choose(ChainPopulation *population, Candidates *candidate
 }
 
 bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
-                            bool sorted, double offset, uint count, ChainStarts *starts, Error *error)
+                            ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error)
 {
     Candidates candidates = {.chains = population->brightness > 0.0 ? population->count : 0};
     candidates.all = candidates.chains + pool_count;
@@ -129,7 +128,7 @@ bool chain_population_renew(ChainPopulation *population, const uint *pool, uint 
         error_memory(error, candidates.all * (sizeof *candidates.weights + sizeof *candidates.keys), "a pool's paths");
     if (starts)
         *starts = (ChainStarts){0};
-    done = done && population_choose(population, &candidates, pool, threshold, sorted, offset, count, starts, error);
+    done = done && population_choose(population, &candidates, pool, threshold, order, offset, count, starts, error);
     free(candidates.weights);
     free(candidates.keys);
     return done;

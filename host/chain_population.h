@@ -11,6 +11,7 @@
 #ifndef TWINLIGHT_CHAIN_POPULATION_H
 #define TWINLIGHT_CHAIN_POPULATION_H
 
+#include "chain_seeds.h"
 #include "chain_statistics.h"
 #include "error.h"
 #include "platform.h"
@@ -27,9 +28,9 @@ void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 
 /* The next population, of `count` chains, ready for a pass: from this one, if it has chains, and from the pool_count samples
- * whose words are pool[POOL_* * pool_count ...] (pool.h). sorted, offset: chain_seeds.h. `starts` (may be NULL) gets
+ * whose words are pool[POOL_* * pool_count ...] (pool.h). order, offset: chain_seeds.h. `starts` (may be NULL) gets
  * what they begin with. */
 bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
-                            bool sorted, double offset, uint count, ChainStarts *starts, Error *error);
+                            ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error);
 
 #endif

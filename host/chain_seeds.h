@@ -5,11 +5,14 @@
 #include "error.h"
 #include "platform.h"
 
+/* How chains lie in memory: by depth and strategy, by depth, or as they were drawn. */
+typedef enum ChainOrder { CHAIN_ORDER_STRATEGY, CHAIN_ORDER_DEPTH, CHAIN_ORDER_NONE } ChainOrder;
+
 /* Chooses `count` of the `candidates` paths by systematic resampling over the sum of all weights: one of weight w is
  * taken floor or ceil of count w / sum times, count w / sum on average over offset, uniform in [0, 1). keys: chain_key of
- * each; 0: there is none. seeds[i]: its number; the same ones stand together. With `sorted`, in the order of depth and then strategy; without, in that
- * given. *sum: of the weights. When it is zero nothing is chosen. */
-bool chain_seeds_choose(const double *weights, const uint *keys, uint candidates, bool sorted, double offset,
+ * each; 0: there is none. seeds[i]: its number, in the order wanted; the same ones
+ * stand together. *sum: of the weights. When it is zero nothing is chosen. */
+bool chain_seeds_choose(const double *weights, const uint *keys, uint candidates, ChainOrder order, double offset,
                         uint count, uint *seeds, double *sum, Error *error);
 
 #endif

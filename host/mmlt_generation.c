@@ -146,7 +146,7 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
     /* A sample of a pool that is worth this begins one chain. */
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count);
-    if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, !mmlt->options.unsorted,
+    if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, mmlt->options.order,
                                 offset_of(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_RENDER_H
 #define TWINLIGHT_RENDER_H
 
+#include "chain_seeds.h"
 #include "chain_statistics.h"
 #include "film.h"
 #include "integrator.h"
@@ -20,7 +21,7 @@ typedef struct ChainOptions {
         paper; /* one pool, and large steps within the chains, as Frolov 2018; else a new pool and new chains every time */
     double large_step; /* probability, of `paper` */
     unsigned mutations; /* bit MUTATION_* */
-    bool unsorted; /* chains in the order of their pool, not by depth and strategy */
+    ChainOrder order;
     bool ungrouped; /* every chain its own kind of mutation */
     bool unblended; /* the pool's samples are not shown (blend.h) */
 } ChainOptions;

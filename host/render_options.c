@@ -30,7 +30,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
     [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
     [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
-    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order of their pool, not by depth and strategy"},
+    [OPTION_SORT] = {"sort", 0, "ORDER", "mmlt: chains by strategy, that is, depth and strategy (default), or depth"},
+    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order in which they were drawn"},
     [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
     [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
@@ -152,6 +153,16 @@ static bool names_set(const char *value, const char *const *names, unsigned coun
     }
 }
 
+static bool sort_set(ChainOptions *chains, const char *value, Error *error)
+{
+    if (strcmp(value, "strategy") != 0 && strcmp(value, "depth") != 0) {
+        error_set(error, "--sort=%s is no order of chains", value);
+        return error_fix(error, "use strategy or depth, or --no-sort");
+    }
+    chains->order = value[0] == 'd' ? CHAIN_ORDER_DEPTH : CHAIN_ORDER_STRATEGY;
+    return true;
+}
+
 static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
 {
     static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
@@ -205,8 +216,10 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
     case OPTION_MEMORY:
         command->memory = true;
         return true;
+    case OPTION_SORT:
+        return sort_set(chains, value, error);
     case OPTION_NO_SORT:
-        chains->unsorted = true;
+        chains->order = CHAIN_ORDER_NONE;
         return true;
     case OPTION_NO_GROUP:
         chains->ungrouped = true;
@@ -287,6 +300,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_LARGE_STEP:
     case OPTION_MUTATIONS:
     case OPTION_MEMORY:
+    case OPTION_SORT:
     case OPTION_NO_SORT:
     case OPTION_NO_GROUP:
     case OPTION_NO_BLEND:

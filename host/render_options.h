@@ -64,6 +64,7 @@ typedef enum RenderOption {
     OPTION_LARGE_STEP,
     OPTION_MUTATIONS,
     OPTION_MEMORY,
+    OPTION_SORT,
     OPTION_NO_SORT,
     OPTION_NO_GROUP,
     OPTION_NO_BLEND,

@@ -21,23 +21,26 @@ START_TEST(test_counts)
 {
     static uint keys[POOL], seeds[4096], times[POOL];
     static double weights[POOL];
-    double sum, found, offset = 0.125 * (_i + 0.5);
+    double sum, found, offset = (_i + 0.5) / 9.0;
     const uint count = 4096;
+    const ChainOrder order = _i % 3;
     Error error = {0};
     pool_make(weights, keys, &sum);
     memset(times, 0, sizeof times);
-    ck_assert(chain_seeds_choose(weights, keys, POOL, _i % 2 == 0, offset, count, seeds, &found, &error));
+    ck_assert(chain_seeds_choose(weights, keys, POOL, order, offset, count, seeds, &found, &error));
     ck_assert_double_eq_tol(found, sum, 1e-9);
     for (uint i = 0; i < count; ++i) {
         uint key = keys[seeds[i]], last = i > 0 ? keys[seeds[i - 1]] : 0;
         ck_assert_uint_ne(key, 0);
         ++times[seeds[i]];
-        if (i > 0 && _i % 2 == 0) {
-            uint before = chain_key_depth(last) * 64 + chain_key_s(last);
-            ck_assert_uint_le(before, chain_key_depth(key) * 64 + chain_key_s(key));
-        } else if (i > 0) {
+        if (i == 0)
+            continue;
+        if (order == CHAIN_ORDER_STRATEGY && chain_key_depth(last) == chain_key_depth(key))
+            ck_assert_uint_le(chain_key_s(last), chain_key_s(key));
+        if (order != CHAIN_ORDER_NONE)
+            ck_assert_uint_le(chain_key_depth(last), chain_key_depth(key));
+        if (order == CHAIN_ORDER_NONE || (order == CHAIN_ORDER_DEPTH && chain_key_depth(last) == chain_key_depth(key)))
             ck_assert_uint_le(seeds[i - 1], seeds[i]);
-        }
     }
     for (uint i = 0; i < POOL; ++i) {
         double expected = count * weights[i] / sum;
@@ -57,7 +60,8 @@ START_TEST(test_mean)
     Error error = {0};
     pool_make(weights, keys, &sum);
     for (uint k = 0; k < offsets; ++k) {
-        ck_assert(chain_seeds_choose(weights, keys, POOL, true, (k + 0.5) / offsets, count, seeds, &found, &error));
+        ck_assert(chain_seeds_choose(weights, keys, POOL, CHAIN_ORDER_STRATEGY, (k + 0.5) / offsets, count, seeds,
+                                     &found, &error));
         for (uint i = 0; i < count; ++i)
             ++times[seeds[i]];
     }
@@ -75,7 +79,7 @@ START_TEST(test_dark)
     uint seeds[4] = {7, 7, 7, 7};
     double found = 1.0;
     Error error = {0};
-    ck_assert(chain_seeds_choose(weights, keys, POOL, true, 0.5, 4, seeds, &found, &error));
+    ck_assert(chain_seeds_choose(weights, keys, POOL, CHAIN_ORDER_STRATEGY, 0.5, 4, seeds, &found, &error));
     ck_assert_double_eq(found, 0.0);
     ck_assert_uint_eq(seeds[0], 7);
 }
@@ -85,7 +89,7 @@ int main(void)
 {
     Suite *suite = suite_create("chain seeds");
     TCase *tcase = tcase_create("seeds");
-    tcase_add_loop_test(tcase, test_counts, 0, 8);
+    tcase_add_loop_test(tcase, test_counts, 0, 9);
     tcase_add_test(tcase, test_mean);
     tcase_add_test(tcase, test_dark);
     suite_add_tcase(suite, tcase);
