@@ -41,11 +41,11 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
     __global const FrameParams *frame = scene->frame;
     Random4 random = pool_random(frame, paths, t, BD_RANDOM_CAMERA);
     uint pixel = state_load(paths, frame->stride, BD_PIXEL, t);
+    uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), weight);
     FilmReach reach = film_reach(frame);
-    float x = (float)(pixel % frame->width) + 0.5f + offset.x, y = (float)(pixel / frame->width) + 0.5f + offset.y;
-    random.x[0] = film_number(x - reach.x, reach.width, random.x[0]);
-    random.x[1] = film_number(y - reach.y, reach.height, random.x[1]);
+    random.x[0] = film_number((float)column + 0.5f + offset.x - reach.x, reach.width, random.x[0]);
+    random.x[1] = film_number((float)row + 0.5f + offset.y - reach.y, reach.height, random.x[1]);
     return random;
 }
 
