@@ -88,7 +88,7 @@ static double caustic_mean(const PictureGroups *picture, int group, int x0)
     return sum;
 }
 
-/* The scene is its own mirror image: with every seed both caustics get half. */
+/* The scene is its own mirror image: with every seed both caustics get half. 97,000 samples of path tracing show 0.759. */
 START_TEST(test_modes)
 {
     PictureGroups got;
@@ -103,7 +103,7 @@ START_TEST(test_modes)
     for (int seed = 0; seed < got.groups; ++seed) {
         double left = caustic_mean(&got, seed, 3), right = caustic_mean(&got, seed, 23);
         printf("two caustics, seed %d: %.3f and %.3f, %.3f of both\n", seed, left, right, left / (left + right));
-        ck_assert_double_eq_tol(left + right, 0.88, 0.25);
+        ck_assert_double_eq_tol(left + right, 0.76, 0.2);
         ck_assert_double_eq_tol(left / (left + right), 0.5, 0.1);
     }
     groups_destroy(&got);
