@@ -23,7 +23,7 @@ START_TEST(test_counts)
     static double weights[POOL];
     double sum, found, offset = (_i + 0.5) / 9.0;
     const uint count = 4096;
-    const ChainOrder order = _i % 3;
+    const ChainOrder order = (ChainOrder)(_i % 3);
     Error error = {0};
     pool_make(weights, keys, &sum);
     memset(times, 0, sizeof times);
