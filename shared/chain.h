@@ -36,6 +36,7 @@
 #define MOVE_CHANGED 4u /* halves that the proposal has of its own: HALF_* */
 #define MOVE_REACHED 8u /* halves of the proposal whose last vertex is there */
 #define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
+#define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
 
 SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint t, uint place)
 {
@@ -175,6 +176,10 @@ SHARED_FUNCTION uint chain_slot_half(uint s, uint slot)
 #define MUTATION_COUNT 4u
 #define MUTATION_REPLAY 4u /* no mutation: the current path is made again */
 
+/* Of eight small steps so many are of each kind. A step of the light's half alone leaves the path where it is on the film, so
+ * the film has little of it; steps of the camera's half are also the cheapest. */
+#define MUTATION_CHANCE(kind) ((kind) == MUTATION_CAMERA ? 6u : 1u)
+
 /* Blocks of random numbers of one step, 256 of them. */
 #define CHAIN_BLOCK_CAMERA 0u
 #define CHAIN_BLOCK_EMIT 1u
@@ -188,12 +193,18 @@ SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, 
                        frame->seed_low, frame->seed_high);
 }
 
-/* A small step from the random word `bits`: its size is within [2^-8, 2^-4) of the whole range, one of four octaves, and
- * uniform within it; either sign alike (after Kelemen et al., 2002, whose sizes are exponential, from 2^-10 to 2^-6; four
- * times as long, the error is 1.3 times smaller on a Cornell box and 1.8 times on a room with caustics). */
-SHARED_FUNCTION uint mutation_offset(uint bits)
+/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path, half
+ * as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With a
+ * scale for each coordinate the longest decides, as there are many. */
+#define STEP_SHIFT_CAMERA 3u
+#define STEP_SHIFT_OTHERS 4u
+#define STEP_SCALES 3u
+
+/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, either sign alike. (Kelemen et
+ * al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
+SHARED_FUNCTION uint mutation_offset(uint bits, uint shift)
 {
-    uint size = (0x00800000u | bits >> 9) << (bits >> 1 & 3u) << 1;
+    uint size = bits >> 1 >> shift;
     return (bits & 1u) != 0u ? size : 0u - size;
 }
 
@@ -209,8 +220,10 @@ SHARED_FUNCTION Random4 chain_proposed(__global const FrameParams *frame, __glob
         return numbers;
     Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), block);
     bool large = mutation == MUTATION_LARGE;
+    uint shift = chain_move(paths, stride, t, MOVE_SCALE) +
+                 (block == CHAIN_BLOCK_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
     for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i]);
+        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i], shift);
     return numbers;
 }
 

@@ -6,25 +6,36 @@
 #include "bd_connect.h"
 #include "chain.h"
 
-/* The kind of mutation at `step`: the same for all chains where they are grouped, so that kernels of a half that does not
- * change have nothing to do. */
-SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, uint t, uint step)
+/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a half
+ * that does not change have nothing to do. */
+SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
 {
     uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
-    Random4 random =
-        random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
+    return random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
+}
+
+/* The kind of mutation. random: mutation_random. */
+SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, Random4 random)
+{
     if (random_float(random.x[0]) < frame->large_step)
         return MUTATION_LARGE;
-    uint kinds = 0u, set = frame->mutations;
+    uint chances = 0u, set = frame->mutations;
     for (uint kind = 0u; kind < MUTATION_LARGE; ++kind)
-        kinds += set >> kind & 1u;
-    if (kinds == 0u)
-        return MUTATION_ALL;
-    /* The chosen one counts down the set. */
-    uint rest = (uint)((ulong)random.x[1] * kinds >> 32), kind = 0u;
-    for (;; ++kind)
-        if ((set >> kind & 1u) != 0u && rest-- == 0u)
+        chances += (set >> kind & 1u) * MUTATION_CHANCE(kind);
+    uint rest = (uint)((ulong)random.x[1] * chances >> 32);
+    for (uint kind = 0u; kind < MUTATION_LARGE; ++kind) {
+        uint chance = (set >> kind & 1u) * MUTATION_CHANCE(kind);
+        if (rest < chance)
             return kind;
+        rest -= chance;
+    }
+    return MUTATION_ALL; /* the set is empty */
+}
+
+/* The scale of its small steps. */
+SHARED_FUNCTION uint mutation_scale(Random4 random)
+{
+    return (uint)((ulong)random.x[2] * STEP_SCALES >> 32);
 }
 
 /* Which halves the mutation changes. A half without coordinates cannot change: then all do. */
@@ -47,7 +58,9 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
     uint mutation = MUTATION_REPLAY, changed = HALF_BOTH;
     if (!first) {
         state_store(paths, stride, CHAIN_STEP, t, ++step);
-        mutation = mutation_choose(frame, t, step);
+        Random4 random = mutation_random(frame, t, step);
+        mutation = mutation_choose(frame, random);
+        chain_move_set(paths, stride, t, MOVE_SCALE, mutation_scale(random));
         changed = mutation_halves(mutation, d, chain_key_s(key));
     }
     if (mutation == MUTATION_LARGE) {
