@@ -26,6 +26,8 @@
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
         {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"},                                                             \
+        {BUFFER_PATHS, BD_IMPORTANCE, 1, true, "importance"},                                                          \
+        {BUFFER_PATHS, BD_TARGET_IMPORTANCE, 1, true, "importance of the target"},                                     \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
         {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \
         {BUFFER_PATHS, BD_CANDIDATE_LUMINANCE, 1, true, "luminance of the candidate"},                                 \
@@ -35,7 +37,7 @@
     }
 
 /* Those behind the first BD_FIELD_COUNT are IBPT's. */
-#define BD_FIELD_COUNT 28
+#define BD_FIELD_COUNT 30
 #define IB_FIELD_COUNT 34
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 

@@ -8,6 +8,7 @@
 
 /* Paths of the population and then those of the pool. */
 typedef struct Candidates {
+    const float *change; /* of importance; NULL: none */
     double *weights;
     uint *keys;
     uint chains, all;
@@ -42,8 +43,10 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
     uint chains = candidates->chains, samples = candidates->all - chains;
     double most = population->samples / (population->samples + samples);
     for (uint i = 0; i < chains; ++i) {
-        double part = part_of_chains((double)bits_float(word_of(population, CHAIN_PASS_LUMINANCE, i)), most, threshold);
-        candidates->weights[i] = population->brightness / chains * part;
+        double change = candidates->change ? (double)candidates->change[word_of(population, CHAIN_PASS_CELL, i)] : 1.0;
+        double luminance = change * (double)bits_float(word_of(population, CHAIN_PASS_LUMINANCE, i));
+        double part = part_of_chains(luminance, most, threshold);
+        candidates->weights[i] = change * population->brightness / chains * part;
         candidates->keys[i] = part > 0.0 ? word_of(population, CHAIN_PASS_KEY, i) : 0;
     }
     for (uint i = 0; i < samples; ++i) {
@@ -64,7 +67,8 @@ static void words_gather(const ChainPopulation *population, const Candidates *ca
         words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
         words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
         if (old) {
-            words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
+            if (!candidates->change) /* else it is another, which the pass will find */
+                words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
             words[(size_t)CHAIN_PASS_RUN * count + i] = word_of(population, CHAIN_PASS_RUN, seeds[i]);
         }
     }
@@ -116,10 +120,11 @@ static bool population_choose(ChainPopulation *population, Candidates *candidate
     return true;
 }
 
-bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
-                            ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error)
+bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
+                            double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
+                            Error *error)
 {
-    Candidates candidates = {.chains = population->brightness > 0.0 ? population->count : 0};
+    Candidates candidates = {.change = change, .chains = population->brightness > 0.0 ? population->count : 0};
     candidates.all = candidates.chains + pool_count;
     candidates.weights = malloc(candidates.all * sizeof *candidates.weights);
     candidates.keys = malloc(candidates.all * sizeof *candidates.keys);

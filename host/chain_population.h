@@ -28,9 +28,11 @@ void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 
 /* The next population, of `count` chains, ready for a pass: from this one, if it has chains, and from the pool_count samples
- * whose words are pool[POOL_* * pool_count ...] (pool.h). order, offset: chain_seeds.h. `starts` (may be NULL) gets
+ * whose words are pool[POOL_* * pool_count ...] (pool.h). change: of each cell, the importance that the pool had and the next
+ * pass has over that of the pass before; NULL: it is what it was. order, offset: chain_seeds.h. `starts` (may be NULL) gets
  * what they begin with. */
-bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, double threshold,
-                            ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error);
+bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
+                            double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
+                            Error *error);
 
 #endif

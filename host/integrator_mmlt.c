@@ -147,8 +147,10 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     mmlt->paths_per_step = mmlt->options.unblended ? PATHS_DIRECT : PATHS_FIRST;
     if (!films_init(mmlt, error) || !lists_make(mmlt, error))
         return false;
-    for (int half = 0; half < MMLT_HALVES; ++half)
+    for (int half = 0; half < MMLT_HALVES; ++half) {
+        importance_even(mmlt->importance[half]);
         chain_population_init(&mmlt->populations[half], mmlt->chains.pass_fields);
+    }
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "chain_groups.h"
 #include "chain_list.h"
 #include "chain_population.h"
+#include "importance.h"
 #include "integrator.h"
 #include "render_run.h"
 
@@ -39,6 +40,7 @@ typedef struct Mmlt {
     uint *pool_words;
     uint *begun; /* words of the chains as their pass began, where somebody wants to know */
     ChainPopulation populations[MMLT_HALVES];
+    float importance[MMLT_HALVES][IMPORTANCE_CELLS];
     ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Blend blends[MMLT_HALVES];

@@ -76,8 +76,11 @@ static float limit_of(const Mmlt *mmlt)
     return (float)(LIMIT_FACTOR * brightness_known(mmlt));
 }
 
-static void pool_order(const Mmlt *mmlt, FrameParams *frame)
+/* What a pool and the chains from it have in common. */
+static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
 {
+    memcpy(frame->importance, mmlt->importance[half_of(mmlt, mmlt->generation)], sizeof frame->importance);
+    frame->limit = limit_of(mmlt);
     frame->sample_index = mmlt->pool_sample;
     frame->pixel_first = mmlt->pool_pixel;
     frame->pixel_stride = render_pixel_stride((uint)mmlt->run->crop_pixels);
@@ -87,8 +90,7 @@ FrameParams mmlt_pool_frame(const Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;
-    pool_order(mmlt, &frame);
-    frame.limit = limit_of(mmlt);
+    seeds_frame(mmlt, &frame);
     frame.film_exponent = mmlt->pool_film.quantum_exponent;
     return frame;
 }
@@ -96,9 +98,8 @@ FrameParams mmlt_pool_frame(const Mmlt *mmlt)
 FrameParams mmlt_chain_frame(Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
-    frame.limit = limit_of(mmlt);
+    seeds_frame(mmlt, &frame);
     frame.brightness = (float)mmlt_population(mmlt)->brightness;
-    pool_order(mmlt, &frame);
     frame.roulette_depth = NONE;
     frame.film_exponent = mmlt->film.quantum_exponent;
     return frame;
@@ -139,14 +140,14 @@ static double pool_brightness(const Mmlt *mmlt, uint pool_count)
     return sum / pool_count;
 }
 
-static bool chains_begin(Mmlt *mmlt, uint pool_count, uint count, Error *error)
+static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint count, Error *error)
 {
     ChainPopulation *population = mmlt_population(mmlt);
     ChainStarts starts;
     /* A sample of a pool that is worth this begins one chain. */
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count);
-    if (!chain_population_renew(population, mmlt->pool_words, pool_count, threshold, mmlt->options.order,
+    if (!chain_population_renew(population, mmlt->pool_words, pool_count, change, threshold, mmlt->options.order,
                                 offset_of(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;
@@ -197,11 +198,35 @@ static uint pool_size(const Mmlt *mmlt, double steps)
     return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
 }
 
+/* Whether the half whose turn it is goes by what is known now: after 2, 4, 8 ... generations of its own, so that what is
+ * known has grown by much since, and chains nearly always go on as they were. */
+static bool importance_due(const Mmlt *mmlt)
+{
+    uint own = mmlt->generation / MMLT_HALVES;
+    return !mmlt->options.unblended && own >= 2 && (own & (own - 1)) == 0;
+}
+
+/* The importance as the other half knows it. change: room for what it is over what it was. */
+static void importance_renew(Mmlt *mmlt, float *change)
+{
+    int half = half_of(mmlt, mmlt->generation);
+    float *importance = mmlt->importance[half];
+    memcpy(change, importance, IMPORTANCE_CELLS * sizeof *change);
+    importance_learn(&mmlt->blends[1 - half], importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        change[i] = importance[i] / change[i];
+}
+
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
+    float change[IMPORTANCE_CELLS];
+    bool changed = importance_due(mmlt);
+    if (changed)
+        importance_renew(mmlt, change);
     uint pool_count = pool_size(mmlt, (double)count * (double)mmlt->options.steps);
     pool_place(mmlt, pool_count);
-    if (!pool_run(mmlt, pool_count, stop, whole, error) || (*whole && !chains_begin(mmlt, pool_count, count, error)))
+    if (!pool_run(mmlt, pool_count, stop, whole, error) ||
+        (*whole && !chains_begin(mmlt, pool_count, changed ? change : NULL, count, error)))
         return false;
     mmlt->run->chains.pool_samples += pool_count;
     return true;

@@ -31,6 +31,7 @@ libtwinlight_host_la_SOURCES = \
 	host/chain_groups.c host/chain_groups.h \
 	host/chain_list.c host/chain_list.h \
 	host/chain_population.c host/chain_population.h \
+	host/importance.c host/importance.h \
 	host/chain_seeds.c host/chain_seeds.h \
 	host/chain_statistics.c host/chain_statistics.h \
 	host/cmd_render.c \

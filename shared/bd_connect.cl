@@ -54,10 +54,14 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     DensityView view = bd_density_view(frame, paths, densities, item);
     float weight = bd_weight(frame, s, t, &view, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weight);
-    if (frame->pool != 0u)
-        state_store_float(paths, stride, BD_CONNECTION_SURVIVAL, item,
-                          vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
-                              vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
+    if (frame->pool == 0u)
+        return;
+    state_store_float(paths, stride, BD_CONNECTION_SURVIVAL, item,
+                      vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
+                          vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
+    if (t == 1u)
+        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item,
+                          frame->importance[importance_cell(frame, connection.film)]);
 }
 
 /* The pairs in the order of the list of steps (integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...
@@ -85,12 +89,14 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     bool visible = shadow_take(shadows, stride, item);
     if (frame->pool != 0u && visible) {
         /* Of a splat the weight is the cover, but for sign and the filter's own. */
-        float cover = t == 1u ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
-                              : state_load_float(paths, stride, BD_COVER, item);
+        float cover = t == 1u
+                          ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
+                          : state_load_float(paths, stride, BD_COVER, item);
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
-        contribution = candidate_offer(frame, paths, item, s, t,
-                                       state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item), cover,
-                                       contribution);
+        float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
+        contribution =
+            candidate_offer(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
+                            cover, importance, contribution);
         state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
     }
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);

@@ -46,7 +46,9 @@
 #define BD_CANDIDATE_LUMINANCE 31u /* of the candidate without roulette, as a chain sees it */
 #define BD_CONNECTION_SURVIVAL 32u /* what roulette left of both walks to the connection under way */
 #define BD_SURVIVAL 33u /* probability with which roulette has let the walk under way come so far */
-#define BD_HEADER_WORDS 34u
+#define BD_IMPORTANCE 34u /* of the film position where the camera's path began */
+#define BD_TARGET_IMPORTANCE 35u /* of the one that the connection under way is seen at (t = 1) */
+#define BD_HEADER_WORDS 36u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can meet it */

@@ -60,7 +60,8 @@ SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint
     uint stride = frame->stride;
     if (frame->pool != 0u)
         contribution = candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
-                                       state_load_float(paths, stride, BD_COVER, t), contribution);
+                                       state_load_float(paths, stride, BD_COVER, t),
+                                       state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
     bd_add_radiance(paths, stride, t, contribution);
 }
 

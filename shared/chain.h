@@ -115,7 +115,8 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
 #define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
 #define CHAIN_PASS_BAD 8u /* after the pass: CHAIN_BAD */
 #define CHAIN_PASS_RUN 9u /* CHAIN_RUN of the pass before, 0: there was none; after the pass, of this one */
-#define CHAIN_PASS_NUMBERS 10u /* the coordinates, where the pass keeps them */
+#define CHAIN_PASS_CELL 10u /* after the pass: importance_cell of where the film sees the path */
+#define CHAIN_PASS_NUMBERS 11u /* the coordinates, where the pass keeps them */
 
 /* ---- runs of refused proposals ----------------------------------------------------------------------------------- */
 

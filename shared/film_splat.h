@@ -82,4 +82,19 @@ SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
     return float_abs(x * y);
 }
 
+/* The cell along an axis of `pixels` pixels, from `first` on, that `film` is in or nearest to. */
+SHARED_FUNCTION uint importance_axis(float film, uint first, uint pixels)
+{
+    float place = (film - (float)first) * ((float)IMPORTANCE_SIDE / (float)pixels);
+    return (uint)float_clamp(place, 0.0f, (float)IMPORTANCE_SIDE - 1.0f);
+}
+
+/* The cell of frame->importance that a film position is in. */
+SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 film)
+{
+    uint x = importance_axis(film.x, frame->crop_x0, frame->crop_x1 - frame->crop_x0);
+    uint y = importance_axis(film.y, frame->crop_y0, frame->crop_y1 - frame->crop_y0);
+    return y * IMPORTANCE_SIDE + x;
+}
+
 #endif

@@ -240,8 +240,8 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
 
 /* The connection of the two last vertices. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
-                                   __global const uint *restrict vertices, uint t, uint s, uint camera,
-                                   Random4 film, Connection *connection)
+                                   __global const uint *restrict vertices, uint t, uint s, uint camera, Random4 film,
+                                   Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
@@ -337,6 +337,7 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
     pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));
     pass_store(frame, pass, CHAIN_PASS_BAD, t, state_load(paths, stride, CHAIN_BAD, t));
     pass_store(frame, pass, CHAIN_PASS_RUN, t, state_load(paths, stride, CHAIN_RUN, t));
+    pass_store(frame, pass, CHAIN_PASS_CELL, t, importance_cell(frame, chain_film_load(paths, stride, CHAIN_FILM, t)));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
         pass_store(frame, pass, CHAIN_PASS_TALLY + i, t, state_load(paths, stride, CHAIN_TALLY + i, t));
     if (frame->keep_chains == 0u)

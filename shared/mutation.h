@@ -129,8 +129,17 @@ SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint
     state_store_float(paths, stride, CHAIN_PENDING, t, visits);
 }
 
-/* The proposal has the contribution `color`; f, after which chains go, is its luminance as far as the pixels' filters cover
- * its place on the film. Takes it with probability a = min(1, f' / f). What the film gets is
+/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film, times
+ * the importance there. */
+SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color)
+{
+    float f = rgb_luminance(color);
+    if (f > 0.0f)
+        f *= film_splat_cover(scene, film) * scene->frame->importance[importance_cell(scene->frame, film)];
+    return f;
+}
+
+/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f). What the film gets is
  * expected: a of the proposal, 1 - a of the current path, the latter kept until the chain leaves it. So there is one
  * splat a step: of what the chain leaves, or of what it does not take. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
@@ -138,9 +147,8 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
-    float f = rgb_luminance(color), current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
-    if (f > 0.0f)
-        f *= film_splat_cover(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t));
+    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color);
+    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
     if (!float_finite(f)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
         if (state_load(paths, stride, CHAIN_BAD, t) == NONE)

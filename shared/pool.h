@@ -12,9 +12,9 @@
 #include "film_splat.h"
 
 /* BUFFER_PASS of a pool: what a sample is worth, and the path kept of it (chain_key); 0: none. */
-#define POOL_WEIGHT 0u /* sum of the luminances of all its paths */
+#define POOL_WEIGHT 0u /* sum of the luminances of all its paths, times their importance */
 #define POOL_KEY 1u
-#define POOL_LUMINANCE 2u /* of the path kept, as a chain sees it */
+#define POOL_LUMINANCE 2u /* f of the path kept, as a chain has it */
 #define POOL_WORDS 3u
 
 /* d segments, s of the vertices from the light. */
@@ -57,20 +57,21 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     uint stride = frame->stride;
     float weight;
     Random4 random = pool_camera(scene, paths, t, &weight);
-    state_store_float(paths, stride, BD_COVER, t,
-                      film_splat_cover(scene, film_position(frame, random.x[0], random.x[1])));
+    Vec2 film = film_position(frame, random.x[0], random.x[1]);
+    state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
+    state_store_float(paths, stride, BD_IMPORTANCE, t, frame->importance[importance_cell(frame, film)]);
     state_store_float(paths, stride, BD_WEIGHT, t, weight / film_reach_factor(frame));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
 }
 
 /* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;
- * `cover`: film_splat_cover where the film sees it. It becomes the candidate with the probability of its share in all so
+ * `cover`, `importance`: film_splat_cover and the importance where the film sees it. It becomes the candidate with the probability of its share in all so
  * far. Returns what the film is shown of it, the part below the limit. */
 SHARED_FUNCTION Vec3 candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                     uint s, uint t, float survival, float cover, Vec3 contribution)
+                                     uint s, uint t, float survival, float cover, float importance, Vec3 contribution)
 {
     uint stride = frame->stride;
-    float luminance = rgb_luminance(contribution);
+    float luminance = rgb_luminance(contribution) * importance;
     float f = luminance * cover * survival; /* of a chain there, which knows no roulette */
     if (!(f > 0.0f) || !float_finite(luminance))
         return contribution;

@@ -308,6 +308,10 @@ typedef struct SceneLayout {
 #define AOV_DEPTH 2u
 #define AOV_COUNT 3u
 
+/* Cells of the importance a side. */
+#define IMPORTANCE_SIDE 32u
+#define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
+
 typedef struct FrameParams {
     SceneLayout layout;
     uint features;
@@ -332,7 +336,8 @@ typedef struct FrameParams {
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
     float limit; /* a pool shows no more luminance of a path; what chains see above it they keep apart (blend.h) */
-    float brightness; /* what a chain's step carries to the film: mean luminance of a pool's sample */
+    float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
+    float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row: what chains go after is f times this */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */

@@ -171,6 +171,7 @@
     MEMBER(FrameParams, large_step)                                                                                    \
     MEMBER(FrameParams, limit)                                                                                         \
     MEMBER(FrameParams, brightness)                                                                                    \
+    MEMBER(FrameParams, importance)                                                                                    \
     MEMBER(FrameParams, seed_low)                                                                                      \
     MEMBER(FrameParams, seed_high)                                                                                     \
     MEMBER(FrameParams, stride)                                                                                        \

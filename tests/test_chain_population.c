@@ -62,8 +62,8 @@ START_TEST(test_parts)
         uint found = 0;
         const uint count = 16;
         chains_make(&population, words);
-        ck_assert(chain_population_renew(&population, pool, POOL, threshold, CHAIN_ORDER_STRATEGY, (k + 0.5) / OFFSETS,
-                                         count, &starts, &error));
+        ck_assert(chain_population_renew(&population, pool, POOL, NULL, threshold, CHAIN_ORDER_STRATEGY,
+                                         (k + 0.5) / OFFSETS, count, &starts, &error));
         for (uint i = 0; i < count; ++i) {
             uint depth = chain_key_depth(population.words[CHAIN_PASS_KEY * count + i]);
             uint item = population.words[CHAIN_PASS_ITEM * count + i];
@@ -97,7 +97,7 @@ END_TEST
 static void eight_renew(ChainPopulation *population, const uint *pool, ChainStarts *starts, ChainStatistics *statistics)
 {
     Error error = {0};
-    ck_assert(chain_population_renew(population, pool, 4, 0.0, CHAIN_ORDER_STRATEGY, 0.4, 8, starts, &error));
+    ck_assert(chain_population_renew(population, pool, 4, NULL, 0.0, CHAIN_ORDER_STRATEGY, 0.4, 8, starts, &error));
     chain_statistics_starts(statistics, starts);
     for (uint i = 0; i < 8; ++i)
         population->words[CHAIN_PASS_LUMINANCE * 8 + i] = float_bits(1.0f);
@@ -186,8 +186,8 @@ static void generation_run(ChainPopulation *population, uint repeat, uint genera
         pool[POOL_KEY * SAMPLES + i] = chain_key(3 + states[i], 0);
     }
     double offset = (random_four(repeat, generation, 0, 2, 7, 7).x[0] + 0.5) / 4294967296.0;
-    ck_assert(
-        chain_population_renew(population, pool, SAMPLES, 4.0, CHAIN_ORDER_STRATEGY, offset, count, NULL, &error));
+    ck_assert(chain_population_renew(population, pool, SAMPLES, NULL, 4.0, CHAIN_ORDER_STRATEGY, offset, count, NULL,
+                                     &error));
     for (uint i = 0; i < count; ++i) {
         uint state = chain_key_depth(population->words[CHAIN_PASS_KEY * count + i]) - 3;
         state = state_move(state, repeat, generation, i);
