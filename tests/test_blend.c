@@ -1,5 +1,6 @@
 /* Shares of chains, pool and path tracing, on generations made up of noise. */
 #include "blend.h"
+#include "importance.h"
 #include "rng.h"
 
 #include "test_util.h"
@@ -211,6 +212,42 @@ START_TEST(test_plan)
 }
 END_TEST
 
+/* Of a picture whose right half is a hundred times as dark as its left one: far from the border the root of that, but for what
+ * every place has at least, so that the mean worth of a path stays the same. A picture without light has no place before
+ * another. */
+START_TEST(test_importance)
+{
+    Streams streams;
+    float importance[IMPORTANCE_CELLS];
+    double sum = 0.0, worth = 0.0, least = 0.05 * 0.505;
+    streams_init(&streams);
+    for (int s = 0; s < BLEND_STREAMS; ++s) {
+        stream_set(&streams, s, 1.0, 0.0, 0.0);
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            streams.films[s].light_sums[i] = (i / 3 % SIDE < SIDE / 2 ? 100 : 1) * (1ll << 22);
+    }
+    importance_learn(&streams.blend, importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        ck_assert_float_eq(importance[i], 1.0f);
+    generation(&streams);
+    importance_learn(&streams.blend, importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        uint column = i % IMPORTANCE_SIDE;
+        ck_assert_float_eq(importance[i], importance[column]); /* all rows are alike */
+        ck_assert(column == 0 || importance[i] >= importance[i - 1]);
+    }
+    ck_assert_double_eq_tol((double)importance[IMPORTANCE_SIDE - 1] / (double)importance[0],
+                            sqrt((1.0 + least) / (0.01 + least)), 0.01 * sqrt(1.0 / 0.01));
+    for (size_t i = 0; i < IMPORTANCE_CELLS; ++i) {
+        double light = i % IMPORTANCE_SIDE < IMPORTANCE_SIDE / 2 ? 1.0 : 0.01;
+        sum += light;
+        worth += light * (double)importance[i];
+    }
+    ck_assert_double_eq_tol(worth / sum, 1.0, 0.1);
+    streams_destroy(&streams);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("blend");
@@ -222,6 +259,7 @@ int main(void)
     tcase_add_test(tcase, test_beside);
     tcase_add_test(tcase, test_excess);
     tcase_add_loop_test(tcase, test_plan, 0, 2);
+    tcase_add_test(tcase, test_importance);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }

@@ -3,6 +3,7 @@
 #include "test_util.h"
 
 #include "chain_list.h"
+#include "importance.h"
 #include "mutation.h"
 
 #include <string.h>
@@ -35,6 +36,7 @@ static void toy_begin(Toy *toy, uint mutations, float large_step, bool grouped)
                                .seed_low = 99,
                                .stride = STRIDE,
                                .item_count = CHAINS};
+    importance_even(toy->frame.importance);
     toy->scene.frame = &toy->frame;
     toy->paths = calloc((size_t)WORDS * STRIDE, sizeof(uint));
     toy->splats = calloc((size_t)SPLAT_WORDS * STRIDE, sizeof(uint));

@@ -26,6 +26,7 @@ static void chains_make(ChainPopulation *population, uint *words)
         words[CHAIN_PASS_KEY * CHAINS + i] = chain_key(3 + i, 1);
         words[CHAIN_PASS_LUMINANCE * CHAINS + i] = float_bits(i == 0 ? 0.0f : ldexpf(1.0f, 2 * (int)i - 6));
         words[CHAIN_PASS_RUN * CHAINS + i] = 300 + i;
+        words[CHAIN_PASS_CELL * CHAINS + i] = 100 * i;
         words[CHAIN_PASS_NUMBERS * CHAINS + i] = 100 + i;
         words[(CHAIN_PASS_NUMBERS + 1) * CHAINS + i] = 200 + i;
     }
@@ -47,14 +48,23 @@ static void pool_make(uint *pool)
     }
 }
 
-/* Over all offsets of the comb a path weighs what its part is. */
+/* Of the cell that chain i is in, under the loop test's importance. */
+static float change_of(int loop, uint i)
+{
+    return loop == 0 ? 1.0f : 0.25f + 0.5f * (float)i;
+}
+
+/* Over all offsets of the comb a path weighs what its part is; with another importance, what its part of that is. */
 START_TEST(test_parts)
 {
+    static float change[IMPORTANCE_CELLS];
     static uint words[FIELDS * CHAINS], pool[POOL_WORDS * POOL];
     static double got[64];
     const double threshold = 3.0, most = 60.0 / 80.0;
     memset(got, 0, sizeof got);
     pool_make(pool);
+    for (uint i = 0; i < CHAINS; ++i)
+        change[100 * i] = change_of(_i, i);
     for (uint k = 0; k < OFFSETS; ++k) {
         ChainPopulation population;
         Error error = {0};
@@ -62,8 +72,8 @@ START_TEST(test_parts)
         uint found = 0;
         const uint count = 16;
         chains_make(&population, words);
-        ck_assert(chain_population_renew(&population, pool, POOL, NULL, threshold, CHAIN_ORDER_STRATEGY,
-                                         (k + 0.5) / OFFSETS, count, &starts, &error));
+        ck_assert(chain_population_renew(&population, pool, POOL, _i == 0 ? NULL : change, threshold,
+                                         CHAIN_ORDER_STRATEGY, (k + 0.5) / OFFSETS, count, &starts, &error));
         for (uint i = 0; i < count; ++i) {
             uint depth = chain_key_depth(population.words[CHAIN_PASS_KEY * count + i]);
             uint item = population.words[CHAIN_PASS_ITEM * count + i];
@@ -73,6 +83,8 @@ START_TEST(test_parts)
             if (depth < 20) {
                 ck_assert_uint_eq(population.words[CHAIN_PASS_NUMBERS * count + i], 100 + depth - 3);
                 ck_assert_uint_eq(population.words[(CHAIN_PASS_NUMBERS + 1) * count + i], 200 + depth - 3);
+                ck_assert_uint_eq(population.words[CHAIN_PASS_LUMINANCE * count + i],
+                                  _i == 0 ? words[CHAIN_PASS_LUMINANCE * CHAINS + depth - 3] : 0);
                 ++found;
             }
         }
@@ -81,8 +93,9 @@ START_TEST(test_parts)
         chain_population_destroy(&population);
     }
     for (uint i = 0; i < CHAINS; ++i) {
-        double f = (double)bits_float(words[CHAIN_PASS_LUMINANCE * CHAINS + i]);
-        ck_assert_double_eq_tol(got[3 + i], 2.5 / CHAINS * most * f / (f + threshold), 2e-3);
+        double ratio = (double)change_of(_i, i),
+               f = ratio * (double)bits_float(words[CHAIN_PASS_LUMINANCE * CHAINS + i]);
+        ck_assert_double_eq_tol(got[3 + i], ratio * 2.5 / CHAINS * most * f / (f + threshold), 2e-3);
     }
     for (uint i = 0; i < POOL; ++i) {
         double f = (double)bits_float(pool[POOL_LUMINANCE * POOL + i]);
@@ -238,7 +251,7 @@ int main(void)
     Suite *suite = suite_create("chain_population");
     TCase *tcase = tcase_create("chain_population");
     tcase_set_timeout(tcase, 120);
-    tcase_add_test(tcase, test_parts);
+    tcase_add_loop_test(tcase, test_parts, 0, 2);
     tcase_add_test(tcase, test_starts);
     tcase_add_test(tcase, test_unbiased);
     suite_add_tcase(suite, tcase);
