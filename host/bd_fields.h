@@ -25,8 +25,7 @@
         {BUFFER_PATHS, BD_CONTRIBUTION, 3, true, "contribution of the connection"},                                    \
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
-        {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"},                                                             \
-        {BUFFER_PATHS, BD_IMPORTANCE, 1, true, "importance"},                                                          \
+        {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"}, {BUFFER_PATHS, BD_IMPORTANCE, 1, true, "importance"},       \
         {BUFFER_PATHS, BD_TARGET_IMPORTANCE, 1, true, "importance of the target"},                                     \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
         {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \

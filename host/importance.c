@@ -20,7 +20,7 @@ static void tiles_near(int cell, int size, int tiles, int *first, int *last)
 {
     double unit = (double)size / (double)IMPORTANCE_SIDE;
     *first = (int)(cell * unit) / BLEND_TILE - 1;
-    *last = (int)ceil((cell + 1) * unit) / BLEND_TILE + 1;
+    *last = ((int)ceil((cell + 1) * unit) - 1) / BLEND_TILE + 1;
     *first = *first > 0 ? *first : 0;
     *last = *last < tiles ? *last : tiles - 1;
 }
