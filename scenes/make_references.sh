@@ -27,7 +27,7 @@ for name in "$@"; do
     case $name in
         cornell) reference cornell pt 2048 ;;
         door) reference door bdpt 384 ;;
-        glossy) reference glossy bdpt 320 ;;
+        glossy) reference glossy bdpt 640 ;;
         lamp) reference lamp bdpt 320 ;;
         pool) reference pool pt 2048 ;;
         relief) reference relief bdpt 320 ;;
