@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes the pictures that the scenes' renderings are compared with: the mean of two renderings with different seeds, by an
 # integrator without Markov chains, at 128 x 128 pixels and up to 10 segments, as half floats. Prints how far the mean is
-# from the truth, by how far its halves are apart. All of them take about 25 minutes of processor time.
+# from the truth, by how far its halves are apart. All of them take about 30 minutes of processor time.
 # usage: make_references.sh TWINLIGHT AVERAGE_IMAGES FOLDER [SCENE...], SCENE: cornell, door ...; default: all
 set -eu
 twinlight=$1
