@@ -37,7 +37,7 @@
 
 /* Those behind the first BD_FIELD_COUNT are IBPT's. */
 #define BD_FIELD_COUNT 30
-#define IB_FIELD_COUNT 34
+#define IB_FIELD_COUNT (BD_FIELD_COUNT + 6)
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 
 /* The list of BDPT; with frame->pool that of a pool's samples, which end in BUFFER_PASS (pool.h). */

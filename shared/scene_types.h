@@ -337,7 +337,7 @@ typedef struct FrameParams {
     float large_step; /* probability of a large step */
     float limit; /* a pool shows no more luminance of a path; what chains see above it they keep apart (blend.h) */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
-    float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row: what chains go after is f times this */
+    float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/importance.h) */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
