@@ -5,8 +5,8 @@
 /* A place's light counts for no less than this part of the mean. */
 #define LIGHT_LEAST 0.05
 
-/* 1 would have all places visited alike, were what is known of them exact. Half way the error of a door ajar and of a glossy room
- * is 1.15 times smaller than without, and that of caustics no larger. */
+/* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and of a
+ * glossy room is 1.15 times smaller than without, and that of caustics no larger. */
 #define EXPONENT 0.5
 
 void importance_even(float importance[IMPORTANCE_CELLS])

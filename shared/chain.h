@@ -194,9 +194,9 @@ SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, 
                        frame->seed_low, frame->seed_high);
 }
 
-/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path, half
- * as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With a
- * scale for each coordinate the longest decides, as there are many. */
+/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path,
+ * half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With
+ * a scale for each coordinate the longest decides, as there are many. */
 #define STEP_SHIFT_CAMERA 3u
 #define STEP_SHIFT_OTHERS 4u
 #define STEP_SCALES 3u

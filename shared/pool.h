@@ -65,8 +65,8 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
 }
 
 /* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;
- * `cover`, `importance`: film_splat_cover and the importance where the film sees it. It becomes the candidate with the probability of its share in all so
- * far. Returns what the film is shown of it, the part below the limit. */
+ * `cover`, `importance`: film_splat_cover and the importance where the film sees it. It becomes the candidate with the
+ * probability of its share in all so far. Returns what the film is shown of it, the part below the limit. */
 SHARED_FUNCTION Vec3 candidate_offer(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                      uint s, uint t, float survival, float cover, float importance, Vec3 contribution)
 {
