@@ -180,15 +180,48 @@ END_TEST
 
 /* ---- bits -------------------------------------------------------------------------------------------------------- */
 
-/* A small step and its opposite are equally probable: they are the same random word but for its lowest bit. */
+/* A small step and its opposite are equally probable: they are the same random word but for its lowest bit. Sizes are
+ * uniform up to 2^-(shift + 1) of the range. */
 START_TEST(test_offsets_symmetric)
 {
-    for (uint i = 0; i < 1u << 20; ++i) {
-        uint bits = random_four(i, 1, 2, 3, 4, 5).x[0], offset = mutation_offset(bits, 3);
-        TEST_TRUE(mutation_offset(bits ^ 1u, 3) == 0u - offset);
+    const uint shift = STEP_SHIFT_CAMERA + (uint)_i, most = 0x80000000u >> shift, draws = 1u << 20;
+    double sum = 0.0;
+    uint largest = 0;
+    for (uint i = 0; i < draws; ++i) {
+        uint bits = random_four(i, 1, 2, 3, 4, 5).x[0], offset = mutation_offset(bits, shift);
+        TEST_TRUE(mutation_offset(bits ^ 1u, shift) == 0u - offset);
         uint size = (bits & 1u) != 0u ? offset : 0u - offset;
-        TEST_TRUE(size < 1u << 28);
+        TEST_TRUE(size < most);
+        largest = size > largest ? size : largest;
+        sum += (double)size / most;
     }
+    ck_assert_double_eq_tol(sum / draws, 0.5, 5.0 * sqrt(1.0 / 12.0 / draws));
+    ck_assert_double_gt((double)largest / most, 1.0 - 20.0 / draws);
+}
+END_TEST
+
+/* Kinds of steps in their proportion, of those that are wanted alone; scales all alike. */
+START_TEST(test_kinds)
+{
+    const uint draws = 1u << 16, set = (uint)_i;
+    uint kinds[MUTATION_COUNT] = {0}, scales[STEP_SCALES] = {0};
+    const FrameParams frame = {.mutations = set};
+    double whole = 0.0;
+    for (uint i = 0; i < draws; ++i) {
+        Random4 random = mutation_random(&frame, i, 3);
+        ++kinds[mutation_choose(&frame, random)];
+        ++scales[mutation_scale(random)];
+    }
+    for (uint kind = 0; kind < MUTATION_LARGE; ++kind)
+        whole += (set >> kind & 1u) != 0u ? (kind == MUTATION_CAMERA ? 6.0 : 1.0) : 0.0;
+    for (uint kind = 0; kind < MUTATION_LARGE; ++kind) {
+        double share = (set >> kind & 1u) != 0u ? (kind == MUTATION_CAMERA ? 6.0 : 1.0) / whole : 0.0;
+        if (set == 0u && kind == MUTATION_ALL)
+            share = 1.0;
+        ck_assert_double_eq_tol((double)kinds[kind] / draws, share, 5.0 * sqrt(share * (1.0 - share) / draws) + 1e-12);
+    }
+    for (uint scale = 0; scale < STEP_SCALES; ++scale)
+        ck_assert_double_eq_tol((double)scales[scale] / draws, 1.0 / 3.0, 5.0 * sqrt(2.0 / 9.0 / draws));
 }
 END_TEST
 
@@ -279,7 +312,8 @@ int main(void)
     TCase *tcase = tcase_create("chain");
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_stationary, 0, (int)(sizeof KERNELS / sizeof KERNELS[0]));
-    tcase_add_test(tcase, test_offsets_symmetric);
+    tcase_add_loop_test(tcase, test_offsets_symmetric, 0, 4);
+    tcase_add_loop_test(tcase, test_kinds, 0, 8);
     tcase_add_loop_test(tcase, test_null_mutations, 0, 2);
     tcase_add_test(tcase, test_zero_never_accepted);
     tcase_add_test(tcase, test_stuck);
