@@ -21,7 +21,7 @@ typedef struct ChainPopulation {
     uint fields;
     uint count;
     double samples; /* of all pools so far */
-    double brightness; /* mean luminance of a pool's sample; 0: there are no chains */
+    double brightness; /* mean worth of a pool's sample (POOL_WEIGHT); 0: there are no chains */
 } ChainPopulation;
 
 void chain_population_init(ChainPopulation *population, uint fields);

@@ -6,7 +6,8 @@
 #define LIGHT_LEAST 0.05
 
 /* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and of a
- * glossy room is 1.15 times smaller than without, and that of caustics no larger. */
+ * glossy room is 1.15 times smaller than without, and that of a pool's caustics 1.03 times larger, which three seeds cannot
+ * tell from none. */
 #define EXPONENT 0.5
 
 void importance_even(float importance[IMPORTANCE_CELLS])

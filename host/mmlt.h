@@ -44,7 +44,7 @@ typedef struct Mmlt {
     ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Blend blends[MMLT_HALVES];
-    double brightness; /* of the latest pool: mean luminance of a sample */
+    double brightness; /* of the latest pool: mean worth of a sample (POOL_WEIGHT) */
     double brightness_sum[MMLT_HALVES]; /* of all pools */
 } Mmlt;
 

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A path may show so many times the mean luminance of a pool's sample. */
+/* A path may show so many times the mean worth of a pool's sample, both with their importance. */
 #define LIMIT_FACTOR 16.0
 
 /* Items of one pass of path tracing. */

@@ -60,8 +60,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
                       vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
                           vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
     if (t == 1u)
-        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item,
-                          frame->importance[importance_cell(frame, connection.film)]);
+        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item, film_importance(frame, connection.film));
 }
 
 /* The pairs in the order of the list of steps (integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...

@@ -97,4 +97,9 @@ SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 fil
     return y * IMPORTANCE_SIDE + x;
 }
 
+SHARED_FUNCTION float film_importance(__global const FrameParams *frame, Vec2 film)
+{
+    return frame->importance[importance_cell(frame, film)];
+}
+
 #endif

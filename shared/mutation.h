@@ -135,7 +135,7 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
 {
     float f = rgb_luminance(color);
     if (f > 0.0f)
-        f *= film_splat_cover(scene, film) * scene->frame->importance[importance_cell(scene->frame, film)];
+        f *= film_splat_cover(scene, film) * film_importance(scene->frame, film);
     return f;
 }
 

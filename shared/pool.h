@@ -59,7 +59,7 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     Random4 random = pool_camera(scene, paths, t, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
     state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
-    state_store_float(paths, stride, BD_IMPORTANCE, t, frame->importance[importance_cell(frame, film)]);
+    state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, film));
     state_store_float(paths, stride, BD_WEIGHT, t, weight / film_reach_factor(frame));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
 }
