@@ -74,6 +74,8 @@ static void device_describe(cl_platform_id platform, OclDevice *device)
     info->units = (unsigned)device_number(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
     device->group_limit = 1;
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof device->group_limit, &device->group_limit, NULL);
+    /* PoCL. Asked for a program's binary it would build every kernel of it, most of which no rendering uses. */
+    device->keeps_programs = strcmp(info->platform, "Portable Computing Language") == 0;
     device_promises(id, info);
 }
 

@@ -13,6 +13,7 @@ typedef struct OclDevice {
     cl_device_id id;
     BackendDevice info;
     size_t group_limit; /* work-items of the largest work-group */
+    bool keeps_programs; /* its driver has a cache of its own, and builds a kernel when that is first used */
     size_t index; /* what --device counts */
 } OclDevice;
 

@@ -3,6 +3,7 @@
 #include "log.h"
 #include "program_cache.h"
 #include "program_source.h"
+#include "timeline.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -25,6 +26,9 @@ static void options_make(const OclDevice *device, uint features, char *options, 
     snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,
              device->info.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
+
+/* Nanoseconds: a driver that takes longer to make a program did not have it in its cache. */
+#define SLOW_BUILD 1000000000u
 
 /* ---- building ---------------------------------------------------------------------------------------------------- */
 
@@ -85,11 +89,17 @@ static bool build_from_source(OclProgram *program, const char *source, const cha
                               Error *error)
 {
     cl_int status;
-    log_message(LOG_INFO, "building the kernels for %s; they are kept for the next time", program->device->info.name);
+    const char *device = program->device->info.name;
+    bool driver_keeps = program->device->keeps_programs;
+    uint64_t start = timeline_now();
+    if (!driver_keeps)
+        log_message(LOG_INFO, "building the kernels for %s; they are kept for the next time", device);
     program->program = clCreateProgramWithSource(program->context, 1, &source, NULL, &status);
     if (status != CL_SUCCESS)
-        return ocl_fail(error, program->device->info.name, "making a program", status);
+        return ocl_fail(error, device, "making a program", status);
     status = clBuildProgram(program->program, 1, &program->device->id, options, NULL, NULL);
+    if (status == CL_SUCCESS && driver_keeps && timeline_now() - start > SLOW_BUILD)
+        log_message(LOG_INFO, "%s builds each kernel when it is first used, and keeps it for the next time", device);
     return status == CL_SUCCESS || build_fail(program, folder, status, error);
 }
 
@@ -155,9 +165,9 @@ bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *
         return false;
     const char *parts[] = {source, options, device->info.platform, device->info.name, device->info.version};
     CacheKey key = cache_key(parts, (int)(sizeof parts / sizeof parts[0]));
-    program->cached = build_from_cache(program, key, options);
+    program->cached = !device->keeps_programs && build_from_cache(program, key, options);
     bool built = program->cached || build_from_source(program, source, folder, options, error);
-    if (built && !program->cached)
+    if (built && !program->cached && !device->keeps_programs)
         save_to_cache(program, key);
     free(source);
     return built;

@@ -1,4 +1,5 @@
-/* The kernels as a program of one device: built from source, or taken from the cache. */
+/* The kernels as a program of one device: built from source, or taken from the cache, which is the driver's own where
+ * that has one. */
 #ifndef TWINLIGHT_PROGRAM_H
 #define TWINLIGHT_PROGRAM_H
 
@@ -14,7 +15,7 @@ typedef struct OclProgram {
     const OclDevice *device;
     cl_program program;
     cl_kernel kernels[KERNEL_COUNT]; /* made when first asked for */
-    bool cached; /* it came from the cache */
+    bool cached; /* it came from Twinlight's cache (program_cache.h) */
 } OclProgram;
 
 /* Builds the kernels for scenes with these features (FEATURE_*). `context` and `device` are borrowed. On failure the

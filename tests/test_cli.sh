@@ -276,19 +276,9 @@ else
     file_missing batch.exr
     expect 1 'nowhere/trace.json' render --backend=opencl --trace=nowhere/trace.json "$scene"
 
-    # Another folder of sources, another program: built, kept, taken from the cache, built again when damaged.
+    # Another folder of sources: another program, built from what is there.
     mkdir sources
     cp "${scene%/*/*}"/shared/*.h "${scene%/*/*}"/shared/*.cl sources/
-    echo '// not the installed text' >>sources/kernels.cl
-    (
-        TWINLIGHT_KERNELS=$work/sources XDG_CACHE_HOME=$work/cache
-        export TWINLIGHT_KERNELS XDG_CACHE_HOME
-        opencl -o first.exr "$scene" && [ "$(find cache/twinlight -name '*.program' | wc -l)" -eq 1 ] &&
-            entry=$(find cache/twinlight -name '*.program') &&
-            echo damage >"$entry" && opencl -o second.exr "$scene" && [ "$(wc -c <"$entry")" -gt 1000 ] &&
-            cmp first.exr second.exr && [ "$(find cache/twinlight -type f | wc -l)" -eq 1 ]
-    )
-    result 'a damaged program in the cache is not built again' $?
     echo 'this is not OpenCL' >>sources/fresnel.h
     line=$(wc -l <sources/fresnel.h)
     TWINLIGHT_KERNELS=$work/sources expect 1 "shared/fresnel.h:$line" render --backend=opencl "$scene"

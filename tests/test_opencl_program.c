@@ -10,6 +10,7 @@
 #include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* ---- scratch folders: absolute, as a cache's has to be ------------------------------------------------------------ */
 
@@ -195,6 +196,8 @@ static void message_keep(const char *line, void *context)
     strncat(messages, line, sizeof messages - strlen(messages) - 1);
 }
 
+static bool driver_keeps = false; /* whether programs are left to the driver's cache */
+
 /* Builds the one-kernel program in `folder`; true when it built, *cached when from the cache. */
 static bool small_build(const char *folder, bool *cached, Error *error)
 {
@@ -202,6 +205,7 @@ static bool small_build(const char *folder, bool *cached, Error *error)
     OclProgram program;
     cl_int status;
     test_device(&device);
+    device.keeps_programs = driver_keeps;
     setenv("TWINLIGHT_KERNELS", folder, 1);
     cl_context context = clCreateContext(NULL, 1, &device.id, NULL, NULL, &status);
     ck_assert_int_eq(status, CL_SUCCESS);
@@ -234,6 +238,43 @@ START_TEST(test_program_comes_from_the_cache)
     scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 2; }\n");
     ck_assert(small_build(folder, &cached, &error));
     ck_assert(!cached);
+    scratch_remove(folder);
+}
+END_TEST
+
+START_TEST(test_program_without_a_cache)
+{
+    char folder[PATH_MAX];
+    bool cached = true;
+    Error error = {0};
+    folder_with_cache(folder, sizeof folder);
+    scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 5; }\n");
+    unsetenv("HOME");
+    unsetenv("XDG_CACHE_HOME");
+    log_sink_set(message_keep, NULL);
+    ck_assert_msg(small_build(folder, &cached, &error), "%s", error.message);
+    log_sink_set(NULL, NULL);
+    ck_assert(!cached);
+    ck_assert_ptr_nonnull(strstr(messages, "neither XDG_CACHE_HOME nor HOME is set"));
+    scratch_remove(folder);
+}
+END_TEST
+
+START_TEST(test_program_left_to_the_driver)
+{
+    char folder[PATH_MAX], path[PATH_MAX + 16];
+    bool cached = true;
+    Error error = {0};
+    folder_with_cache(folder, sizeof folder);
+    scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 4; }\n");
+    driver_keeps = true;
+    for (int i = 0; i < 2; ++i) {
+        ck_assert_msg(small_build(folder, &cached, &error), "%s", error.message);
+        ck_assert(!cached);
+    }
+    driver_keeps = false;
+    snprintf(path, sizeof path, "%s/twinlight", folder);
+    ck_assert_msg(access(path, F_OK) != 0, "a program is kept twice");
     scratch_remove(folder);
 }
 END_TEST
@@ -291,6 +332,8 @@ TCase *opencl_program_tests(void)
     tcase_add_test(program, test_cache_gives_back_or_nothing);
     tcase_add_test(program, test_cache_without_a_place);
     tcase_add_test(program, test_program_comes_from_the_cache);
+    tcase_add_test(program, test_program_without_a_cache);
+    tcase_add_test(program, test_program_left_to_the_driver);
     tcase_add_test(program, test_program_that_the_device_refuses);
     tcase_add_test(program, test_build_log_names_file_and_line);
     return program;
