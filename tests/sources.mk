@@ -49,7 +49,8 @@ check-long:
 	    tests/test_reference tests/test_scenes tests/test_hostile.sh'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
-AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(abs_top_builddir)/test-cache'; export XDG_CACHE_HOME;
+TEST_CACHE = $(abs_top_builddir)/test-cache
+AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(TEST_CACHE)'; export XDG_CACHE_HOME;
 clean-local:
 	rm -rf test-cache
 
