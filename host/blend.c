@@ -15,8 +15,12 @@ static const double FIRST_SHARES[BLEND_STREAMS] = {0.5, 0.5, 0.0};
  * that had been seen in so many generations more. */
 #define PRIOR_GENERATIONS 2.0
 
-/* Standard errors by which one stream must be brighter than another before that counts as light which the other misses. */
+/* Standard errors by which one stream must be brighter than another before that counts as light which the other misses:
+ * few while little is known, half of these after so many generations. Had it been all of them from the first on, rare
+ * bright paths would be believed too long to be absent: six times the error of blocks in short pictures of
+ * scenes/windows.pbrt. With none, chance would be taken for light: a fifth more noise on a door ajar. */
 #define MISSING_DEVIATIONS 2.0
+#define MISSING_GENERATIONS 5.0
 
 /* What a sample of each stream takes, in samples of path tracing: typical ones of the CPU backend. Figures that do not
  * depend on the machine, so that the image does not either. */
@@ -166,16 +170,17 @@ static double ratio_median(const Blend *blend, int s, double *ratios)
     return count > 0 ? ratios[count / 2] : 0.0;
 }
 
-/* When another series is sure of more light in the tile than series s has seen there, s meets it about once or less in all
- * its samples: its variance is that of one such event. */
+/* When another series is sure enough of more light in the tile than series s has seen there, s meets it about once or
+ * less in all its samples: its variance is that of one such event. */
 static double missing_spread(const Blend *blend, int s, size_t tile)
 {
+    double deviations = MISSING_DEVIATIONS * seen(blend, s) / (seen(blend, s) + MISSING_GENERATIONS);
     const PixelSeries *sums = blend->sums;
     double other, own = (double)sums[s].mean[tile];
     if (s == BLEND_CHAINS || s == BLEND_POOL) {
-        other = sure_of(blend, s == BLEND_CHAINS ? BLEND_POOL : BLEND_CHAINS, tile, MISSING_DEVIATIONS);
+        other = sure_of(blend, s == BLEND_CHAINS ? BLEND_POOL : BLEND_CHAINS, tile, deviations);
     } else {
-        other = brightest_of(blend, tile, MISSING_DEVIATIONS);
+        other = brightest_of(blend, tile, deviations);
         if (s == BLEND_EXCESS)
             own += fmax((double)sums[BLEND_CHAINS].mean[tile], (double)sums[BLEND_POOL].mean[tile]);
     }
