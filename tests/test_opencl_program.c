@@ -216,9 +216,11 @@ static bool small_build(const char *folder, bool *cached, Error *error)
     return built;
 }
 
-static void folder_with_cache(char *folder, size_t size)
+/* A folder that has this text as its kernels, and both caches to come. */
+static void folder_with_cache(char *folder, size_t size, const char *kernels)
 {
     scratch_make(folder, size);
+    scratch_write(folder, "kernels.cl", kernels);
     setenv("XDG_CACHE_HOME", folder, 1);
     setenv("POCL_CACHE_DIR", folder, 1);
 }
@@ -228,8 +230,7 @@ START_TEST(test_program_comes_from_the_cache)
     char folder[PATH_MAX];
     bool cached = true;
     Error error = {0};
-    folder_with_cache(folder, sizeof folder);
-    scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 1; }\n");
+    folder_with_cache(folder, sizeof folder, "__kernel void k(__global int *a) { a[0] = 1; }\n");
     ck_assert_msg(small_build(folder, &cached, &error), "%s", error.message);
     ck_assert(!cached);
     ck_assert(small_build(folder, &cached, &error));
@@ -247,8 +248,7 @@ START_TEST(test_program_without_a_cache)
     char folder[PATH_MAX];
     bool cached = true;
     Error error = {0};
-    folder_with_cache(folder, sizeof folder);
-    scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 5; }\n");
+    folder_with_cache(folder, sizeof folder, "__kernel void k(__global int *a) { a[0] = 5; }\n");
     unsetenv("HOME");
     unsetenv("XDG_CACHE_HOME");
     log_sink_set(message_keep, NULL);
@@ -265,8 +265,7 @@ START_TEST(test_program_left_to_the_driver)
     char folder[PATH_MAX], path[PATH_MAX + 16];
     bool cached = true;
     Error error = {0};
-    folder_with_cache(folder, sizeof folder);
-    scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 4; }\n");
+    folder_with_cache(folder, sizeof folder, "__kernel void k(__global int *a) { a[0] = 4; }\n");
     driver_keeps = true;
     for (int i = 0; i < 2; ++i) {
         ck_assert_msg(small_build(folder, &cached, &error), "%s", error.message);
@@ -288,8 +287,7 @@ START_TEST(test_program_that_the_device_refuses)
     bool cached = true;
     OclDevice device;
     Error error = {0};
-    folder_with_cache(folder, sizeof folder);
-    scratch_write(folder, "kernels.cl", strchr(TEXT, '\n') + 1);
+    folder_with_cache(folder, sizeof folder, strchr(TEXT, '\n') + 1);
     test_device(&device);
     snprintf(options, sizeof options, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x1u%s",
              device.info.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
@@ -308,8 +306,8 @@ START_TEST(test_build_log_names_file_and_line)
     char folder[PATH_MAX];
     bool cached;
     Error error = {0};
-    folder_with_cache(folder, sizeof folder);
-    scratch_write(folder, "kernels.cl", "// one\n#include \"part.h\"\n__kernel void k(__global int *a) { f(a); }\n");
+    folder_with_cache(folder, sizeof folder,
+                      "// one\n#include \"part.h\"\n__kernel void k(__global int *a) { f(a); }\n");
     scratch_write(folder, "part.h", "// one\n// two\nvoid f(__global int *a) { *a = unknown_name; }\n");
     log_sink_set(message_keep, NULL);
     ck_assert(!small_build(folder, &cached, &error));
