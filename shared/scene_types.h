@@ -335,8 +335,7 @@ typedef struct FrameParams {
     uint group_mutations; /* 1: at a step all chains make the same kind */
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
-    float
-        limit; /* a pool shows no more of a path's luminance times importance; what chains see above it they keep apart */
+    float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
     float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/importance.h) */
     uint seed_low, seed_high;
