@@ -55,10 +55,10 @@ file_missing() {
     result "file $1 should not be there" $?
 }
 
-# wait_for FILE: until it is there, 20 s at most.
+# wait_for FILE: until it is there, a minute at most.
 wait_for() {
     tries=0
-    while [ ! -s "$1" ] && [ "$tries" -lt 200 ]; do
+    while [ ! -s "$1" ] && [ "$tries" -lt 600 ]; do
         sleep 0.1
         tries=$((tries + 1))
     done

@@ -120,7 +120,7 @@ reference=$(find tiny.runs -name '*-mean.exr')
     --reference="$reference" -o ended.html "$scene" >out 2>err &
 process=$!
 tries=0
-while [ "$(find ended.runs -name '*.record' 2>/dev/null | wc -l)" -lt 2 ] && [ "$tries" -lt 200 ]; do
+while [ "$(find ended.runs -name '*.record' 2>/dev/null | wc -l)" -lt 2 ] && [ "$tries" -lt 600 ]; do
     sleep 0.1
     tries=$((tries + 1))
 done
