@@ -5,8 +5,9 @@
 # no reference and has no floor; relative variance is half of relMSE between the two without its worst thousandth, so that
 # a single bright dot does not decide. Efficiency is 1 / (relative variance x seconds), the median over the budgets; the
 # time to equal error of two integrators has the inverse ratio. `twinlight bench` measures against a reference, which takes
-# longer, and sees what all seeds miss; it draws, too.
-# A scene takes 8 renderings of every budget: 112 s. INTEGRATORS: which. usage: bench_error.sh TWINLIGHT SCENE...
+# longer, and sees what all seeds miss; it draws, too. The last column is the same with the worst thousandth.
+# Each integrator renders twice for the last of BUDGETS (ascending); the others are what it had saved by then. A scene takes
+# 8 times the last budget: 64 s. INTEGRATORS: which. usage: bench_error.sh TWINLIGHT SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -18,32 +19,58 @@ INTEGRATORS=${INTEGRATORS:-pt ibpt bdpt mmlt}
 twinlight=$1
 shift
 
-# image INTEGRATOR SECONDS SEED SCENE
-image() {
-    "$twinlight" render --quiet --integrator="$1" --max-depth="$DEPTH" --resolution="$RESOLUTION" --time="$2s" \
-        --seed="$3" --no-png -o "$folder/$3.exr" --stats="$folder/$3.json" "$4" 2>/dev/null
+# saved_at FILE: when it was written, seconds and their parts.
+saved_at() {
+    date -r "$1" +%s.%N
 }
 
-# variance INTEGRATOR SECONDS SCENE: "seconds samples/s variance relative-variance"
-variance() {
-    image "$1" "$2" 1 "$3"
-    image "$1" "$2" 2 "$3"
-    "$twinlight" compare --json "$folder/1.exr" "$folder/2.exr" >"$folder/compare.json"
-    awk "BEGIN { printf \"%.3f\\t%.0f\\t%.6g\\t%.6g\\n\", \
-        ($(number render "$folder/1.json") + $(number render "$folder/2.json")) / 2, \
-        ($(number samples_per_second "$folder/1.json") + $(number samples_per_second "$folder/2.json")) / 2, \
-        $(number mse "$folder/compare.json") / 2, $(number rel_mse_trimmed "$folder/compare.json") / 2 }"
+# images INTEGRATOR SEED SCENE: SEED.BUDGET.exr and when it was saved, SEED.BUDGET.time, for all budgets.
+images() {
+    last=${BUDGETS##* }
+    out=$folder/$2.exr
+    rm -f "$out"
+    begin=$(date +%s.%N)
+    "$twinlight" render --quiet --integrator="$1" --max-depth="$DEPTH" --resolution="$RESOLUTION" --time="${last}s" \
+        --save-every=1s --seed="$2" --no-png -o "$out" --stats="$folder/$2.json" "$3" 2>"$folder/err" &
+    process=$!
+    for budget in $BUDGETS; do
+        if [ "$budget" = "$last" ]; then
+            wait "$process"
+        fi
+        until [ -s "$out" ] && awk "BEGIN { exit !($(saved_at "$out") >= $begin + $budget) }"; do
+            kill -0 "$process" 2>/dev/null || [ "$budget" = "$last" ] || {
+                cat "$folder/err" >&2
+                exit 1
+            }
+            sleep 0.1
+        done
+        # Not a link, nor a copy of a name that may mean the next image by the time it is asked when it was written.
+        cp -p "$out" "$folder/$2.$budget.exr"
+        awk "BEGIN { print $(saved_at "$folder/$2.$budget.exr") - $begin }" >"$folder/$2.$budget.time"
+    done
+}
+
+# variances INTEGRATOR SCENE: a line "seconds samples/s variance relative-variance with-the-worst" for each budget.
+variances() {
+    images "$1" 1 "$2"
+    images "$1" 2 "$2"
+    for budget in $BUDGETS; do
+        "$twinlight" compare --json "$folder/1.$budget.exr" "$folder/2.$budget.exr" >"$folder/compare.json"
+        awk "BEGIN { printf \"%.3f\t%.0f\t%.6g\t%.6g\t%.6g\n\", \
+            ($(cat "$folder/1.$budget.time") + $(cat "$folder/2.$budget.time")) / 2, \
+            ($(number samples_per_second "$folder/1.json") + $(number samples_per_second "$folder/2.json")) / 2, \
+            $(number mse "$folder/compare.json") / 2, $(number rel_mse_trimmed "$folder/compare.json") / 2, \
+            $(number rel_mse "$folder/compare.json") / 2 }"
+    done
 }
 
 head_print
 printf '# setting\t%s segments, %s pixels\n' "$DEPTH" "$RESOLUTION"
-printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\n'
+printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\twith the worst\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
     for integrator in $INTEGRATORS; do
-        for seconds in $BUDGETS; do
-            printf '%s\t%s\t%s\n' "$name" "$integrator" "$(variance "$integrator" "$seconds" "$scene")"
-        done
+        variances "$integrator" "$scene" | awk -v head="$name\t$integrator\t" '{ print head $0 }'
     done
 done | tee "$folder/table"
 

@@ -1,7 +1,4 @@
-#include "blend.h"
-
-#include "sample_statistics.h"
-#include "vec.h"
+#include "blend_learn.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,41 +7,15 @@
 /* Shares before anything is known. */
 static const double FIRST_SHARES[BLEND_STREAMS] = {0.5, 0.5, 0.0};
 
-/* A tile's variance from few generations is uncertain, and that of independent samples is too small until a rare bright
- * path has been met. All are drawn toward the variance that tiles usually have for their brightness (the median), as if
- * that had been seen in so many generations more. */
-#define PRIOR_GENERATIONS 2.0
-
-/* Standard errors by which one stream must be brighter than another before that counts as light which the other misses:
- * few while little is known, half of these after so many generations. Had it been all of them from the first on, rare
- * bright paths would be believed too long to be absent: six times the error of blocks in short pictures of
- * scenes/windows.pbrt. With none, chance would be taken for light: a fifth more noise on a door ajar. */
-#define MISSING_DEVIATIONS 2.0
-#define MISSING_GENERATIONS 5.0
-
 /* What a sample of each stream takes, in samples of path tracing: typical ones of the CPU backend. Figures that do not
  * depend on the machine, so that the image does not either. */
 static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
-
-/* A pixel counts as no brighter than so many times its tile's mean: it may be noise. */
-#define LIGHT_OVER_TILE 4.0
-
-/* A pool's variance is no less than this part of what is seen, whatever a correction, itself an estimate, says. */
-#define POOL_SPREAD_LEAST 0.25
 
 /* Keeps what has no variance, because it is black, from a division by zero. */
 #define SPREAD_MIN 1e-30
 
 /* A plan divides the time into so many parts. */
 #define PLAN_PARTS 20
-
-/* Errors of places darker than the root of this part of the mean square light count as there. */
-#define DARK_PART 0.1
-
-static size_t tile_count(const Blend *blend)
-{
-    return (size_t)blend->tiles[0] * (size_t)blend->tiles[1];
-}
 
 double blend_work(const double samples[BLEND_STREAMS])
 {
@@ -61,12 +32,12 @@ bool blend_init(Blend *blend, const Film *film, Error *error)
         blend->size[i] = film->crop[i + 2] - film->crop[i];
         blend->tiles[i] = (blend->size[i] + BLEND_TILE - 1) / BLEND_TILE;
     }
-    blend->known = calloc(tile_count(blend), sizeof *blend->known);
+    blend->known = calloc(blend_tile_count(blend), sizeof *blend->known);
     if (!blend->known)
-        return error_memory(error, tile_count(blend) * sizeof *blend->known, "tiles");
+        return error_memory(error, blend_tile_count(blend) * sizeof *blend->known, "tiles");
     for (int s = 0; s < BLEND_SERIES; ++s)
         if (!pixel_series_init(&blend->pixels[s], film_pixels(film), 1, error) ||
-            !pixel_series_init(&blend->sums[s], tile_count(blend), 1, error))
+            !pixel_series_init(&blend->sums[s], blend_tile_count(blend), 1, error))
             return false;
     return pixel_series_init(&blend->direct, film_pixels(film), 1, error);
 }
@@ -82,230 +53,59 @@ void blend_destroy(Blend *blend)
     *blend = (Blend){0};
 }
 
-static size_t tile_of(const Blend *blend, size_t pixel)
-{
-    size_t width = (size_t)blend->size[0], x = pixel % width, y = pixel / width;
-    return y / BLEND_TILE * (size_t)blend->tiles[0] + x / BLEND_TILE;
-}
-
-/* ---- what is learnt ---------------------------------------------------------------------------------------------- */
-
-/* Generations in which the stream's variance was seen. */
-static double seen(const Blend *blend, int s)
-{
-    return blend->pixels[s].pictures[0] > 0 ? blend->pixels[s].pictures[0] - 1.0 : 0.0;
-}
-
-/* Luminance of a tile that the series is sure of: its mean less so many standard errors. */
-static double sure_of(const Blend *blend, int s, size_t tile, double deviations)
-{
-    if (!(seen(blend, s) >= 1.0))
-        return 0.0;
-    return (double)blend->sums[s].mean[tile] - deviations * sqrt(pixel_series_variance(&blend->sums[s], tile));
-}
-
-/* The same of the brightest way to see the tile. */
-static double brightest_of(const Blend *blend, size_t tile, double deviations)
-{
-    double chains = sure_of(blend, BLEND_CHAINS, tile, deviations), pool = sure_of(blend, BLEND_POOL, tile, deviations);
-    return fmax(sure_of(blend, BLEND_PATHS, tile, deviations),
-                fmax(chains, pool) + sure_of(blend, BLEND_EXCESS, tile, deviations));
-}
-
-/* A pixel's luminance, no brighter than so many times its tile's mean, and at least that of a dark place. */
-static double light_square(const Blend *blend, size_t pixel, double tile_mean, double dark)
-{
-    double light = (double)blend->direct.mean[pixel] + (double)blend->pixels[BLEND_CHAINS].mean[pixel] +
-                   (double)blend->pixels[BLEND_EXCESS].mean[pixel];
-    light = fmin(fabs(light), LIGHT_OVER_TILE * tile_mean);
-    return light * light + dark;
-}
-
-/* Corrects what a tile has seen of pools too small to visit all pixels: which of them they visit changes from pool to pool,
- * but evens out over all of them. A pixel of mean m that a part q of the pools visits seems to vary by
- * m^2 (1 / q - 1) more than it does. */
-static void pool_correct(Blend *blend)
-{
-    double gap = seen(blend, BLEND_POOL) > 0.0 ? blend->pool_gaps / (seen(blend, BLEND_POOL) + 1.0) : 0.0;
-    for (size_t i = 0; i < tile_count(blend); ++i) {
-        BlendTile *tile = &blend->known[i];
-        double light = (double)blend->sums[BLEND_POOL].mean[i], *pool = &tile->spread[BLEND_POOL];
-        double less = gap * (double)blend->direct.pixels * light * light / (BLEND_TILE * BLEND_TILE);
-        *pool = fmax(*pool - less, POOL_SPREAD_LEAST * *pool);
-    }
-}
-
-/* Variances count relative to the square of the light of their pixel, in units of that of their tile. */
-static void tiles_sum(Blend *blend)
-{
-    const double area = BLEND_TILE * BLEND_TILE;
-    double mean = 0.0;
-    memset(blend->known, 0, tile_count(blend) * sizeof *blend->known);
-    for (size_t i = 0; i < blend->direct.pixels; ++i)
-        blend->known[tile_of(blend, i)].light += fabs((double)blend->direct.mean[i]);
-    for (size_t i = 0; i < tile_count(blend); ++i) {
-        blend->known[i].indirect = brightest_of(blend, i, 0.0);
-        blend->known[i].light += blend->known[i].indirect;
-        mean += blend->known[i].light / (area * (double)tile_count(blend));
-    }
-    for (size_t i = 0; i < blend->direct.pixels; ++i) {
-        BlendTile *tile = &blend->known[tile_of(blend, i)];
-        double tile_mean = tile->light / area, dark = DARK_PART * mean * mean;
-        double weight = (tile_mean * tile_mean + dark) / light_square(blend, i, tile_mean, dark);
-        for (int s = 0; s < BLEND_SERIES; ++s)
-            tile->spread[s] += weight * pixel_series_spread(&blend->pixels[s], i);
-        tile->direct += weight * pixel_series_spread(&blend->direct, i);
-    }
-    pool_correct(blend);
-}
-
-/* The median (the upper one of an even number) over the tiles of a stream's variance over the tile's light. */
-static double ratio_median(const Blend *blend, int s, double *ratios)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < tile_count(blend); ++i)
-        if (blend->known[i].indirect > 0.0)
-            ratios[count++] = blend->known[i].spread[s] / blend->known[i].indirect;
-    sample_sort(ratios, count);
-    return count > 0 ? ratios[count / 2] : 0.0;
-}
-
-/* When another series is sure enough of more light in the tile than series s has seen there, s meets it about once or
- * less in all its samples: its variance is that of one such event. */
-static double missing_spread(const Blend *blend, int s, size_t tile)
-{
-    double deviations = MISSING_DEVIATIONS * seen(blend, s) / (seen(blend, s) + MISSING_GENERATIONS);
-    const PixelSeries *sums = blend->sums;
-    double other, own = (double)sums[s].mean[tile];
-    if (s == BLEND_CHAINS || s == BLEND_POOL) {
-        other = sure_of(blend, s == BLEND_CHAINS ? BLEND_POOL : BLEND_CHAINS, tile, deviations);
-    } else {
-        other = brightest_of(blend, tile, deviations);
-        if (s == BLEND_EXCESS)
-            own += fmax((double)sums[BLEND_CHAINS].mean[tile], (double)sums[BLEND_POOL].mean[tile]);
-    }
-    double missing = fmax(other - own, 0.0);
-    return missing * missing * (double)sums[s].weight[tile];
-}
-
-/* A stream's variance over the light, in the tile and those beside it. */
-static double ratio_around(const Blend *blend, int s, size_t tile)
-{
-    int columns = blend->tiles[0], rows = blend->tiles[1], x = (int)(tile % (size_t)columns),
-        y = (int)(tile / (size_t)columns);
-    double spread = 0.0, light = 0.0;
-    for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < rows; ++j)
-        for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < columns; ++i) {
-            const BlendTile *near = &blend->known[(size_t)j * (size_t)columns + (size_t)i];
-            spread += near->spread[s];
-            light += near->indirect;
-        }
-    return light > 0.0 ? spread / light : 0.0;
-}
-
-/* What a tile knows of a stream is no less than what it and those beside it know together: where one has met a rare
- * bright path, the others only have not yet. On a glossy room this divides the square error by 1.5, on a pool with
- * caustics by 1.3. */
-static void spreads_share(Blend *blend, int s, double *ratios)
-{
-    for (size_t i = 0; i < tile_count(blend); ++i)
-        ratios[i] = ratio_around(blend, s, i);
-    for (size_t i = 0; i < tile_count(blend); ++i) {
-        BlendTile *tile = &blend->known[i];
-        tile->spread[s] = fmax(tile->spread[s], ratios[i] * tile->indirect);
-    }
-}
-
-/* ratios: room for as many as there are tiles. */
-static void spreads_update(Blend *blend, double *ratios)
-{
-    tiles_sum(blend);
-    for (int s = 0; s < BLEND_SERIES; ++s) {
-        spreads_share(blend, s, ratios);
-        double usual = ratio_median(blend, s, ratios), known = seen(blend, s);
-        blend->ready[s] = known >= 1.0;
-        for (size_t i = 0; i < tile_count(blend); ++i) {
-            BlendTile *tile = &blend->known[i];
-            tile->spread[s] =
-                (known * tile->spread[s] + PRIOR_GENERATIONS * usual * tile->indirect) / (known + PRIOR_GENERATIONS) +
-                missing_spread(blend, s, i);
-        }
-    }
-}
-
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
-/* Variance of a tile from so many samples of every stream: of chains and pool together, which share what chains see
- * above the limit, and of paths. chains: of the chains' share in the first. */
-static void variances_of(const BlendTile *tile, const double samples[BLEND_STREAMS], double *together, double *paths,
-                         double *chains)
+/* How a tile is best shown with so many samples of every stream. */
+typedef struct TileBlend {
+    double paths; /* the share of path tracing with what it does not show */
+    double chains; /* the share of chains among themselves and the pool, which share what pools do not show */
+    double variance;
+} TileBlend;
+
+/* Two estimates: chains with the pool, of variance a, and path tracing with what it does not show, of variance b. The latter
+ * comes from the same chains as much of the former, c is what both have of it. The share w of the second that makes
+ * (1 - w)^2 a + w^2 b + 2 w (1 - w) c smallest. */
+static TileBlend tile_blend(const BlendTile *tile, const double samples[BLEND_STREAMS])
 {
     const double *spread = tile->spread;
     double by_chains = samples[BLEND_CHAINS] / fmax(spread[BLEND_CHAINS], SPREAD_MIN);
     double by_pool = samples[BLEND_POOL] / fmax(spread[BLEND_POOL], SPREAD_MIN);
-    *together = 1.0 / (by_chains + by_pool) + spread[BLEND_EXCESS] / samples[BLEND_CHAINS];
-    *chains = by_chains / (by_chains + by_pool);
-    *paths = samples[BLEND_PATHS] > 0.0 ? fmax(spread[BLEND_PATHS], SPREAD_MIN) / samples[BLEND_PATHS] : HUGE_VAL;
+    double a = 1.0 / (by_chains + by_pool) + spread[BLEND_EXCESS] / samples[BLEND_CHAINS];
+    TileBlend best = {.chains = by_chains / (by_chains + by_pool), .variance = a};
+    if (!(samples[BLEND_PATHS] > 0.0))
+        return best;
+    double rare = spread[BLEND_RARE] / samples[BLEND_CHAINS], c = best.chains * fmin(rare, a);
+    double b = fmax(spread[BLEND_PATHS], SPREAD_MIN) / samples[BLEND_PATHS] + rare, both = a + b - 2.0 * c;
+    best.paths = both > 0.0 ? fmin(fmax((a - c) / both, 0.0), 1.0) : 0.0;
+    best.variance = (1.0 - best.paths) * (1.0 - best.paths) * a + best.paths * best.paths * b +
+                    2.0 * best.paths * (1.0 - best.paths) * c;
+    return best;
 }
 
 /* Of each stream in the tile; all of them 1 together. */
 static void shares_set(Blend *blend, BlendTile *tile, Film *const films[])
 {
-    double samples[BLEND_STREAMS], together, paths, chains;
+    double samples[BLEND_STREAMS];
     bool known = true;
     memcpy(tile->share, FIRST_SHARES, sizeof tile->share);
     for (int s = 0; s < BLEND_STREAMS; ++s) {
         samples[s] = (double)films[s]->light_samples;
         known = known && (samples[s] == 0.0 || blend->ready[s]);
     }
-    if (known) {
-        variances_of(tile, samples, &together, &paths, &chains);
-        tile->share[BLEND_PATHS] = isinf(paths) ? 0.0 : together / (together + paths);
-        tile->share[BLEND_CHAINS] = (1.0 - tile->share[BLEND_PATHS]) * chains;
-        tile->share[BLEND_POOL] = (1.0 - tile->share[BLEND_PATHS]) * (1.0 - chains);
+    if (blend->shown > 0) {
+        memset(tile->share, 0, sizeof tile->share);
+        tile->share[blend->shown - 1] = 1.0;
+    } else if (known) {
+        TileBlend best = tile_blend(tile, samples);
+        tile->share[BLEND_PATHS] = best.paths;
+        tile->share[BLEND_CHAINS] = (1.0 - best.paths) * best.chains;
+        tile->share[BLEND_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
     } else if (samples[BLEND_PATHS] == 0.0) {
         tile->share[BLEND_CHAINS] += tile->share[BLEND_PATHS];
         tile->share[BLEND_PATHS] = 0.0;
     }
     for (int s = 0; s < BLEND_STREAMS; ++s)
-        blend->share[s] += tile->share[s] / (double)tile_count(blend);
-}
-
-static float luminance_of(const int64_t *sums, double scale)
-{
-    return rgb_luminance(
-        vec3((float)(scale * (double)sums[0]), (float)(scale * (double)sums[1]), (float)(scale * (double)sums[2])));
-}
-
-/* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */
-static void series_learn(Blend *blend, int s, const Film *film, const int64_t *sums, float *picture, float *tiles)
-{
-    size_t pixels = film_pixels(film);
-    double samples = (double)film->light_samples;
-    double unit = ldexp((double)pixels / samples, film->quantum_exponent);
-    memset(tiles, 0, tile_count(blend) * sizeof *tiles);
-    for (size_t i = 0; i < pixels; ++i) {
-        picture[i] = luminance_of(sums + 3 * i, unit);
-        tiles[tile_of(blend, i)] += picture[i];
-    }
-    if (s == BLEND_SERIES) {
-        pixel_series_add(&blend->direct, picture, NULL, samples);
-        return;
-    }
-    pixel_series_add(&blend->pixels[s], picture, NULL, samples);
-    pixel_series_add(&blend->sums[s], tiles, NULL, samples);
-    if (s == BLEND_POOL)
-        blend->pool_gaps += fmax(1.0 - samples / (double)pixels, 0.0);
-}
-
-static void films_learn(Blend *blend, Film *const films[], float *picture, float *tiles)
-{
-    for (int s = 0; s < BLEND_STREAMS; ++s)
-        if (films[s]->light_samples > 0)
-            series_learn(blend, s, films[s], films[s]->light_sums, picture, tiles);
-    series_learn(blend, BLEND_EXCESS, films[BLEND_CHAINS], films[BLEND_CHAINS]->sums, picture, tiles);
-    if (films[BLEND_PATHS]->light_samples > 0)
-        series_learn(blend, BLEND_SERIES, films[BLEND_PATHS], films[BLEND_PATHS]->sums, picture, tiles);
+        blend->share[s] += tile->share[s] / (double)blend_tile_count(blend);
 }
 
 /* The streams' light and the direct light become the chains' film, whose number of samples is now what the generation took:
@@ -319,11 +119,13 @@ static void films_join(Blend *blend, Film *const films[])
         samples[s] = (double)films[s]->light_samples;
     double work = fmax(1.0, rint(blend_work(samples)));
     memset(blend->share, 0, sizeof blend->share);
-    for (size_t i = 0; i < tile_count(blend); ++i)
+    for (size_t i = 0; i < blend_tile_count(blend); ++i)
         shares_set(blend, &blend->known[i], films);
     for (size_t i = 0; i < 3 * pixels; ++i) {
-        const BlendTile *tile = &blend->known[tile_of(blend, i / 3)];
-        double sum = (1.0 - tile->share[BLEND_PATHS]) * (double)into->sums[i] / steps;
+        const BlendTile *tile = &blend->known[blend_tile_of(blend, i / 3)];
+        double sum = ((1.0 - tile->share[BLEND_PATHS]) * (double)into->sums[i] +
+                      tile->share[BLEND_PATHS] * (double)into->rare_sums[i]) /
+                     steps;
         for (int s = 0; s < BLEND_STREAMS; ++s)
             if (films[s]->light_samples > 0)
                 sum += tile->share[s] * (double)films[s]->light_sums[i] / (double)films[s]->light_samples;
@@ -340,13 +142,13 @@ static void films_join(Blend *blend, Film *const films[])
 
 bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error)
 {
-    size_t pixels = film_pixels(films[BLEND_CHAINS]), values = pixels + tile_count(blend);
-    double *ratios = malloc(tile_count(blend) * sizeof *ratios);
+    size_t pixels = film_pixels(films[BLEND_CHAINS]), values = pixels + blend_tile_count(blend);
+    double *ratios = malloc(blend_tile_count(blend) * sizeof *ratios);
     float *picture = malloc(values * sizeof *picture);
     if (ratios && picture) {
-        films_learn(blend, films, picture, picture + pixels);
+        blend_films_learn(blend, films, picture, picture + pixels);
         films_join(teacher, films);
-        spreads_update(blend, ratios);
+        blend_spreads_update(blend, ratios);
     } else {
         error_memory(error, values * sizeof *picture, "a generation's pictures");
     }
@@ -361,14 +163,12 @@ bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STRE
 /* Relative square error of the picture from so many samples of every stream. */
 static double error_of(const Blend *blend, const double samples[BLEND_STREAMS])
 {
-    double sum = 0.0, light = 0.0, area = (double)tile_count(blend);
-    for (size_t i = 0; i < tile_count(blend); ++i)
+    double sum = 0.0, light = 0.0, area = (double)blend_tile_count(blend);
+    for (size_t i = 0; i < blend_tile_count(blend); ++i)
         light += blend->known[i].light / area;
-    for (size_t i = 0; i < tile_count(blend); ++i) {
+    for (size_t i = 0; i < blend_tile_count(blend); ++i) {
         const BlendTile *tile = &blend->known[i];
-        double together, paths, chains;
-        variances_of(tile, samples, &together, &paths, &chains);
-        sum += (1.0 / (1.0 / together + 1.0 / paths) + tile->direct / samples[BLEND_PATHS]) /
+        sum += (tile_blend(tile, samples).variance + tile->direct / samples[BLEND_PATHS]) /
                (tile->light * tile->light + DARK_PART * light * light);
     }
     return sum;

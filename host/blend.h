@@ -4,9 +4,10 @@
  *
  * Each tile of the picture takes a share of every stream, in inverse proportion to its variance (Graybill and Deal 1959),
  * which is estimated from the generations before: a share that depends on nothing of the generation it is applied to
- * leaves the mean right. A path that carries more than a limit is a bright dot where a pool has met it by chance; pools show
- * as much of it as the limit, and the rest is left to the chains, which come by many of its like. The same variances say
- * how the time is divided. */
+ * leaves the mean right. A path that carries more than a limit is a bright dot where a pool or path tracing has met it by
+ * chance; each shows as much of it as the limit, and the rest is left to the chains, which come by many of its like. What it
+ * carries depends on how probable it is that the stream makes it, so both leave different parts. The same variances say how
+ * the time is divided. */
 #ifndef TWINLIGHT_BLEND_H
 #define TWINLIGHT_BLEND_H
 
@@ -17,9 +18,10 @@
 
 typedef enum BlendStream { BLEND_CHAINS, BLEND_POOL, BLEND_PATHS, BLEND_STREAMS } BlendStream;
 
-/* A series of pictures more: what chains see of paths above the limit. */
+/* Series of pictures more: what chains see that pools do not show, and that path tracing does not. */
 #define BLEND_EXCESS BLEND_STREAMS
-#define BLEND_SERIES (BLEND_STREAMS + 1)
+#define BLEND_RARE (BLEND_STREAMS + 1)
+#define BLEND_SERIES (BLEND_STREAMS + 2)
 
 typedef struct BlendTile {
     double spread[BLEND_SERIES]; /* variance of one sample, summed over the pixels */
@@ -36,6 +38,7 @@ typedef struct Blend {
     BlendTile *known; /* a tile */
     bool ready[BLEND_SERIES]; /* the stream's variances are there */
     double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
+    int shown; /* 1 + the stream that has all of it; 0: as is best */
 } Blend;
 
 /* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not
@@ -47,7 +50,8 @@ bool blend_init(Blend *blend, const Film *film, Error *error);
 void blend_destroy(Blend *blend);
 
 /* The streams of one generation: light_sums from light_samples paths each (0: the stream has nothing this time). The
- * film of the paths has direct light in `sums`. Makes the film of the chains the blend of all, with that direct light, in the
+ * film of the paths has direct light in `sums`, that of the chains what pools do not show, and in rare_sums what path tracing
+ * does not. Makes the film of the chains the blend of all, with that direct light, in the
  * shares that `teacher` has learnt, then teaches `blend` what they were. Both may be the same where generations know
  * nothing of each other. */
 bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error);

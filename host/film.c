@@ -25,8 +25,7 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
                   crop[1], crop[2], crop[3]);
         return error_fix(error, "x0 < x1 and y0 < y1 inside the film");
     }
-    /* Splats name pixels by 31 bits. */
-    if ((uint64_t)width * (uint64_t)height >= SPLAT_FROM_LIGHT) {
+    if ((uint64_t)width * (uint64_t)height > FILM_PIXELS_MAX) {
         error_set(error, "a film of %d x %d pixels is too large", width, height);
         return error_fix(error, "choose a smaller --resolution");
     }
@@ -47,10 +46,18 @@ bool film_light_reserve(Film *film, Error *error)
     return film->light_sums || error_memory(error, bytes, "the film of the light's paths");
 }
 
+bool film_rare_reserve(Film *film, Error *error)
+{
+    size_t bytes = film_pixels(film) * 3 * sizeof *film->rare_sums;
+    film->rare_sums = calloc(1, bytes);
+    return film->rare_sums || error_memory(error, bytes, "the film of rare paths");
+}
+
 void film_destroy(Film *film)
 {
     free(film->sums);
     free(film->light_sums);
+    free(film->rare_sums);
     free(film->counts);
     *film = (Film){0};
 }
@@ -84,6 +91,7 @@ static FilmView film_view(const Film *film)
                       .exponent = film->quantum_exponent,
                       .sums = (ulong *)film->sums,
                       .light_sums = (ulong *)film->light_sums,
+                      .rare_sums = (ulong *)film->rare_sums,
                       .counts = film->counts,
                       .saturated = (ulong *)&film->saturated,
                       .not_finite = (ulong *)&film->not_finite};
@@ -113,6 +121,7 @@ static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
             fits = word_add(film->sums + c, from->sums[c]) && fits;
             fits =
                 (!film->light_sums || !from->light_sums || word_add(film->light_sums + c, from->light_sums[c])) && fits;
+            fits = (!film->rare_sums || !from->rare_sums || word_add(film->rare_sums + c, from->rare_sums[c])) && fits;
         }
         if (from->counts[i] > 0)
             atomic_count_add(film->counts + i, from->counts[i]);
@@ -125,7 +134,7 @@ static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
 
 size_t film_sum_words(const Film *film)
 {
-    return film_words((uint)film_pixels(film), film->light_sums != NULL);
+    return film_words((uint)film_pixels(film), (film->light_sums ? 1u : 0u) + (film->rare_sums ? 1u : 0u));
 }
 
 void film_add_sums(Film *film, ulong *words)
@@ -173,6 +182,8 @@ void film_clear(Film *film)
     memset(film->counts, 0, pixels * sizeof *film->counts);
     if (film->light_sums)
         memset(film->light_sums, 0, 3 * pixels * sizeof *film->light_sums);
+    if (film->rare_sums)
+        memset(film->rare_sums, 0, 3 * pixels * sizeof *film->rare_sums);
     film->light_samples = film->saturated = film->not_finite = 0;
 }
 

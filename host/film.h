@@ -4,7 +4,10 @@
 #define TWINLIGHT_FILM_H
 
 #include "error.h"
-#include "platform.h"
+#include "state.h"
+
+/* Pixels of a film: splats name them by 30 bits. */
+#define FILM_PIXELS_MAX (SPLAT_RARE - 1u)
 
 typedef struct Film {
     int width, height; /* of the whole film, pixels */
@@ -13,6 +16,8 @@ typedef struct Film {
     /* Added to by many threads at once (film_sum.h), read when they have come to rest. */
     int64_t *sums; /* 3 a pixel of the crop, row by row */
     int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
+    int64_t
+        *rare_sums; /* of splats with SPLAT_RARE, which are in one of the others, too; NULL before film_rare_reserve */
     uint64_t light_samples; /* paths that they come from; 0: as many as samples of pixels */
     uint32_t *counts; /* samples of every pixel of the crop */
     uint64_t saturated; /* contributions that did not fit and were clamped */
@@ -28,6 +33,10 @@ bool film_init_like(Film *film, const Film *model, Error *error);
 
 /* Makes room for splats that paths from the light bring (SPLAT_FROM_LIGHT). Only while the film is empty. */
 bool film_light_reserve(Film *film, Error *error);
+
+/* Makes room for sums of the rare ones (SPLAT_RARE) of a film that has those of the light. They are this film's own: no
+ * other film like it has them, nor gets them by film_merge. */
+bool film_rare_reserve(Film *film, Error *error);
 
 /* Pixels of the crop. */
 size_t film_pixels(const Film *film);

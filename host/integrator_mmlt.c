@@ -133,9 +133,13 @@ static bool films_init(Mmlt *mmlt, Error *error)
     for (size_t i = 0; i < sizeof films / sizeof films[0]; ++i)
         if (!film_init_like(films[i], mmlt->run->film, error))
             return false;
-    for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half)
+    if (!mmlt->options.unblended && !film_rare_reserve(&mmlt->film, error))
+        return false;
+    for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half) {
         if (!blend_init(&mmlt->blends[half], mmlt->run->film, error))
             return false;
+        mmlt->blends[half].shown = mmlt->options.shown;
+    }
     return true;
 }
 

@@ -61,6 +61,8 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_BSDF + STORED_BSDF_ALPHA_Y, 1, true, "BSDF alpha y"),
     PATH_FIELD(PATH_BSDF + STORED_BSDF_ETA, 1, true, "BSDF eta"),
     PATH_FIELD(PATH_BSDF + STORED_BSDF_COAT, 1, false, "BSDF coat table"),
+    PATH_FIELD(PATH_LIMIT, 1, true, "limit"),
+    PATH_FIELD(PATH_SURVIVED, 1, true, "survived"),
 };
 #undef PATH_FIELD
 

@@ -44,6 +44,7 @@ typedef struct Mmlt {
     ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Blend blends[MMLT_HALVES];
+    double pilot_brightness; /* of the pool before the first; 0: there was none */
     double brightness; /* of the latest pool: mean worth of a sample (POOL_WEIGHT) */
     double brightness_sum[MMLT_HALVES]; /* of all pools */
 } Mmlt;
@@ -62,6 +63,9 @@ FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
 /* A pool, and where `count` chains begin (the words of mmlt->chains). *whole: not stopped before its end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error);
+
+/* Writes what makes the bad ones of a pass of `count` chains again where somebody wants to know (RenderOptions.bad_chains). */
+void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);
 
 /* A pool, `count` chains from it, path tracing, and what they show to the film. Counts only as a whole: when it is stopped
  * before its end nothing of it is kept. */

@@ -3,6 +3,7 @@
 
 #include "render_layers.h"
 #include "rng.h"
+#include "sample_statistics.h"
 #include "timing.h"
 
 #include "chain.h"
@@ -14,6 +15,10 @@
 
 /* A path may show so many times the mean worth of a pool's sample, both with their importance. */
 #define LIMIT_FACTOR 16.0
+
+/* Of the pool before the first, at most. */
+#define PILOT_SAMPLES 4096u
+#define PILOT_PARTS 16u
 
 /* Items of one pass of path tracing. */
 #define PATHS_MAX (1u << 24)
@@ -40,11 +45,12 @@ ChainPopulation *mmlt_population(Mmlt *mmlt)
     return &mmlt->populations[half_of(mmlt, mmlt->generation)];
 }
 
-/* What the other half has seen of the pools' brightness; 0: nothing yet. */
+/* What the other half has seen of the pools' brightness; before that, what the pilot has. */
 static double brightness_known(const Mmlt *mmlt)
 {
     uint generations = (mmlt->generation + 1) / 2;
-    return generations > 0 ? mmlt->brightness_sum[half_of(mmlt, mmlt->generation + 1)] / generations : 0.0;
+    return generations > 0 ? mmlt->brightness_sum[half_of(mmlt, mmlt->generation + 1)] / generations
+                           : mmlt->pilot_brightness;
 }
 
 /* A uniform number of the host's own. */
@@ -76,11 +82,17 @@ static float limit_of(const Mmlt *mmlt)
     return (float)(LIMIT_FACTOR * brightness_known(mmlt));
 }
 
-/* What a pool and the chains from it have in common. */
-static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
+/* What all of a generation have in common. */
+static void generation_frame(const Mmlt *mmlt, FrameParams *frame)
 {
     memcpy(frame->importance, mmlt->importance[half_of(mmlt, mmlt->generation)], sizeof frame->importance);
     frame->limit = limit_of(mmlt);
+}
+
+/* What a pool and the chains from it have in common. */
+static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
+{
+    generation_frame(mmlt, frame);
     frame->sample_index = mmlt->pool_sample;
     frame->pixel_first = mmlt->pool_pixel;
     frame->pixel_stride = render_pixel_stride((uint)mmlt->run->crop_pixels);
@@ -130,14 +142,16 @@ static double offset_of(const Mmlt *mmlt)
     return host_random(&mmlt->run->frame, mmlt->generation, 0);
 }
 
-/* Mean worth of the latest pool's samples. */
-static double pool_brightness(const Mmlt *mmlt, uint pool_count)
+/* Mean worth of every so-manyth of the latest pool's samples, from the first on. */
+static double pool_brightness(const Mmlt *mmlt, uint pool_count, uint first, uint every)
 {
-    double sum = 0.0;
-    for (uint i = 0; i < pool_count; ++i)
+    double sum = 0.0, count = 0.0;
+    for (uint i = first; i < pool_count; i += every) {
         if (mmlt->pool_words[(size_t)POOL_KEY * pool_count + i] != 0)
             sum += (double)bits_float(mmlt->pool_words[(size_t)POOL_WEIGHT * pool_count + i]);
-    return sum / pool_count;
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : 0.0;
 }
 
 static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint count, Error *error)
@@ -146,7 +160,7 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint 
     ChainStarts starts;
     /* A sample of a pool that is worth this begins one chain. */
     double threshold = brightness_known(mmlt) * pool_count / count;
-    mmlt->brightness = pool_brightness(mmlt, pool_count);
+    mmlt->brightness = pool_brightness(mmlt, pool_count, 0, 1);
     if (!chain_population_renew(population, mmlt->pool_words, pool_count, change, threshold, mmlt->options.order,
                                 offset_of(mmlt), count, &starts, error))
         return false;
@@ -217,6 +231,31 @@ static void importance_renew(Mmlt *mmlt, float *change)
         change[i] = importance[i] / change[i];
 }
 
+/* Mean worth of a pool's samples as a limit should know it that follows from one small pool alone: the median of the means of
+ * parts, which a rare bright path in one of them does not change. */
+static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
+{
+    double parts[PILOT_PARTS];
+    for (uint part = 0; part < PILOT_PARTS; ++part)
+        parts[part] = pool_brightness(mmlt, pool_count, part, PILOT_PARTS);
+    sample_sort(parts, PILOT_PARTS);
+    return parts[PILOT_PARTS / 2];
+}
+
+/* A small pool before the first, of which only its brightness is kept: so the first generation has a limit as later ones do,
+ * and what it shows can be compared with them. */
+static bool pilot_run(Mmlt *mmlt, uint count, Error *error)
+{
+    static const atomic_int never = 0;
+    bool whole = true;
+    pool_place(mmlt, count);
+    if (!pool_run(mmlt, count, &never, &whole, error))
+        return false;
+    mmlt->pilot_brightness = pool_brightness_robust(mmlt, count);
+    mmlt->run->chains.pool_samples += count;
+    return true;
+}
+
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
 {
     float change[IMPORTANCE_CELLS];
@@ -224,6 +263,9 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
     if (changed)
         importance_renew(mmlt, change);
     uint pool_count = pool_size(mmlt, (double)count * (double)mmlt->options.steps);
+    if (mmlt->generation == 0 && !mmlt->options.unblended &&
+        !pilot_run(mmlt, pool_count < PILOT_SAMPLES ? pool_count : PILOT_SAMPLES, error))
+        return false;
     pool_place(mmlt, pool_count);
     if (!pool_run(mmlt, pool_count, stop, whole, error) ||
         (*whole && !chains_begin(mmlt, pool_count, changed ? change : NULL, count, error)))
@@ -241,35 +283,6 @@ static void chains_count(Mmlt *mmlt, uint count)
     chain_groups_add(&mmlt->groups, words, count, half, mmlt->options.paper ? CHAIN_GROUPS : 1);
 }
 
-/* What makes their states again: a chain is a function of the seed, where it began and its number (chain.h). It began with
- * a sample of the pool or, when it came from the generation before, with `numbers`. */
-static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
-{
-    const uint *words = mmlt->chains.pass_words;
-    uint key = words[(size_t)CHAIN_PASS_KEY * count + i], item = words[(size_t)CHAIN_PASS_ITEM * count + i];
-    fprintf(out, "{\"seed\": %llu, \"generation\": %u, \"pool_sample\": %u, \"pool_pixel\": %u, ",
-            (unsigned long long)mmlt->run->options->seed, mmlt->generation, mmlt->pool_sample, mmlt->pool_pixel);
-    if (item != NONE) {
-        fprintf(out, "\"pool_item\": %u, ", item);
-    } else {
-        for (uint field = CHAIN_PASS_NUMBERS; field < mmlt->chains.pass_fields; ++field)
-            fprintf(out, "%s%u", field > CHAIN_PASS_NUMBERS ? ", " : "\"numbers\": [",
-                    mmlt->begun[(size_t)field * count + i]);
-        fprintf(out, "], ");
-    }
-    fprintf(out, "\"chain\": %u, \"step\": %u, \"depth\": %u, \"s\": %u}\n", i, step, chain_key_depth(key),
-            chain_key_s(key));
-}
-
-static void bad_chains_write(const Mmlt *mmlt, uint count)
-{
-    for (uint i = 0; mmlt->run->options->bad_chains && i < count; ++i) {
-        uint step = mmlt->chains.pass_words[(size_t)CHAIN_PASS_BAD * count + i];
-        if (step != NONE)
-            bad_chain_write(mmlt, mmlt->run->options->bad_chains, count, i, step);
-    }
-}
-
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
 
 /* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one of either half of the
@@ -285,6 +298,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *
         target = first;
     film_clear(&mmlt->paths_film);
     const SplatSink sink = render_run_sink(&mmlt->paths_film);
+    generation_frame(mmlt, frame);
     frame->film_exponent = mmlt->paths_film.quantum_exponent;
     uint64_t items = target > mmlt->paths_done ? (target - mmlt->paths_done) * run->crop_pixels : 0;
     for (uint64_t next = 0; next < items && *whole; next += frame->item_count) {
@@ -371,7 +385,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *
         mmlt->brightness_sum[half_of(mmlt, mmlt->generation)] += mmlt->brightness;
         if (chains && mmlt_population(mmlt)->brightness > 0.0) {
             chains_count(mmlt, count);
-            bad_chains_write(mmlt, count);
+            mmlt_bad_chains_write(mmlt, count);
         }
         mmlt->work_last = work;
         run->done = mmlt->work_done += work;

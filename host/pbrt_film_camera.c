@@ -1,4 +1,5 @@
 /* Film, PixelFilter and Camera. */
+#include "film.h"
 #include "filter_setup.h"
 #include "log.h"
 #include "pbrt_state.h"
@@ -118,8 +119,8 @@ bool import_film(PbrtImport *im, const char *kind)
     import_list(im, &list, "the film", -1);
     film->width = side_read(&list, "xresolution", 1280);
     film->height = side_read(&list, "yresolution", 720);
-    if ((int64_t)film->width * film->height > INT32_MAX)
-        param_error(&list, "yresolution", "a film of %d x %d pixels is too large: 2^31 - 1 pixels at most", film->width,
+    if ((int64_t)film->width * film->height > (int64_t)FILM_PIXELS_MAX)
+        param_error(&list, "yresolution", "a film of %d x %d pixels is too large: 2^30 - 1 pixels at most", film->width,
                     film->height);
     int crop[4] = {0, 0, film->width, film->height};
     if (!list.failed) {

@@ -24,6 +24,7 @@ typedef struct ChainOptions {
     ChainOrder order;
     bool ungrouped; /* every chain its own kind of mutation */
     bool unblended; /* the pool's samples are not shown (blend.h) */
+    int shown; /* 1 + BLEND_*: that stream alone, with what it leaves to chains; 0: all. For tests */
 } ChainOptions;
 
 typedef struct RenderOptions {

@@ -19,6 +19,7 @@ libtwinlight_host_la_SOURCES = \
 	host/bench_tables.c host/bench_tables.h \
 	host/bench_task.c host/bench_task.h \
 	host/blend.c host/blend.h \
+	host/blend_learn.c host/blend_learn.h \
 	host/build_info.c host/build_info.h \
 	host/bvh.c host/bvh.h \
 	host/bvh_tree.c host/bvh_tree.h \
@@ -73,6 +74,7 @@ libtwinlight_host_la_SOURCES = \
 	host/matrix.c host/matrix.h \
 	host/metrics.c host/metrics.h \
 	host/mmlt.h \
+	host/mmlt_bad.c \
 	host/mmlt_generation.c \
 	host/name_table.c host/name_table.h \
 	host/option_values.c host/option_values.h \

@@ -30,14 +30,22 @@ SHARED_FUNCTION bool strategy_wanted(__global const FrameParams *frame, uint s, 
 
 /* What a contribution of the strategy (s, t) is multiplied by: its weight; 1 when weights are turned off; 0 when only
  * another strategy is wanted. */
+SHARED_FUNCTION StrategyWeights bd_weights(__global const FrameParams *frame, uint s, uint t, const DensityView *view,
+                                           const StrategyEnds *ends)
+{
+    StrategyWeights weights = {0.0f, 0.0f};
+    if (!strategy_wanted(frame, s, t))
+        return weights;
+    if (frame->unweighted == 0u)
+        return strategy_weights(frame->strategies, frame->mis_exponent, s, t, view, ends);
+    weights.own = 1.0f;
+    return weights;
+}
+
 SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint t, const DensityView *view,
                                 const StrategyEnds *ends)
 {
-    if (!strategy_wanted(frame, s, t))
-        return 0.0f;
-    if (frame->unweighted != 0u)
-        return 1.0f;
-    return strategy_weight(frame->strategies, frame->mis_exponent, s, t, view, ends);
+    return bd_weights(frame, s, t, view, ends).own;
 }
 
 /* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */

@@ -19,16 +19,17 @@ typedef struct FilmView {
     int exponent;
     __global ulong *sums; /* 3 a pixel */
     __global ulong *light_sums; /* the same for splats with SPLAT_FROM_LIGHT */
+    __global ulong *rare_sums; /* of all with SPLAT_RARE, which are in one of the others, too */
     __global uint *counts; /* samples of a pixel */
     __global ulong *saturated; /* contributions that were clamped, or came to a sum that is full */
     __global ulong *not_finite; /* contributions that counted as zero */
 } FilmView;
 
-/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, and last the
- * light's sums where there are any. */
-SHARED_FUNCTION ulong film_words(uint pixels, bool from_light)
+/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, and last as many
+ * of the light's sums and the rare ones as there are (0, 1 or 2). */
+SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
-    return (from_light ? 6u : 3u) * (ulong)pixels + 2u + ((ulong)pixels + 1u) / 2u;
+    return (1u + more) * 3u * (ulong)pixels + 2u + ((ulong)pixels + 1u) / 2u;
 }
 
 /* Points the view's sums into such a buffer. */
@@ -38,7 +39,8 @@ SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint
     film->saturated = words + 3u * (size_t)pixels;
     film->not_finite = film->saturated + 1;
     film->counts = (__global uint *)(film->saturated + 2);
-    film->light_sums = words + film_words(pixels, false);
+    film->light_sums = words + film_words(pixels, 0u);
+    film->rare_sums = words + film_words(pixels, 1u);
 }
 
 /* The pixel's place among those kept, or NONE. */
@@ -96,16 +98,20 @@ SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *s
 {
     uint name = state_load(splats, stride, SPLAT_PIXEL, t);
     bool from_light = (name & SPLAT_FROM_LIGHT) != 0u;
-    uint slot = name != NONE ? film_slot(film, name & ~SPLAT_FROM_LIGHT) : NONE;
+    uint slot = name != NONE ? film_slot(film, name & ~SPLAT_FLAGS) : NONE;
     if (slot == NONE)
         return;
     Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
     if (!from_light)
         atomic_count_add(film->counts + slot, 1u);
-    if (!vec3_finite(color))
+    if (!vec3_finite(color)) {
         atomic_sum_add(film->not_finite, 1u);
-    else if (!film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent))
+        return;
+    }
+    if (!film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent))
         atomic_sum_add(film->saturated, 1u);
+    if ((name & SPLAT_RARE) != 0u && film->rare_sums)
+        film_color_add(film->rare_sums + 3u * (size_t)slot, color, film->exponent);
 }
 
 #endif

@@ -83,10 +83,12 @@ SHARED_FUNCTION Scaled mis_sum_power(const MisSum *sum, Scaled a)
     return sum->exponent == 2u ? scaled_multiply(a, a) : a;
 }
 
-/* The strategy reached is one of the set. `factor`: what its density has beside the running product. */
-SHARED_FUNCTION void mis_sum_take(MisSum *sum, Scaled factor)
+/* The strategy reached is one of the set. `factor`: what its density has beside the running product. Returns its term. */
+SHARED_FUNCTION Scaled mis_sum_take(MisSum *sum, Scaled factor)
 {
-    sum->sum = scaled_add(sum->sum, mis_sum_power(sum, scaled_multiply(sum->term, factor)));
+    Scaled part = mis_sum_power(sum, scaled_multiply(sum->term, factor));
+    sum->sum = scaled_add(sum->sum, part);
+    return part;
 }
 
 /* Back to the strategy that made the path, to go in the other direction. */
@@ -95,11 +97,16 @@ SHARED_FUNCTION void mis_sum_turn(MisSum *sum)
     sum->term = scaled_from(1.0f);
 }
 
-/* own / (own + sum of the others), own the factor of the strategy that made the path. */
+/* part / (own + sum of the others), own the factor of the strategy that made the path. */
+SHARED_FUNCTION float mis_sum_part(const MisSum *sum, Scaled factor, Scaled part)
+{
+    return scaled_float(scaled_divide(part, scaled_add(mis_sum_power(sum, factor), sum->sum)));
+}
+
+/* The weight of the strategy that made the path. */
 SHARED_FUNCTION float mis_sum_weight(const MisSum *sum, Scaled factor)
 {
-    Scaled own = mis_sum_power(sum, factor);
-    return scaled_float(scaled_divide(own, scaled_add(own, sum->sum)));
+    return mis_sum_part(sum, factor, mis_sum_power(sum, factor));
 }
 
 #endif

@@ -152,6 +152,45 @@ SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride
     chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
 }
 
+/* Where the film sees the proposal, and what path tracing shows of it. */
+SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec2 film,
+                                 Vec3 color, float plain)
+{
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, plain));
+}
+
+/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing shows of
+ * it: of several one stands for all, drawn with u in proportion to what they send. It has the luminance of all, so that the
+ * chain goes after all of them, and their color on average. *plain: StrategyWeights.plain. */
+SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
+                                       float u, float *plain)
+{
+    Vec3 one = vec3_splat(0.0f);
+    float all = 0.0f, luminance = 1.0f;
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        StrategyEnds ends = {0};
+        Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
+        if (vec3_is_zero(color))
+            continue;
+        StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
+        color = vec3_scale(color, weights.own);
+        float own = rgb_luminance(color), before = all, place;
+        all += own;
+        place = u * all;
+        bool take = place < own;
+        u = take ? place / own : (place - own) / before;
+        if (take) {
+            one = color;
+            luminance = own;
+            *plain = weights.plain;
+        }
+    }
+    return vec3_scale(one, all > 0.0f ? all / luminance : 1.0f);
+}
+
 /* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
 SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *restrict paths,
                                       __global const uint *restrict densities, uint t, uint d,
@@ -162,16 +201,25 @@ SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *res
     state_store(paths, stride, chain_half(SIDE_CAMERA, bank) + CHAIN_HALF_DELTA, t,
                 state_load(paths, stride, BD_CAMERA_DELTA, t));
     DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
-    Vec3 radiance = vec3_splat(0.0f);
+    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
+    float plain = 0.0f;
     if (meeting->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-        radiance = walk_environment(scene, view, meeting->ray.d, meeting->from_ng, d);
+        float u = random_float(chain_select(frame, paths, t).x[0]);
+        color = chain_environment(scene, beta, view, meeting->ray.d, meeting->from_ng, d, u, &plain);
     } else if (!meeting->missed && meeting->light != NONE) {
         StrategyEnds ends = {0};
-        radiance = emission_met(scene, meeting, &ends);
-        if (!vec3_is_zero(radiance))
-            radiance = vec3_scale(radiance, bd_weight(frame, 0u, d + 1u, &view, &ends));
+        color = vec3_mul(beta, emission_met(scene, meeting, &ends));
+        if (!vec3_is_zero(color)) {
+            StrategyWeights weights = bd_weights(frame, 0u, d + 1u, &view, &ends);
+            color = vec3_scale(color, weights.own);
+            plain = weights.plain;
+        }
     }
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, vec3_mul(state_load_vec3(paths, stride, BD_BETA, t), radiance));
+    if (vec3_is_zero(color))
+        return;
+    Random4 film = chain_camera(frame, paths, t);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
+    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, plain);
 }
 
 /* From: closest hits. To: the vertex with its density; s = 0: at the last one what the light sends. A walk ends with its
@@ -282,24 +330,18 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
     uint camera = chain_key_depth(key) + 1u - s;
-    Random4 film = chain_camera(frame, paths, t);
-    if (camera > 1u) {
-        Vec2 position = film_position(frame, film.x[0], film.x[1]);
-        state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, position.x);
-        state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, position.y);
-    }
     if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != HALF_BOTH)
         return;
+    Random4 film = chain_camera(frame, paths, t);
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
     if (!chain_connect(&scene, paths, vertices, t, s, camera, film, &connection))
         return;
-    if (camera == 1u) {
-        state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, connection.film.x);
-        state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, connection.film.y);
-    }
     DensityView view = chain_density_view(frame, paths, densities, t, s, camera);
-    connection_store(paths, shadows, stride, t, &connection, bd_weight(frame, s, camera, &view, &connection.ends));
+    StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
+    connection_store(paths, shadows, stride, t, &connection, weights.own);
+    Vec2 position = camera == 1u ? connection.film : film_position(frame, film.x[0], film.x[1]);
+    chain_place(frame, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.plain);
 }
 
 /* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
@@ -332,7 +374,8 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
     SceneView scene = scene_view(frame, geometry, tables, texels);
     chain_splat_current(&scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
                         chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE));
-    pass_store(frame, pass, CHAIN_PASS_KEY, t, state_load(paths, stride, CHAIN_KEY, t));
+    uint key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
+    pass_store(frame, pass, CHAIN_PASS_KEY, t, chain_key(d, chain_key_s(key)));
     pass_store(frame, pass, CHAIN_PASS_LUMINANCE, t, state_load(paths, stride, CHAIN_LUMINANCE, t));
     pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));
     pass_store(frame, pass, CHAIN_PASS_BAD, t, state_load(paths, stride, CHAIN_BAD, t));
@@ -342,7 +385,6 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
         pass_store(frame, pass, CHAIN_PASS_TALLY + i, t, state_load(paths, stride, CHAIN_TALLY + i, t));
     if (frame->keep_chains == 0u)
         return;
-    uint d = chain_key_depth(state_load(paths, stride, CHAIN_KEY, t));
     uint words = NUMBER_VERTICES + (d - 1u) * chain_vertex_numbers(frame);
     for (uint i = 0u; i < words; ++i)
         pass_store(frame, pass, CHAIN_PASS_NUMBERS + i, t, state_load(paths, stride, CHAIN_NUMBERS + i, t));

@@ -74,23 +74,45 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
+/* What path tracing shows of a path, from 0 to this, in the upper half of a chain's key: rounded, which leaves out or
+ * doubles less than 2^-16 of a path. */
+#define KEY_SHOWN_ALL 0xffffu
+
+/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `plain`: were the path
+ * made by path tracing, it would contribute color / plain. Here as in pt.cl (path_shown) that, times its importance, is
+ * shown up to the limit. */
+SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color, float plain)
+{
+    uint path = chain_key(chain_key_depth(key), chain_key_s(key)), shown = KEY_SHOWN_ALL;
+    float limit = RARE_OVER_LIMIT * frame->limit * plain;
+    float worth = rgb_luminance(color) * film_importance(frame, film) / film_reach_factor(frame);
+    if (frame->limit < FLOAT_MAX && worth > limit)
+        shown = (uint)(limit / worth * (float)KEY_SHOWN_ALL + 0.5f);
+    return path | shown << 16;
+}
+
+/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by chance. */
+SHARED_FUNCTION uint chain_splat_flags(__global const FrameParams *frame, uint key, float f, float u)
+{
+    uint flags = u * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
+    return u * (float)KEY_SHOWN_ALL < (float)(key >> 16) ? flags : flags | SPLAT_RARE;
+}
+
 /* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What a
  * path has above the limit is kept apart (blend.h): all of a visit or nothing of it, by chance. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
-                                 __global uint *restrict diagnostics, uint t, Vec2 film, float f, Vec3 color,
+                                 __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
                                  float visits, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, pixel = NONE, flags = SPLAT_FROM_LIGHT;
+    uint stride = frame->stride, pixel = NONE;
     float weight = 0.0f;
-    if (visits > 0.0f) {
+    if (visits > 0.0f)
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
-        flags = random_float(random.x[3]) * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
-    }
     if (pixel == NONE)
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
     else
-        splat_store(splats, diagnostics, stride, t, flags | pixel,
+        splat_store(splats, diagnostics, stride, t, chain_splat_flags(frame, key, f, random_float(random.x[3])) | pixel,
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
 
@@ -104,9 +126,9 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
                                          float visits, Random4 random)
 {
     uint stride = scene->frame->stride;
-    chain_splat(scene, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_FILM, t),
-                state_load_float(paths, stride, CHAIN_LUMINANCE, t), state_load_vec3(paths, stride, CHAIN_COLOR, t),
-                visits, random);
+    chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_KEY, t),
+                chain_film_load(paths, stride, CHAIN_FILM, t), state_load_float(paths, stride, CHAIN_LUMINANCE, t),
+                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits, random);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
@@ -180,8 +202,8 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, splats, diagnostics, t, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color,
-                    accept, random);
+        chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t),
+                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color, accept, random);
         state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
     }
 }

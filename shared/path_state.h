@@ -19,7 +19,9 @@
 #define PATH_WO 25u /* towards the previous vertex, in the frame, 3 */
 #define PATH_LIGHT 28u /* contribution of the light sample if it is visible, 3 */
 #define PATH_BSDF 31u /* STORED_BSDF_WORDS */
-#define PATH_WORDS 43u
+#define PATH_LIMIT 43u /* frame->split_direct: how much luminance a contribution shows */
+#define PATH_SURVIVED 44u /* the same: with what probability Russian roulette has let the path live so far */
+#define PATH_WORDS 45u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction came from a delta lobe (or the camera): no light sample competes */
 

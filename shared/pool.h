@@ -17,7 +17,7 @@
 #define POOL_LUMINANCE 2u /* f of the path kept, as a chain has it */
 #define POOL_WORDS 3u
 
-/* d segments, s of the vertices from the light. */
+/* d segments, s of the vertices from the light. In the upper half a chain keeps what path tracing shows of the path. */
 SHARED_FUNCTION uint chain_key(uint d, uint s)
 {
     return d | s << 8;
@@ -30,7 +30,7 @@ SHARED_FUNCTION uint chain_key_depth(uint key)
 
 SHARED_FUNCTION uint chain_key_s(uint key)
 {
-    return key >> 8;
+    return key >> 8 & 0xffu;
 }
 
 /* The camera's numbers of a pool's sample: its pixel is given, and the film position drawn from that pixel's filter, as for

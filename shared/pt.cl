@@ -7,18 +7,24 @@
 #include "bsdf.h"
 #include "camera.h"
 #include "diagnostics.h"
+#include "film_splat.h"
 #include "item.h"
 #include "light.h"
 #include "material.h"
 #include "mis.h"
 #include "path_random.h"
 #include "path_state.h"
-#include "pixel_filter.h"
 #include "ray.h"
 #include "surface.h"
 
 /* The first vertices always survive. */
 #define ROULETTE_FIRST_DEPTH 2u
+
+/* Path tracing beside chains (frame->split_direct) shows light of longer paths than these up to the frame's limit. */
+#define DIRECT_DEPTH 2u
+
+/* And roulette leaves at least so many of them alive: what it takes from some others carry, above the limit. */
+#define SURVIVED_LEAST 0.125f
 
 SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
 {
@@ -57,6 +63,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
     state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
     state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
+    if (frame->split_direct != 0u) {
+        state_store_float(paths, stride, PATH_LIMIT, t, RARE_OVER_LIMIT * frame->limit / film_importance(frame, film));
+        state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
+    }
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
@@ -70,30 +80,62 @@ SHARED_FUNCTION void path_add_radiance(__global uint *restrict paths, uint strid
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
 }
 
-/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
-SHARED_FUNCTION Vec3 path_environment(const SceneView *scene, uint flags, float pdf_w, Vec3 d)
+/* The part that a path of so many segments shows of its contribution. plain: the luminance of f over the sum of the densities
+ * of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of that is shown as
+ * the limit, and they show the rest (mutation.h). */
+SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint t,
+                                 uint segments, float plain)
 {
-    Vec3 sum = vec3_splat(0.0f);
+    if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
+        return 1.0f;
+    float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
+    plain *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
+    return plain > limit ? limit / plain : 1.0f;
+}
+
+/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0: never). */
+SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+                                  Vec3 radiance, float pdf_other)
+{
+    uint stride = frame->stride;
+    float weight = 1.0f, balance = 1.0f;
+    if (pdf_other > 0.0f) {
+        float pdf = state_load_float(paths, stride, PATH_PDF_W, t);
+        weight = mis_power(pdf, pdf_other);
+        balance = mis_balance(pdf, pdf_other);
+    }
+    Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), radiance);
+    uint segments = state_load(paths, stride, PATH_DEPTH, t);
+    weight *= path_shown(frame, paths, t, segments, rgb_luminance(light) * balance);
+    path_add_radiance(paths, stride, t, vec3_scale(light, weight));
+}
+
+/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
+SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, Vec3 d)
+{
+    uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, t);
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
-        Vec3 radiance = environment_light_radiance(scene, light, d);
-        float weight = 1.0f;
+        float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
-            weight = mis_power(pdf_w, scene->lights[light].select_pdf * environment_pdf_w(scene, light, d));
-        sum = vec3_mad(sum, weight, radiance);
+            pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+        path_add_met(scene->frame, paths, t, environment_light_radiance(scene, light, d), pdf_light);
     }
-    return sum;
 }
 
 /* The same for the area light at `surface`. */
-SHARED_FUNCTION Vec3 path_emission(const SceneView *scene, uint light, uint flags, float pdf_w, Vec3 from,
-                                   const Surface *surface, Vec3 d)
+SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *restrict paths, uint t, uint light,
+                                       const Surface *surface, Vec3 d)
 {
+    uint stride = scene->frame->stride, flags = state_load(paths, stride, PATH_FLAGS, t);
     Vec3 radiance = light_emitted(scene, light, surface->ng, vec3_negate(d));
-    if ((flags & PATH_FLAG_DELTA) != 0u || vec3_is_zero(radiance))
-        return radiance;
-    float pdf_light = scene->lights[light].select_pdf * light_pdf_w(scene, light, from, d, surface);
-    return vec3_scale(radiance, mis_power(pdf_w, pdf_light));
+    float pdf_light = 0.0f;
+    if (vec3_is_zero(radiance))
+        return;
+    if ((flags & PATH_FLAG_DELTA) == 0u)
+        pdf_light = scene->lights[light].select_pdf *
+                    light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, t), d, surface);
+    path_add_met(scene->frame, paths, t, radiance, pdf_light);
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
@@ -111,12 +153,9 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Ray ray = ray_load(rays, stride, t);
     Hit hit = hit_load(hits, stride, t);
-    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
-    uint flags = state_load(paths, stride, PATH_FLAGS, t);
-    float pdf_w = state_load_float(paths, stride, PATH_PDF_W, t);
     if (hit.primitive == NONE) {
         if (SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT))
-            path_add_radiance(paths, stride, t, vec3_mul(beta, path_environment(&scene, flags, pdf_w, ray.d)));
+            path_add_environment(&scene, paths, t, ray.d);
         path_end(paths, rays, stride, t);
         return;
     }
@@ -124,9 +163,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     uint first_light = scene.shapes[surface.shape].first_light;
     if (SCENE_HAS(&scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
         uint light = first_light + hit.primitive - scene.shapes[surface.shape].first_primitive;
-        Vec3 from = state_load_vec3(paths, stride, PATH_POINT, t);
-        path_add_radiance(paths, stride, t,
-                          vec3_mul(beta, path_emission(&scene, light, flags, pdf_w, from, &surface, ray.d)));
+        path_add_emission(&scene, paths, t, light, &surface, ray.d);
     }
     if (depth >= frame->max_depth) {
         path_end(paths, rays, stride, t);
@@ -178,9 +215,12 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     if (vec3_is_zero(value.f_cos))
         return;
     float pdf = scene.lights[light].select_pdf * sample.pdf_w;
-    float weight = sample.delta != 0u ? 1.0f : mis_power(pdf, value.pdf_w);
+    float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
-    Vec3 light_term = vec3_scale(vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance), weight / pdf);
+    Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
+    float plain = rgb_luminance(light_term) / (pdf + pdf_other);
+    light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
+    light_term = vec3_scale(light_term, path_shown(frame, paths, t, depth + 1u, plain));
     Ray shadow = light_shadow_ray(p, ng, &sample);
     if (!ray_traceable(shadow.o, shadow.d))
         return;
@@ -200,6 +240,19 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     if (state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
         path_add_radiance(paths, stride, t, state_load_vec3(paths, stride, PATH_LIGHT, t));
+}
+
+/* The probability with which Russian roulette lets the path live: its throughput, 1 or more for certainly. */
+SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec3 beta,
+                                    float eta_scale)
+{
+    float survival = vec3_max_component(beta) * eta_scale;
+    if (frame->split_direct == 0u || !(survival > 0.0f))
+        return survival;
+    float before = state_load_float(paths, frame->stride, PATH_SURVIVED, t);
+    survival = float_clamp(survival, SURVIVED_LEAST / before, 1.0f);
+    state_store_float(paths, frame->stride, PATH_SURVIVED, t, before * survival);
+    return survival;
 }
 
 /* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
@@ -226,7 +279,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     }
     Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), sample.weight);
     float eta_scale = state_load_float(paths, stride, PATH_ETA_SCALE, t) * sample.eta * sample.eta;
-    float survival = depth >= ROULETTE_FIRST_DEPTH ? vec3_max_component(beta) * eta_scale : 1.0f;
+    float survival = depth >= ROULETTE_FIRST_DEPTH ? path_survival(frame, paths, t, beta, eta_scale) : 1.0f;
     if (!(random_float(random.x[3]) < survival)) {
         path_end(paths, rays, stride, t);
         return;

@@ -14,7 +14,7 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
 
 /* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left out
  * of the buffer: NaN there must not matter. */
-float test_path_weight(const TestPath *path, uint set, uint exponent, uint s)
+StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent, uint s)
 {
     uint k = path->k, t = k + 1 - s;
     uint light[PATH_SEGMENTS_MAX + 1][DENSITY_WORDS], camera[PATH_SEGMENTS_MAX + 1][DENSITY_WORDS];
@@ -44,5 +44,10 @@ float test_path_weight(const TestPath *path, uint set, uint exponent, uint s)
     ends.camera_y1 = s > 0 ? path->camera[t] : NAN;
     ends.camera_y2 = s > 1 ? path->camera[t + 1] : NAN;
     ends.own_y0 = s == 1 ? path->light[k] : NAN;
-    return strategy_weight(set, exponent, s, t, &view, &ends);
+    return strategy_weights(set, exponent, s, t, &view, &ends);
+}
+
+float test_path_weight(const TestPath *path, uint set, uint exponent, uint s)
+{
+    return test_path_weights(path, set, exponent, s).own;
 }

@@ -19,7 +19,8 @@ typedef struct TestPath {
 /* Whether (s, k + 1 - s) is one of the set and can make the path. */
 bool test_path_possible(const TestPath *path, uint set, uint s);
 
-/* Its weight. */
+/* Its weights; the first of them. */
+StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent, uint s);
 float test_path_weight(const TestPath *path, uint set, uint exponent, uint s);
 
 #endif

@@ -25,6 +25,7 @@ static void streams_init(Streams *streams)
         ck_assert(film_init(&streams->films[s], SIDE, SIDE, crop, &error));
         ck_assert(film_light_reserve(&streams->films[s], &error));
     }
+    ck_assert(film_rare_reserve(&streams->films[BLEND_CHAINS], &error));
     ck_assert(blend_init(&streams->blend, &streams->films[0], &error));
 }
 

@@ -171,15 +171,47 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
-/* What a device keeps: 12 pixels of three sums, two counters, counts by twos, and the light's sums when there are any. */
+/* Splats of rare paths are in the sums of all, and by themselves; other films like this one have no such sums, and merging
+ * leaves them alone. */
+START_TEST(test_rare)
+{
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE), other;
+    ck_assert(film_light_reserve(&film, &error) && film_rare_reserve(&film, &error));
+    ck_assert(film_init_like(&other, &film, &error));
+    ck_assert_ptr_null(other.rare_sums);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_RARE, 8.0f, 8.0f, 8.0f);
+    film_add_one(&film, NONE, 8.0f, 8.0f, 8.0f);
+    ck_assert_int_eq(film.light_sums[15], (int64_t)3 << 30);
+    ck_assert_int_eq(film.sums[15], (int64_t)8 << 30);
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    ck_assert_int_eq(film.rare_sums[16], (int64_t)11 << 30);
+    ck_assert_uint_eq(film.counts[5], 1);
+    film_add_one(&other, 5 | SPLAT_RARE, 1.0f, 1.0f, 1.0f);
+    ck_assert_int_eq(other.sums[15], (int64_t)1 << 30);
+    ck_assert(film_merge(&film, &other, &error) && film_merge(&other, &film, &error));
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    film_clear(&film);
+    ck_assert_int_eq(film.rare_sums[15], 0);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
+/* What a device keeps: 12 pixels of three sums, two counters, counts by twos, and the light's and the rare ones when there are
+ * any. */
 START_TEST(test_sums_of_a_device)
 {
-    ulong words[3 * 12 + 2 + 6 + 3 * 12] = {0};
+    ulong words[3 * 12 + 2 + 6 + 2 * 3 * 12] = {0};
     Error error = {0};
     Film film = film_make(4, 3, CROP_WHOLE);
     ck_assert_uint_eq(film_sum_words(&film), 44);
     ck_assert(film_light_reserve(&film, &error));
     ck_assert_uint_eq(film_sum_words(&film), 80);
+    ck_assert(film_rare_reserve(&film, &error));
+    ck_assert_uint_eq(film_sum_words(&film), 116);
     film_add_one(&film, 2, 1.0f, 2.0f, 3.0f);
     film_add_one(&film, 2 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
     words[3 * 2 + 1] = (ulong)-5;
@@ -187,10 +219,12 @@ START_TEST(test_sums_of_a_device)
     words[37] = 9;
     ((uint *)(words + 38))[2] = 4;
     words[44 + 3 * 2 + 2] = 6;
+    words[80 + 3 * 2 + 1] = 8;
     film_add_sums(&film, words);
     ck_assert_int_eq(film.sums[6], 1 << 30);
     ck_assert_int_eq(film.sums[7], ((int64_t)2 << 30) - 5);
     ck_assert_int_eq(film.light_sums[8], (1 << 30) + 6);
+    ck_assert_int_eq(film.rare_sums[7], 8);
     ck_assert_uint_eq(film.counts[2], 5);
     ck_assert_uint_eq(film.saturated, 7);
     ck_assert_uint_eq(film.not_finite, 9);
@@ -362,6 +396,7 @@ int main(void)
     tcase_add_test(tcase, test_billion_additions_made);
     tcase_add_test(tcase, test_order_does_not_matter);
     tcase_add_test(tcase, test_merge_equals_one_film);
+    tcase_add_test(tcase, test_rare);
     tcase_add_test(tcase, test_sums_of_a_device);
     tcase_add_test(tcase, test_rounding);
     tcase_add_test(tcase, test_units_of_any_float);

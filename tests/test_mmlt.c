@@ -4,6 +4,7 @@
 
 #include "backend_cpu.h"
 #include "backend_group.h"
+#include "blend.h"
 
 static const unsigned STEPS[] = {1, 4, 16, 64};
 #define STEPS_COUNT (int)(sizeof STEPS / sizeof STEPS[0])
@@ -58,6 +59,34 @@ START_TEST(test_blended)
     setup.render.chains = (ChainOptions){.chains = 64, .steps = 16};
     groups_render(&setup, &got);
     groups_compare(scene->name, &got, &expected, 4, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+END_TEST
+
+/* Each stream alone with what it leaves to chains is all of the light. */
+START_TEST(test_streams)
+{
+    const int stream = _i % BLEND_STREAMS;
+    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / BLEND_STREAMS];
+    PictureGroups expected, got;
+    char name[96];
+    if (test_effort() == 1 && (stream != BLEND_PATHS || _i / BLEND_STREAMS % 3 != 1))
+        return; /* make check-long does them all */
+    GroupSetup setup = {.groups = 16,
+                        .render = {.text = bidirectional_text(scene),
+                                   .samples = 32,
+                                   .max_depth = scene->depth,
+                                   .threads = 1,
+                                   .integrator = integrator_bdpt()}};
+    groups_render(&setup, &expected);
+    setup.render.integrator = integrator_mmlt();
+    setup.render.samples = 128;
+    setup.render.seed = 7000;
+    setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .shown = 1 + stream};
+    groups_render(&setup, &got);
+    snprintf(name, sizeof name, "%s, stream %d", scene->name, stream);
+    groups_compare(name, &got, &expected, 4, false);
     groups_destroy(&got);
     groups_destroy(&expected);
 }
@@ -300,6 +329,7 @@ int main(void)
     TCase *unbiased = case_make(suite, "unbiased");
     tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_loop_test(case_make(suite, "streams"), test_streams, 0, BIDIRECTIONAL_SCENE_COUNT * BLEND_STREAMS);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
     TCase *counts = case_make(suite, "counts");
