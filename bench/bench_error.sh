@@ -24,6 +24,11 @@ saved_at() {
     date -r "$1" +%s.%N
 }
 
+render_failed() {
+    cat "$folder/err" >&2
+    exit 1
+}
+
 # images INTEGRATOR SEED SCENE: SEED.BUDGET.exr and when it was saved, SEED.BUDGET.time, for all budgets.
 images() {
     last=${BUDGETS##* }
@@ -35,17 +40,13 @@ images() {
     process=$!
     for budget in $BUDGETS; do
         if [ "$budget" = "$last" ]; then
-            wait "$process"
+            wait "$process" || render_failed
         fi
         until [ -s "$out" ] && awk "BEGIN { exit !($(saved_at "$out") >= $begin + $budget) }"; do
-            kill -0 "$process" 2>/dev/null || [ "$budget" = "$last" ] || {
-                cat "$folder/err" >&2
-                exit 1
-            }
+            kill -0 "$process" 2>/dev/null || wait "$process" || render_failed
             sleep 0.1
         done
-        # Not a link, nor a copy of a name that may mean the next image by the time it is asked when it was written.
-        cp -p "$out" "$folder/$2.$budget.exr"
+        cp -p "$out" "$folder/$2.$budget.exr" # its time is asked of the copy: the next image takes the name any moment
         awk "BEGIN { print $(saved_at "$folder/$2.$budget.exr") - $begin }" >"$folder/$2.$budget.time"
     done
 }

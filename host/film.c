@@ -38,19 +38,23 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
     return error_memory(error, pixels * (3 * sizeof *film->sums + sizeof *film->counts), "the film");
 }
 
+/* Three sums of zero for every pixel, where there are none yet. */
+static bool sums_reserve(const Film *film, int64_t **sums, const char *what, Error *error)
+{
+    size_t bytes = film_pixels(film) * 3 * sizeof **sums;
+    if (!*sums)
+        *sums = calloc(1, bytes);
+    return *sums || error_memory(error, bytes, what);
+}
+
 bool film_light_reserve(Film *film, Error *error)
 {
-    size_t bytes = film_pixels(film) * 3 * sizeof *film->light_sums;
-    if (!film->light_sums)
-        film->light_sums = calloc(1, bytes);
-    return film->light_sums || error_memory(error, bytes, "the film of the light's paths");
+    return sums_reserve(film, &film->light_sums, "the film of the light's paths", error);
 }
 
 bool film_rare_reserve(Film *film, Error *error)
 {
-    size_t bytes = film_pixels(film) * 3 * sizeof *film->rare_sums;
-    film->rare_sums = calloc(1, bytes);
-    return film->rare_sums || error_memory(error, bytes, "the film of rare paths");
+    return sums_reserve(film, &film->rare_sums, "the film of rare paths", error);
 }
 
 void film_destroy(Film *film)

@@ -9,18 +9,25 @@
 static const unsigned STEPS[] = {1, 4, 16, 64};
 #define STEPS_COUNT (int)(sizeof STEPS / sizeof STEPS[0])
 
+/* The scene by bidirectional path tracing; what it returns renders the same by chains. */
+static GroupSetup expected_render(const BidirectionalScene *scene, unsigned samples, PictureGroups *expected)
+{
+    GroupSetup setup = {.groups = 16,
+                        .render = {.text = bidirectional_text(scene),
+                                   .samples = samples,
+                                   .max_depth = scene->depth,
+                                   .threads = 1,
+                                   .integrator = integrator_bdpt()}};
+    groups_render(&setup, expected);
+    setup.render.integrator = integrator_mmlt();
+    return setup;
+}
+
 START_TEST(test_unbiased)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
     PictureGroups expected;
-    GroupSetup setup = {.groups = 16,
-                        .render = {.text = bidirectional_text(scene),
-                                   .samples = 16,
-                                   .max_depth = scene->depth,
-                                   .threads = 1,
-                                   .integrator = integrator_bdpt()}};
-    groups_render(&setup, &expected);
-    setup.render.integrator = integrator_mmlt();
+    GroupSetup setup = expected_render(scene, 16, &expected);
     for (int i = 0; i < STEPS_COUNT; ++i) {
         if (test_effort() == 1 && i % 2 != _i % 2)
             continue; /* make check-long does them all */
@@ -46,14 +53,7 @@ START_TEST(test_blended)
     PictureGroups expected, got;
     if (test_effort() == 1 && _i % 3 != 0)
         return; /* make check-long does them all */
-    GroupSetup setup = {.groups = 16,
-                        .render = {.text = bidirectional_text(scene),
-                                   .samples = 32,
-                                   .max_depth = scene->depth,
-                                   .threads = 1,
-                                   .integrator = integrator_bdpt()}};
-    groups_render(&setup, &expected);
-    setup.render.integrator = integrator_mmlt();
+    GroupSetup setup = expected_render(scene, 32, &expected);
     setup.render.samples = 256;
     setup.render.seed = 5000;
     setup.render.chains = (ChainOptions){.chains = 64, .steps = 16};
@@ -73,14 +73,7 @@ START_TEST(test_streams)
     char name[96];
     if (test_effort() == 1 && (stream != BLEND_PATHS || _i / BLEND_STREAMS % 3 != 1))
         return; /* make check-long does them all */
-    GroupSetup setup = {.groups = 16,
-                        .render = {.text = bidirectional_text(scene),
-                                   .samples = 32,
-                                   .max_depth = scene->depth,
-                                   .threads = 1,
-                                   .integrator = integrator_bdpt()}};
-    groups_render(&setup, &expected);
-    setup.render.integrator = integrator_mmlt();
+    GroupSetup setup = expected_render(scene, 32, &expected);
     setup.render.samples = 128;
     setup.render.seed = 7000;
     setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .shown = 1 + stream};
