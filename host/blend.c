@@ -18,9 +18,10 @@ static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
 #define PLAN_PARTS 20
 
 /* Part of the variance of what chains show that comes from where they begin, and so falls with the pools' samples, not with
- * their own steps. With none of it plans leave pools too little: 0.8 divides the square error of long pictures by 1.4 to 1.8
- * (a lamp in glass, a door ajar, a glossy hall, a pool, sunlight through windows; beaten metal by 1.1) and that of blocks of
- * 8 x 8 pixels by 1.4 to 4. With 0.5 or 0.95 it is up to a quarter larger in one scene or another. */
+ * their own steps; in the end pools get that part of the time of both. With none of it plans leave pools too little: at
+ * equal work 0.8 divides the square error of long pictures by 1.4 to 1.8 (a lamp in glass, a door ajar, a glossy hall, a
+ * pool, sunlight through windows; beaten metal by 1.1) and that of blocks of 8 x 8 pixels by 1.4 to 4. With 0.5 or 0.95 it is
+ * up to a quarter larger in one scene or another. */
 #define POOL_PART 0.8
 
 double blend_work(const double samples[BLEND_STREAMS])
