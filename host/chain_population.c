@@ -52,7 +52,7 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
     for (uint i = 0; i < samples; ++i) {
         double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
         double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;
-        double part = chains > 0 ? part_of_chains(luminance, most, threshold) : 0.0;
+        double part = part_of_chains(luminance, most, threshold);
         candidates->weights[chains + i] = weight * (1.0 - part);
         candidates->keys[chains + i] = pool[(size_t)POOL_KEY * samples + i];
     }
