@@ -17,12 +17,13 @@ static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
 /* A plan divides the time into so many parts. */
 #define PLAN_PARTS 20
 
-/* Part of the variance of what chains show that comes from where they begin, and so falls with the pools' samples, not with
- * their own steps; in the end pools get that part of the time of both. With none of it plans leave pools too little: at
- * equal work 0.8 divides the square error of long pictures by 1.4 to 1.8 (a lamp in glass, a door ajar, a glossy hall, a
- * pool, sunlight through windows; beaten metal by 1.1) and that of blocks of 8 x 8 pixels by 1.4 to 4. With 0.5 or 0.95 it is
- * up to a quarter larger in one scene or another. */
-#define POOL_PART 0.8
+/* What chains show varies by where they begin, which falls with the pools' samples, and by what they do then, which falls with
+ * their steps. In the time T the two are a / T_pool + b / T_steps, and the best division gives pools the part
+ * sqrt(a) / (sqrt(a) + sqrt(b)) of it: this one. Had all of it fallen with steps, as plans once had it, long pictures would
+ * have 1.4 to 1.9 times the square error at equal work (a lamp in glass, a door ajar, a glossy hall, a pool, sunlight through
+ * windows; 1.1 on beaten metal), and their blocks of 8 x 8 pixels 1.4 to 4 times. 0.6 or 0.8 differ from it by less than eight
+ * pictures can tell. */
+#define POOL_PART 0.7
 
 double blend_work(const double samples[BLEND_STREAMS])
 {
@@ -167,11 +168,19 @@ bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STRE
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
 
-/* How a sample of chains varies in a plan, over how it has varied with the pools so far. */
+/* How a step of chains varies by so many samples of pools for each, in units of its variance by itself: 1 + a / b times the
+ * cost of all steps over that of the samples. */
+static double step_variance(double pool_per_step)
+{
+    const double root = POOL_PART / (1.0 - POOL_PART);
+    return 1.0 + root * root * COSTS[BLEND_CHAINS] / (COSTS[BLEND_POOL] * pool_per_step);
+}
+
+/* How a step varies in a plan, over how it has varied with the pools so far. */
 static double chains_factor(const Blend *blend, const double samples[BLEND_STREAMS])
 {
     double pools = (double)blend->sums[BLEND_POOL].weight[0], steps = (double)blend->sums[BLEND_CHAINS].weight[0];
-    return 1.0 - POOL_PART + POOL_PART * (pools / steps) * (samples[BLEND_CHAINS] / samples[BLEND_POOL]);
+    return step_variance(samples[BLEND_POOL] / samples[BLEND_CHAINS]) / step_variance(pools / steps);
 }
 
 /* Relative square error of the picture from so many samples of every stream. */
