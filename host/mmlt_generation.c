@@ -231,8 +231,8 @@ static void importance_renew(Mmlt *mmlt, float *change)
         change[i] = importance[i] / change[i];
 }
 
-/* The same for a limit that has no more to go by than one small pool: the median of the means of its parts, which a rare
- * bright path in one of them does not change. */
+/* pool_brightness for a limit that has no more to go by than one small pool: the median of the means of its parts, which a
+ * rare bright path in one of them does not change. */
 static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
 {
     double parts[PILOT_PARTS];

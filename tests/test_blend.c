@@ -210,9 +210,11 @@ START_TEST(test_plan)
     printf("plan: %.3f paths, %.3f samples of a pool for a step\n", plan.paths_per_step, plan.pool_per_step);
     ck_assert_int_eq(plan.paths_per_step > 10.0, _i == 0);
     if (_i == 1) {
-        double work = 2.2 + 6.0 * plan.pool_per_step + plan.paths_per_step;
-        ck_assert_double_eq_tol(plan.paths_per_step / work, 0.05, 1e-6);
-        ck_assert_double_eq_tol(6.0 * plan.pool_per_step / (6.0 * plan.pool_per_step + 2.2), 0.7, 0.05);
+        double steps = blend_work((double[BLEND_STREAMS]){[BLEND_CHAINS] = 1.0});
+        double pool = blend_work((double[BLEND_STREAMS]){[BLEND_POOL] = plan.pool_per_step});
+        double paths = blend_work((double[BLEND_STREAMS]){[BLEND_PATHS] = plan.paths_per_step});
+        ck_assert_double_eq_tol(paths / (steps + pool + paths), 0.05, 1e-6);
+        ck_assert_double_eq_tol(pool / (steps + pool), 0.7, 0.05);
     }
     streams_destroy(&streams);
 }
