@@ -20,8 +20,8 @@ static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
 /* What chains show varies by where they begin, which falls with the pools' samples, and by what they do then, which falls with
  * their steps. In the time T the two are a / T_pool + b / T_steps, and the best division gives pools the part
  * sqrt(a) / (sqrt(a) + sqrt(b)) of it: this one. Had all of it fallen with steps, as plans once had it, long pictures would
- * have 1.4 to 1.9 times the square error at equal work (a lamp in glass, a door ajar, a glossy hall, a pool, sunlight through
- * windows; 1.1 on beaten metal), and their blocks of 8 x 8 pixels 1.4 to 4 times. 0.6 or 0.8 differ from it by less than eight
+ * have 1.3 to 1.7 times the square error at equal work (a lamp in glass, a door ajar, a glossy hall, a pool, sunlight through
+ * windows; 1.1 on beaten metal), and their blocks of 8 x 8 pixels 1.4 to 4 times. 0.6 or 0.8 differ from it by less than six
  * pictures can tell. */
 #define POOL_PART 0.7
 
