@@ -42,11 +42,14 @@ endif
 
 # The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
 EFFORT = 8
+LONG_TESTS = tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+	tests/test_scenes tests/test_hostile.sh
+if HAVE_OPENCL
+LONG_TESTS += tests/test_opencl
+endif
 .PHONY: check-long
 check-long:
-	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check \
-	  TESTS='tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_opencl \
-	    tests/test_reference tests/test_scenes tests/test_hostile.sh'
+	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 TEST_CACHE = $(abs_top_builddir)/test-cache
