@@ -31,12 +31,13 @@
         {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \
         {BUFFER_PATHS, BD_CANDIDATE_LUMINANCE, 1, true, "luminance of the candidate"},                                 \
         {BUFFER_PATHS, BD_CONNECTION_SURVIVAL, 1, true, "survival of the connection"},                                 \
+        {BUFFER_PATHS, BD_GATHERED, 1, false, "segments of the gathered"},                                             \
     {                                                                                                                  \
         BUFFER_PATHS, BD_SURVIVAL, 1, true, "survival of the walk"                                                     \
     }
 
 /* Those behind the first BD_FIELD_COUNT are IBPT's. */
-#define BD_FIELD_COUNT 30
+#define BD_FIELD_COUNT 31
 #define IB_FIELD_COUNT (BD_FIELD_COUNT + 6)
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 

@@ -1,4 +1,5 @@
 #include "blend_learn.h"
+#include "film_sum.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -116,28 +117,64 @@ static void shares_set(Blend *blend, BlendTile *tile, Film *const films[])
         blend->share[s] += tile->share[s] / (double)blend_tile_count(blend);
 }
 
+/* Sums of the same paths in the films of all streams: 3 a pixel. */
+typedef struct StreamSums {
+    int64_t *light[BLEND_STREAMS]; /* below the limits */
+    const int64_t *excess, *rare; /* of chains: what pools and what path tracing do not show */
+} StreamSums;
+
+static StreamSums stream_sums(Film *const films[])
+{
+    StreamSums sums = {.excess = films[BLEND_CHAINS]->sums, .rare = films[BLEND_CHAINS]->rare_sums};
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        sums.light[s] = films[s]->light_sums;
+    return sums;
+}
+
+/* Those of paths of so many segments. */
+static StreamSums stream_depth_sums(Film *const films[], uint segments)
+{
+    StreamSums sums = {.excess = film_depth_sums(films[BLEND_CHAINS], segments, FILM_KIND_OWN),
+                       .rare = film_depth_sums(films[BLEND_CHAINS], segments, FILM_KIND_RARE)};
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        sums.light[s] = film_depth_sums(films[s], segments, FILM_KIND_LIGHT);
+    return sums;
+}
+
+/* Those of the chains' light become the blend of all, of so much work. */
+static void sums_join(const Blend *blend, const StreamSums *sums, const double samples[BLEND_STREAMS], double work)
+{
+    size_t values = 3 * (size_t)blend->size[0] * (size_t)blend->size[1];
+    for (size_t i = 0; i < values; ++i) {
+        const BlendTile *tile = &blend->known[blend_tile_of(blend, i / 3)];
+        double sum = ((1.0 - tile->share[BLEND_PATHS]) * (double)sums->excess[i] +
+                      tile->share[BLEND_PATHS] * (double)sums->rare[i]) /
+                     samples[BLEND_CHAINS];
+        for (int s = 0; s < BLEND_STREAMS; ++s)
+            if (samples[s] > 0.0)
+                sum += tile->share[s] * (double)sums->light[s][i] / samples[s];
+        sums->light[BLEND_CHAINS][i] = llrint(sum * work);
+    }
+}
+
 /* The streams' light and the direct light become the chains' film, whose number of samples is now what the generation took:
  * that is its weight among others, which may have divided their time differently. */
 static void films_join(Blend *blend, Film *const films[])
 {
     Film *into = films[BLEND_CHAINS];
     size_t pixels = film_pixels(into);
-    double samples[BLEND_STREAMS], steps = (double)into->light_samples;
+    double samples[BLEND_STREAMS];
     for (int s = 0; s < BLEND_STREAMS; ++s)
         samples[s] = (double)films[s]->light_samples;
     double work = fmax(1.0, rint(blend_work(samples)));
     memset(blend->share, 0, sizeof blend->share);
     for (size_t i = 0; i < blend_tile_count(blend); ++i)
         shares_set(blend, &blend->known[i], films);
-    for (size_t i = 0; i < 3 * pixels; ++i) {
-        const BlendTile *tile = &blend->known[blend_tile_of(blend, i / 3)];
-        double sum = ((1.0 - tile->share[BLEND_PATHS]) * (double)into->sums[i] +
-                      tile->share[BLEND_PATHS] * (double)into->rare_sums[i]) /
-                     steps;
-        for (int s = 0; s < BLEND_STREAMS; ++s)
-            if (films[s]->light_samples > 0)
-                sum += tile->share[s] * (double)films[s]->light_sums[i] / (double)films[s]->light_samples;
-        into->light_sums[i] = llrint(sum * work);
+    StreamSums sums = stream_sums(films);
+    sums_join(blend, &sums, samples, work);
+    for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {
+        sums = stream_depth_sums(films, segments);
+        sums_join(blend, &sums, samples, work);
     }
     into->light_samples = (uint64_t)work;
     memcpy(into->sums, films[BLEND_PATHS]->sums, 3 * pixels * sizeof *into->sums);

@@ -57,11 +57,32 @@ bool film_rare_reserve(Film *film, Error *error)
     return sums_reserve(film, &film->rare_sums, "the film of rare paths", error);
 }
 
+bool film_depths_reserve(Film *film, uint last, Error *error)
+{
+    if (film->depth_sums || last < SPLAT_DEPTH_MIN)
+        return true;
+    if ((uint64_t)film->width * (uint64_t)film->height >= 1u << SPLAT_DEPTH_SHIFT) {
+        error_set(error, "a film of %d x %d pixels is too large for layers by depth", film->width, film->height);
+        return error_fix(error, "choose a smaller --resolution, or leave by-depth out of --layers");
+    }
+    film->depth_kinds = film->rare_sums ? FILM_KIND_RARE + 1 : 1;
+    film->depth_last = last;
+    size_t words = film_depth_words((uint)film_pixels(film), film->depth_kinds, last);
+    film->depth_sums = calloc(words, sizeof *film->depth_sums);
+    return film->depth_sums || error_memory(error, words * sizeof *film->depth_sums, "the films of every depth");
+}
+
+int64_t *film_depth_sums(const Film *film, uint segments, uint kind)
+{
+    return film->depth_sums + film_depth_place((uint)film_pixels(film), film->depth_kinds, segments, kind);
+}
+
 void film_destroy(Film *film)
 {
     free(film->sums);
     free(film->light_sums);
     free(film->rare_sums);
+    free(film->depth_sums);
     free(film->counts);
     *film = (Film){0};
 }
@@ -96,6 +117,9 @@ static FilmView film_view(const Film *film)
                       .sums = (ulong *)film->sums,
                       .light_sums = (ulong *)film->light_sums,
                       .rare_sums = (ulong *)film->rare_sums,
+                      .depth_sums = (ulong *)film->depth_sums,
+                      .depth_kinds = film->depth_kinds,
+                      .depth_last = film->depth_last,
                       .counts = film->counts,
                       .saturated = (ulong *)&film->saturated,
                       .not_finite = (ulong *)&film->not_finite};
@@ -116,6 +140,20 @@ static bool word_add(ulong *sum, ulong units)
     return units == 0 || film_sum_add(sum, units);
 }
 
+/* The sums of every depth, of the kinds that both have. */
+static void depths_add(const FilmView *film, const FilmView *from, size_t pixels)
+{
+    uint kinds = film->depth_kinds < from->depth_kinds ? film->depth_kinds : from->depth_kinds;
+    uint last = film->depth_last < from->depth_last ? film->depth_last : from->depth_last;
+    for (uint depth = SPLAT_DEPTH_MIN; depth <= last; ++depth)
+        for (uint kind = 0; kind < kinds; ++kind) {
+            ulong *into = film->depth_sums + film_depth_place((uint)pixels, film->depth_kinds, depth, kind);
+            const ulong *more = from->depth_sums + film_depth_place((uint)pixels, from->depth_kinds, depth, kind);
+            for (size_t i = 0; i < 3 * pixels; ++i)
+                word_add(into + i, more[i]);
+        }
+}
+
 /* Adds pixels [0, pixels) of another film. A sum that is full is reported once a pixel. */
 static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
 {
@@ -132,13 +170,17 @@ static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
         if (!fits)
             atomic_sum_add(film->saturated, 1u);
     }
+    if (film->depth_sums && from->depth_sums)
+        depths_add(film, from, pixels);
     atomic_sum_add(film->saturated, *from->saturated);
     atomic_sum_add(film->not_finite, *from->not_finite);
 }
 
 size_t film_sum_words(const Film *film)
 {
-    return film_words((uint)film_pixels(film), (film->light_sums ? 1u : 0u) + (film->rare_sums ? 1u : 0u));
+    uint pixels = (uint)film_pixels(film);
+    return film_words(pixels, (film->light_sums ? 1u : 0u) + (film->rare_sums ? 1u : 0u)) +
+           film_depth_words(pixels, film->depth_kinds, film->depth_last);
 }
 
 void film_add_sums(Film *film, ulong *words)
@@ -188,18 +230,27 @@ void film_clear(Film *film)
         memset(film->light_sums, 0, 3 * pixels * sizeof *film->light_sums);
     if (film->rare_sums)
         memset(film->rare_sums, 0, 3 * pixels * sizeof *film->rare_sums);
+    if (film->depth_sums)
+        memset(film->depth_sums, 0,
+               film_depth_words((uint)pixels, film->depth_kinds, film->depth_last) * sizeof *film->depth_sums);
     film->light_samples = film->saturated = film->not_finite = 0;
+}
+
+/* What a unit of the light's sums is worth. */
+static double light_unit_of(const Film *film, double unit)
+{
+    size_t pixels = film_pixels(film);
+    uint64_t samples = film->light_samples;
+    for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
+        samples += film->counts[i];
+    return samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
 }
 
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
 {
     const double unit = ldexp((double)scale, film->quantum_exponent);
-    size_t pixels = film_pixels(film);
-    uint64_t samples = film->light_samples;
-    for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
-        samples += film->counts[i];
-    double light_unit = samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
-    for (size_t i = 0; i < pixels; ++i) {
+    const double light_unit = light_unit_of(film, unit);
+    for (size_t i = 0; i < film_pixels(film); ++i) {
         uint32_t count = film->counts[i];
         for (size_t c = 0; c < 3; ++c) {
             int64_t sum = film->sums[3 * i + c];
@@ -209,6 +260,14 @@ void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
             rgb[3 * i + c] = (float)value;
         }
     }
+}
+
+void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb)
+{
+    const double unit = light_unit_of(film, ldexp((double)scale, film->quantum_exponent));
+    const int64_t *sums = film_depth_sums(film, segments, FILM_KIND_LIGHT);
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i)
+        rgb[i] = (float)((double)sums[i] * unit);
 }
 
 void film_resolve(const Film *film, float scale, float *rgb)

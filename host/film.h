@@ -18,6 +18,9 @@ typedef struct Film {
     int64_t *light_sums; /* the same for splats from the light; NULL before film_light_reserve */
     int64_t
         *rare_sums; /* of splats with SPLAT_RARE, which are in one of the others, too; NULL before film_rare_reserve */
+    /* Of paths of 3, 4 ... depth_last segments, as film_sum.h places them; NULL before film_depths_reserve. */
+    int64_t *depth_sums;
+    uint depth_kinds, depth_last;
     uint64_t light_samples; /* paths that they come from; 0: as many as samples of pixels */
     uint32_t *counts; /* samples of every pixel of the crop */
     uint64_t saturated; /* contributions that did not fit and were clamped */
@@ -37,6 +40,15 @@ bool film_light_reserve(Film *film, Error *error);
 /* Makes room for sums of the rare ones (SPLAT_RARE) of a film that has those of the light. They are this film's own: no
  * other film like it has them, nor gets them by film_merge. */
 bool film_rare_reserve(Film *film, Error *error);
+
+/* Makes room for sums of paths of each number of segments up to `last` by themselves, for splats that name it
+ * (FrameParams.split_depths = depth_kinds): of those from the light, and where there is room for rare ones (reserved before)
+ * of all kinds. They are this film's own as the rare ones are, but film_merge adds them where both films have them. Only while
+ * the film is empty. */
+bool film_depths_reserve(Film *film, uint last, Error *error);
+
+/* Sums of paths of so many segments, depth_last at most: 3 a pixel. kind: FILM_KIND_*, below depth_kinds. */
+int64_t *film_depth_sums(const Film *film, uint segments, uint kind);
 
 /* Pixels of the crop. */
 size_t film_pixels(const Film *film);
@@ -63,6 +75,9 @@ void film_clear(Film *film);
 /* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb);
+
+/* Of what splats from the light brought that of paths of so many segments. */
+void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb);
 
 /* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the first
  * is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */

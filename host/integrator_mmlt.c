@@ -7,6 +7,7 @@
 #include "mmlt.h"
 
 #include "bd_fields.h"
+#include "render_layers.h"
 #include "timing.h"
 
 #include <math.h>
@@ -122,9 +123,23 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     frame->keep_chains = 1;
     pool_frame = *frame;
     pool_frame.pool = 1;
+    mmlt_frame_film(&pool_frame, &mmlt->pool_film);
+    mmlt_frame_film(&mmlt->paths_frame, &mmlt->paths_film);
     return integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
            (frame->max_depth < CHAIN_DEPTH_MIN || (bdpt_list(&pool_frame, &mmlt->pool, error) &&
                                                    chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
+}
+
+/* Of the films that are shown. */
+static bool depths_reserve(Mmlt *mmlt, Error *error)
+{
+    const RenderLayers *layers = mmlt->run->options->layers;
+    uint last = mmlt->run->frame.max_depth;
+    if (!layers || (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) == 0)
+        return true;
+    return film_depths_reserve(mmlt->run->film, last, error) && film_depths_reserve(&mmlt->film, last, error) &&
+           (mmlt->options.unblended || (film_depths_reserve(&mmlt->pool_film, last, error) &&
+                                        film_depths_reserve(&mmlt->paths_film, last, error)));
 }
 
 static bool films_init(Mmlt *mmlt, Error *error)
@@ -133,7 +148,7 @@ static bool films_init(Mmlt *mmlt, Error *error)
     for (size_t i = 0; i < sizeof films / sizeof films[0]; ++i)
         if (!film_init_like(films[i], mmlt->run->film, error))
             return false;
-    if (!mmlt->options.unblended && !film_rare_reserve(&mmlt->film, error))
+    if ((!mmlt->options.unblended && !film_rare_reserve(&mmlt->film, error)) || !depths_reserve(mmlt, error))
         return false;
     for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half) {
         if (!blend_init(&mmlt->blends[half], mmlt->run->film, error))

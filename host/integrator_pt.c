@@ -8,8 +8,9 @@
 #include <assert.h>
 
 /* Two steps around the loop, seven in it, two in its last turn. Where direct light is split off there are two more in the
- * second turn, which is never left out. */
-static void steps_record(Recorder *recorder, uint max_depth, bool split)
+ * second turn, which is never left out. Where depths are, there are two in all turns after it but the last, and none is left
+ * out: a splat that is, is what it was in another pass. */
+static void steps_record(Recorder *recorder, uint max_depth, bool split, bool split_depths)
 {
     size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2 + (split ? 1 : 0);
     recorder_kernel(recorder, KERNEL_pt_start_paths, false);
@@ -22,14 +23,18 @@ static void steps_record(Recorder *recorder, uint max_depth, bool split)
         }
         if (depth == max_depth)
             break;
+        if (split_depths && depth > 2) {
+            recorder_kernel(recorder, KERNEL_pt_splat, false);
+            recorder_step(recorder, STEP_SPLAT);
+        }
         recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
         recorder_step(recorder, STEP_TRACE_SHADOW);
         recorder_kernel(recorder, KERNEL_pt_add_lights, true);
         recorder_kernel(recorder, KERNEL_pt_extend_paths, true);
-        if (!split || depth > 1)
+        if (!split_depths && (!split || depth > 1))
             recorder_skip(recorder, last);
     }
-    assert(recorder->count == last);
+    assert(split_depths || recorder->count == last);
     recorder_kernel(recorder, KERNEL_pt_splat, false);
 }
 
@@ -63,15 +68,16 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_BSDF + STORED_BSDF_COAT, 1, false, "BSDF coat table"),
     PATH_FIELD(PATH_LIMIT, 1, true, "limit"),
     PATH_FIELD(PATH_SURVIVED, 1, true, "survived"),
+    PATH_FIELD(PATH_GATHERED, 1, false, "gathered"),
 };
 #undef PATH_FIELD
 
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 6 + (size_t)frame->max_depth * 7, error))
+    if (!recorder_init(&recorder, 6 + (size_t)frame->max_depth * 9, error))
         return false;
-    steps_record(&recorder, frame->max_depth, frame->split_direct != 0);
+    steps_record(&recorder, frame->max_depth, frame->split_direct != 0, frame->split_depths != 0);
     *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
     return true;
 }

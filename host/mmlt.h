@@ -57,6 +57,9 @@ void mmlt_destroy(Mmlt *mmlt);
 /* Chains of the generation under way. */
 ChainPopulation *mmlt_population(Mmlt *mmlt);
 
+/* For a pass whose splats go to `film`. */
+void mmlt_frame_film(FrameParams *frame, const Film *film);
+
 /* What passes of the latest pool and of chains from it are given. */
 FrameParams mmlt_pool_frame(const Mmlt *mmlt);
 FrameParams mmlt_chain_frame(Mmlt *mmlt);

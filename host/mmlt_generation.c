@@ -98,12 +98,18 @@ static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
     frame->pixel_stride = render_pixel_stride((uint)mmlt->run->crop_pixels);
 }
 
+void mmlt_frame_film(FrameParams *frame, const Film *film)
+{
+    frame->film_exponent = film->quantum_exponent;
+    frame->split_depths = film->depth_kinds;
+}
+
 FrameParams mmlt_pool_frame(const Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;
     seeds_frame(mmlt, &frame);
-    frame.film_exponent = mmlt->pool_film.quantum_exponent;
+    mmlt_frame_film(&frame, &mmlt->pool_film);
     return frame;
 }
 
@@ -113,7 +119,7 @@ FrameParams mmlt_chain_frame(Mmlt *mmlt)
     seeds_frame(mmlt, &frame);
     frame.brightness = (float)mmlt_population(mmlt)->brightness;
     frame.roulette_depth = NONE;
-    frame.film_exponent = mmlt->film.quantum_exponent;
+    mmlt_frame_film(&frame, &mmlt->film);
     return frame;
 }
 
@@ -299,7 +305,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *
     film_clear(&mmlt->paths_film);
     const SplatSink sink = render_run_sink(&mmlt->paths_film);
     generation_frame(mmlt, frame);
-    frame->film_exponent = mmlt->paths_film.quantum_exponent;
+    mmlt_frame_film(frame, &mmlt->paths_film);
     uint64_t items = target > mmlt->paths_done ? (target - mmlt->paths_done) * run->crop_pixels : 0;
     for (uint64_t next = 0; next < items && *whole; next += frame->item_count) {
         uint64_t delivered = 0, left = items - next;

@@ -14,11 +14,12 @@ typedef enum Layer {
     LAYER_ALBEDO, /* these three: aov.cl */
     LAYER_NORMAL,
     LAYER_DEPTH,
+    LAYER_BY_DEPTH, /* what chains brought of each number of segments, in the film (film_depths_reserve) */
     LAYER_COUNT
 } Layer;
 
 #define LAYER_BIT(layer) (1u << (layer))
-#define LAYERS_ALL (LAYER_BIT(LAYER_COUNT) - 1u)
+#define LAYERS_ALL (LAYER_BIT(LAYER_BY_DEPTH) - 1u) /* the last only where it is named */
 #define LAYERS_AOV (LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_NORMAL) | LAYER_BIT(LAYER_DEPTH))
 
 typedef struct RenderLayers {

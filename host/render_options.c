@@ -43,8 +43,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
     [OPTION_LAYERS] =
         {"layers", 0, "NAME,...",
-         "what the image holds besides: direct, indirect, halves, variance (mmlt), albedo, normal, depth; "
-         "all or none (default: mmlt all, else none)"},
+         "what the image holds besides: direct, indirect, halves, variance, by-depth (mmlt), albedo, normal, "
+         "depth; all (but by-depth) or none (default: mmlt all, else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
                           "add a layer without pixels that are T times as bright as the median around them"},
     [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
@@ -176,15 +176,15 @@ static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
 static bool layers_set(RenderCommand *command, const char *value, Error *error)
 {
     static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
-                                                   "albedo", "normal",   "depth"};
+                                                   "albedo", "normal",   "depth",  "by-depth"};
     const char *other;
     command->has_layers = true;
     command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
     if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
         return true;
     error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal and depth, with commas between, "
-                            "or all or none");
+    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal, depth and by-depth, with "
+                            "commas between, or all (but by-depth) or none");
 }
 
 static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)

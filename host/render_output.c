@@ -88,15 +88,19 @@ bool render_output_distinct(const RenderOutput *output, const char *stats, const
 
 /* ---- layers ------------------------------------------------------------------------------------------------------ */
 
-/* Everything that goes into the file. */
-#define CHANNELS_MAX 32
+/* Everything that goes into the file, in groups of three channels. */
+#define GROUPS_FIXED 10
+#define GROUPS_MAX (GROUPS_FIXED + (int)(SPLAT_DEPTH_MAX + 1u - SPLAT_DEPTH_MIN))
+
+typedef char DepthNames[3][16]; /* "depth03.R" ... */
 
 typedef struct Picture {
     size_t pixels;
     float *values;
     size_t used; /* values */
-    ExrChannel channels[CHANNELS_MAX];
+    ExrChannel channels[3 * GROUPS_MAX];
     size_t count;
+    DepthNames depths[SPLAT_DEPTH_MAX + 1];
 } Picture;
 
 /* Room for three values a pixel, which are the channels `red`, `green` and `blue`. */
@@ -108,6 +112,16 @@ static float *picture_rgb(Picture *picture, const char *red, const char *green, 
         picture->channels[picture->count++] = (ExrChannel){names[c], rgb + c, 3, half};
     picture->used += 3 * picture->pixels;
     return rgb;
+}
+
+static void picture_depths(Picture *picture, const Film *film, float scale)
+{
+    for (uint depth = SPLAT_DEPTH_MIN; depth <= film->depth_last; ++depth) {
+        DepthNames *names = &picture->depths[depth];
+        for (int c = 0; c < 3; ++c)
+            snprintf((*names)[c], sizeof(*names)[c], "depth%02u.%c", depth, "RGB"[c]);
+        film_resolve_depth(film, depth, scale, picture_rgb(picture, (*names)[0], (*names)[1], (*names)[2], false));
+    }
 }
 
 /* The picture's own layers: of light alone, so everything but the variables. */
@@ -130,6 +144,7 @@ static void picture_parts(Picture *picture, const RenderOutput *output, const Fi
     if ((wanted & LAYER_BIT(LAYER_VARIANCE)) != 0)
         render_layers_variance(output->layers, scale,
                                picture_rgb(picture, "variance.R", "variance.G", "variance.B", false));
+    picture_depths(picture, film, scale);
 }
 
 static void picture_aovs(Picture *picture, const RenderOutput *output)
@@ -171,7 +186,8 @@ bool render_output_write(const RenderOutput *output, const Film *film, double sa
 {
     int width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
     Picture picture = {.pixels = film_pixels(film)};
-    size_t bytes = CHANNELS_MAX * picture.pixels * sizeof *picture.values;
+    size_t groups = GROUPS_FIXED + (film->depth_last >= SPLAT_DEPTH_MIN ? film->depth_last + 1 - SPLAT_DEPTH_MIN : 0);
+    size_t bytes = groups * 3 * picture.pixels * sizeof *picture.values;
     picture.values = malloc(bytes); /* pages that no layer touches take no memory */
     if (!picture.values)
         return error_memory(error, bytes, "the picture");

@@ -41,8 +41,10 @@ bool render_settings_layers(const RenderCommand *command, const Integrator *inte
 {
     bool chains = integrator == integrator_mmlt();
     *wanted = command->has_layers ? command->layers : chains ? LAYERS_ALL : 0;
-    if (chains || command->layers == LAYERS_ALL)
-        *wanted &= chains ? LAYERS_ALL : LAYERS_AOV;
+    if (chains)
+        return true;
+    if (command->layers == LAYERS_ALL)
+        *wanted &= LAYERS_AOV;
     else if ((command->layers & ~LAYERS_AOV) != 0) {
         error_set(error, "--layers: the image of %s has no layers of light", integrator->name);
         return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");

@@ -76,6 +76,19 @@ SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stri
     state_store(paths, stride, BD_T, item, t);
 }
 
+/* The connection makes a path of so many segments: for the splat, wherever it goes. */
+SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                          uint segments)
+{
+    uint stride = frame->stride;
+    if (frame->split_depths == 0u)
+        return;
+    uint target = state_load(paths, stride, BD_TARGET, item);
+    state_store(paths, stride, BD_GATHERED, item, segments);
+    if (target != NONE)
+        state_store(paths, stride, BD_TARGET, item, target | splat_depth(frame->split_depths, segments));
+}
+
 /* From: traced shadow rays. To: visible connections gathered, or (t = 1) put out for the film; the next pair. */
 __kernel void bd_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                  __global uint *restrict shadows, __global uint *restrict splats,
@@ -98,12 +111,15 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
                             cover, importance, contribution);
         state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
     }
+    if (visible)
+        connection_depth_set(frame, paths, item, s + t - 1u);
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
     connection_advance(paths, stride, item, frame->max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat. */
-__kernel void bd_splat(__global const FrameParams *restrict frame, __global const uint *restrict paths,
+/* From: what was gathered for the pixel. To: its splat; with frame->split_depths also from a path under way, and then what
+ * has been gathered is gone. */
+__kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0), stride = frame->stride;
@@ -112,6 +128,10 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global cons
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
     uint flags = frame->pool != 0u ? SPLAT_FROM_LIGHT : 0u;
+    if (frame->split_depths != 0u) {
+        flags |= splat_depth(frame->split_depths, state_load(paths, stride, BD_GATHERED, item));
+        state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
+    }
     splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item), radiance);
 }
 

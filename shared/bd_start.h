@@ -19,6 +19,7 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     state_store_float(paths, stride, BD_CANDIDATE_SUM, t, 0.0f);
     state_store(paths, stride, BD_CANDIDATE, t, 0u);
     state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
+    state_store(paths, stride, BD_GATHERED, t, 0u);
     walk_end(paths, rays, stride, t);
 }
 

@@ -48,7 +48,8 @@
 #define BD_SURVIVAL 33u /* probability with which roulette has let the walk under way come so far */
 #define BD_IMPORTANCE 34u /* of the film position where the camera's path began */
 #define BD_TARGET_IMPORTANCE 35u /* of the one that the connection under way is seen at (t = 1) */
-#define BD_HEADER_WORDS 36u
+#define BD_GATHERED 36u /* frame->split_depths: segments of the path that has brought BD_RADIANCE */
+#define BD_HEADER_WORDS 37u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can meet it */

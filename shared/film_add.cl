@@ -20,6 +20,8 @@ __kernel void film_add(__global const FrameParams *frame, __global const uint *s
     film.x1 = frame->crop_x1;
     film.y1 = frame->crop_y1;
     film.exponent = frame->film_exponent;
+    film.depth_kinds = frame->split_depths;
+    film.depth_last = frame->max_depth;
     film_view_words(&film, words, (film.x1 - film.x0) * (film.y1 - film.y0));
     film_splat_add(&film, splats, frame->stride, t);
 }

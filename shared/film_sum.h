@@ -20,19 +20,38 @@ typedef struct FilmView {
     __global ulong *sums; /* 3 a pixel */
     __global ulong *light_sums; /* the same for splats with SPLAT_FROM_LIGHT */
     __global ulong *rare_sums; /* of all with SPLAT_RARE, which are in one of the others, too */
+    __global ulong *depth_sums; /* the same once more for every number of segments: depth_sums_of */
+    uint depth_kinds; /* of them: 0 (names have no depth), 1: from the light, or 3: their own and rare ones, too */
+    uint depth_last; /* from SPLAT_DEPTH_MIN on */
     __global uint *counts; /* samples of a pixel */
     __global ulong *saturated; /* contributions that were clamped, or came to a sum that is full */
     __global ulong *not_finite; /* contributions that counted as zero */
 } FilmView;
 
-/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, and last as many
- * of the light's sums and the rare ones as there are (0, 1 or 2). */
+#define FILM_KIND_LIGHT 0u
+#define FILM_KIND_OWN 1u
+#define FILM_KIND_RARE 2u
+
+/* Sums of a kind and of paths of `depth` segments, 3 a pixel; where they begin in depth_sums. */
+SHARED_FUNCTION size_t film_depth_place(uint pixels, uint kinds, uint depth, uint kind)
+{
+    return 3u * (size_t)pixels * ((depth - SPLAT_DEPTH_MIN) * kinds + kind);
+}
+
+/* All of them: what depth_sums has. */
+SHARED_FUNCTION size_t film_depth_words(uint pixels, uint kinds, uint depth_last)
+{
+    return depth_last >= SPLAT_DEPTH_MIN ? film_depth_place(pixels, kinds, depth_last + 1u, 0u) : 0u;
+}
+
+/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, as many of the
+ * light's sums and the rare ones as there are (0, 1 or 2), and last those of depths. */
 SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
     return (1u + more) * 3u * (ulong)pixels + 2u + ((ulong)pixels + 1u) / 2u;
 }
 
-/* Points the view's sums into such a buffer. */
+/* Points the view's sums into such a buffer; depth_kinds are known. */
 SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint pixels)
 {
     film->sums = words;
@@ -41,6 +60,7 @@ SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint
     film->counts = (__global uint *)(film->saturated + 2);
     film->light_sums = words + film_words(pixels, 0u);
     film->rare_sums = words + film_words(pixels, 1u);
+    film->depth_sums = words + film_words(pixels, film->depth_kinds > FILM_KIND_RARE ? 2u : 1u);
 }
 
 /* The pixel's place among those kept, or NONE. */
@@ -92,13 +112,30 @@ SHARED_FUNCTION bool film_color_add(__global ulong *sums, Vec3 color, int expone
     return fits;
 }
 
+/* Adds to the sums of the path's number of segments what has been added to those of all. */
+SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, Vec3 color)
+{
+    uint pixels = (film->x1 - film->x0) * (film->y1 - film->y0), kinds = film->depth_kinds;
+    uint depth = name >> SPLAT_DEPTH_SHIFT & SPLAT_DEPTH_MAX;
+    uint kind = (name & SPLAT_FROM_LIGHT) != 0u ? FILM_KIND_LIGHT : FILM_KIND_OWN;
+    if (depth < SPLAT_DEPTH_MIN || depth > film->depth_last)
+        return;
+    if (kind < kinds)
+        film_color_add(film->depth_sums + film_depth_place(pixels, kinds, depth, kind) + 3u * (size_t)slot, color,
+                       film->exponent);
+    if ((name & SPLAT_RARE) != 0u && FILM_KIND_RARE < kinds)
+        film_color_add(film->depth_sums + film_depth_place(pixels, kinds, depth, FILM_KIND_RARE) + 3u * (size_t)slot,
+                       color, film->exponent);
+}
+
 /* Adds splat t of a buffer, and one sample to its pixel unless it comes from the light. Any number of threads or
  * work-items may do so at once. */
 SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint t)
 {
     uint name = state_load(splats, stride, SPLAT_PIXEL, t);
     bool from_light = (name & SPLAT_FROM_LIGHT) != 0u;
-    uint slot = name != NONE ? film_slot(film, name & ~SPLAT_FLAGS) : NONE;
+    uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_FLAGS);
+    uint slot = name != NONE ? film_slot(film, pixel) : NONE;
     if (slot == NONE)
         return;
     Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
@@ -112,6 +149,8 @@ SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *s
         atomic_sum_add(film->saturated, 1u);
     if ((name & SPLAT_RARE) != 0u && film->rare_sums)
         film_color_add(film->rare_sums + 3u * (size_t)slot, color, film->exponent);
+    if (film->depth_kinds != 0u)
+        film_depth_add(film, slot, name, color);
 }
 
 #endif

@@ -112,7 +112,9 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
     if (pixel == NONE)
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
     else
-        splat_store(splats, diagnostics, stride, t, chain_splat_flags(frame, key, f, random_float(random.x[3])) | pixel,
+        splat_store(splats, diagnostics, stride, t,
+                    chain_splat_flags(frame, key, f, random_float(random.x[3])) | pixel |
+                        splat_depth(frame->split_depths, chain_key_depth(key)),
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
 

@@ -21,7 +21,8 @@
 #define PATH_BSDF 31u /* STORED_BSDF_WORDS */
 #define PATH_LIMIT 43u /* frame->split_direct: how much luminance a contribution shows */
 #define PATH_SURVIVED 44u /* the same: with what probability Russian roulette has let the path live so far */
-#define PATH_WORDS 45u
+#define PATH_GATHERED 45u /* frame->split_depths: segments of the path that has brought PATH_RADIANCE */
+#define PATH_WORDS 46u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction came from a delta lobe (or the camera): no light sample competes */
 

@@ -63,6 +63,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
     state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
     state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, PATH_GATHERED, t, 0u);
     if (frame->split_direct != 0u) {
         state_store_float(paths, stride, PATH_LIMIT, t, RARE_OVER_LIMIT * frame->limit / film_importance(frame, film));
         state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
@@ -74,8 +76,13 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     }
 }
 
-SHARED_FUNCTION void path_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
+/* Light of a path of so many segments. */
+SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+                                       uint segments, Vec3 radiance)
 {
+    uint stride = frame->stride;
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, PATH_GATHERED, t, segments);
     Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
 }
@@ -107,7 +114,7 @@ SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global ui
     Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), radiance);
     uint segments = state_load(paths, stride, PATH_DEPTH, t);
     weight *= path_shown(frame, paths, t, segments, rgb_luminance(light) * balance);
-    path_add_radiance(paths, stride, t, vec3_scale(light, weight));
+    path_add_radiance(frame, paths, t, segments, vec3_scale(light, weight));
 }
 
 /* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
@@ -239,7 +246,8 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
         return;
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     if (state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
-        path_add_radiance(paths, stride, t, state_load_vec3(paths, stride, PATH_LIGHT, t));
+        path_add_radiance(frame, paths, t, state_load(paths, stride, PATH_DEPTH, t) + 1u,
+                          state_load_vec3(paths, stride, PATH_LIGHT, t));
 }
 
 /* The probability with which Russian roulette lets the path live: its throughput, 1 or more for certainly. */
@@ -328,13 +336,16 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
 }
 
 /* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what is
- * no sample of it. */
+ * no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0);
-    if (t < frame->item_count)
-        path_splat(paths, splats, diagnostics, frame->stride, t, frame->split_direct != 0u ? SPLAT_FROM_LIGHT : 0u);
+    uint t = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_FROM_LIGHT : 0u;
+    if (t >= frame->item_count)
+        return;
+    if (frame->split_depths != 0u)
+        flags |= splat_depth(frame->split_depths, state_load(paths, frame->stride, PATH_GATHERED, t));
+    path_splat(paths, splats, diagnostics, frame->stride, t, flags);
 }
 
 #endif

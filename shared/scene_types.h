@@ -323,6 +323,7 @@ typedef struct FrameParams {
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
     uint aov; /* AOV_*: the variable that a pass of aov.cl is for */
     uint split_direct; /* 1: path tracing keeps light of up to two segments apart (pt.cl) */
+    uint split_depths; /* kinds of sums that the film has of every depth (film_sum.h); 0: splats name no depth */
     uint max_depth; /* path segments, >= 1 */
     uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */

@@ -64,6 +64,16 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define SPLAT_RARE 0x40000000u
 #define SPLAT_FLAGS (SPLAT_FROM_LIGHT | SPLAT_RARE)
 
+/* With frame->split_depths, between flags and pixel: how many segments the path has, from this to that. */
+#define SPLAT_DEPTH_SHIFT 25u
+#define SPLAT_DEPTH_MIN 3u
+#define SPLAT_DEPTH_MAX 31u
+
+SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
+{
+    return split_depths != 0u ? segments << SPLAT_DEPTH_SHIFT : 0u;
+}
+
 /* Path tracing shows so many times as much of a path as a pool. */
 #define RARE_OVER_LIMIT 8.0f
 #define SPLAT_PIXEL 0u

@@ -156,6 +156,7 @@
     MEMBER(FrameParams, crop_y1)                                                                                       \
     MEMBER(FrameParams, aov)                                                                                           \
     MEMBER(FrameParams, split_direct)                                                                                  \
+    MEMBER(FrameParams, split_depths)                                                                                  \
     MEMBER(FrameParams, max_depth)                                                                                     \
     MEMBER(FrameParams, min_depth)                                                                                     \
     MEMBER(FrameParams, roulette_depth)                                                                                \

@@ -62,6 +62,7 @@ typedef struct GroupSetup {
     RenderSetup render; /* its seed is the first */
     int groups;
     bool at_depth; /* paths of exactly max_depth segments: what path tracing to max_depth has more than to one less */
+    unsigned layer_depth; /* the layer of paths of so many segments instead of the picture; 0: the picture */
 } GroupSetup;
 
 void groups_render(const GroupSetup *setup, PictureGroups *picture);

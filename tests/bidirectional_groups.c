@@ -2,6 +2,7 @@
 #include "bidirectional.h"
 
 #include "backend_cpu.h"
+#include "render_layers.h"
 
 #include <string.h>
 
@@ -9,6 +10,7 @@
 
 typedef struct Renderer {
     const RenderSetup *setup;
+    unsigned layer_depth; /* GroupSetup */
     Scene scene;
     Backend *backend;
     int quantum_exponent;
@@ -22,11 +24,13 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
     Film film;
     RenderResult result;
     const RenderSetup *setup = renderer->setup;
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_BY_DEPTH)};
     const SceneSettings *settings = &renderer->scene.settings;
     RenderOptions options = {.samples = setup->samples * test_effort(),
                              .max_depth = depth,
                              .seed = seed,
                              .chains = setup->chains,
+                             .layers = renderer->layer_depth > 0 ? &layers : NULL,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},
@@ -38,7 +42,11 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
                   "%s", error.message);
     renderer->quantum_exponent = film.quantum_exponent;
     renderer->have_quantum = true;
-    film_resolve(&film, settings->film_scale, rgb);
+    if (renderer->layer_depth > 0)
+        film_resolve_depth(&film, renderer->layer_depth, settings->film_scale, rgb);
+    else
+        film_resolve(&film, settings->film_scale, rgb);
+    render_layers_destroy(&layers);
     *sound = *sound && film.saturated == 0 && film.not_finite == 0;
     for (int i = 0; i < result.diagnostic_count; ++i)
         *sound = *sound && result.diagnostics[i] == 0;
@@ -48,7 +56,7 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
 void groups_render(const GroupSetup *setup, PictureGroups *picture)
 {
     Error error = {0};
-    Renderer renderer = {.setup = &setup->render};
+    Renderer renderer = {.setup = &setup->render, .layer_depth = setup->layer_depth};
     fixture_scene(&setup->render, &renderer.scene);
     const SceneSettings *settings = &renderer.scene.settings;
     renderer.backend = fixture_open(&setup->render, &renderer.scene, &error);

@@ -65,6 +65,7 @@ expect 0 '524288 chains of up to 8 segments' render --integrator=mmlt --memory "
 expect 2 'use one of: pt' render --integrator=bpt "$scene"
 expect 2 '--layers=normals: there is no layer normals' render --layers=normals "$scene"
 expect 2 'the image of pt has no layers of light' render --integrator=pt --layers=albedo,halves "$scene"
+expect 2 'the image of bdpt has no layers of light' render --integrator=bdpt --layers=by-depth "$scene"
 expect 2 '--despeckle=0: out of range' render --despeckle=0 "$scene"
 expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
 expect 2 '--heuristic is for bidirectional integrators' render --integrator=pt --heuristic=balance "$scene"
@@ -261,8 +262,8 @@ elif "$program" devices | grep -A1 '^opencl' | grep -q 'no device'; then
     echo 'skipped: there is no OpenCL device'
 else
     for other in "$scene" "${scene%/*}/showcase.pbrt"; do
-        for integrator in pt ibpt bdpt; do
-            layers=$([ $integrator = pt ] && echo all || echo none)
+        for integrator in pt ibpt bdpt mmlt; do
+            case $integrator in pt) layers=all ;; mmlt) layers=indirect,by-depth ;; *) layers=none ;; esac
             render --integrator=$integrator "--layers=$layers" --samples=3 -o cpu.exr "$other"
             opencl --integrator=$integrator "--layers=$layers" --samples=3 -o opencl.exr "$other"
             result "$other on OpenCL by $integrator: exit status" $?

@@ -200,6 +200,46 @@ START_TEST(test_rare)
 }
 END_TEST
 
+/* Splats that name their path's number of segments are in the sums of all, and once more by themselves: those from the light,
+ * and in a film that has rare ones its own and the rare ones, too. */
+START_TEST(test_depths)
+{
+    const uint four = splat_depth(3, 4), five = splat_depth(3, 5);
+    const int whole[4] = {0, 0, 8192, 4096};
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE), other, huge = {.width = 8192, .height = 4096};
+    ck_assert_uint_eq(splat_depth(0, 4), 0);
+    ck_assert(film_light_reserve(&film, &error) && film_init_like(&other, &film, &error));
+    ck_assert(film_rare_reserve(&film, &error) && film_depths_reserve(&film, 5, &error));
+    ck_assert(film_depths_reserve(&other, 5, &error));
+    ck_assert_uint_eq(film.depth_kinds, 3);
+    ck_assert_uint_eq(other.depth_kinds, 1);
+    ck_assert_uint_eq(film_sum_words(&film), 116 + 3 * 3 * 36);
+    ck_assert_uint_eq(film_sum_words(&other), 80 + 3 * 36);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | four, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE | five, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_RARE | five, 8.0f, 8.0f, 8.0f);
+    film_add_one(&film, 5, 16.0f, 16.0f, 16.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | splat_depth(3, 6), 32.0f, 0.0f, 0.0f);
+    ck_assert_int_eq(film.light_sums[15], (int64_t)35 << 30);
+    ck_assert_int_eq(film.sums[15], (int64_t)24 << 30);
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    const int64_t expected[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 8, 10}}; /* 3, 4, 5 segments; light, own, rare */
+    for (uint segments = 3; segments <= 5; ++segments)
+        for (uint kind = 0; kind < 3; ++kind)
+            ck_assert_int_eq(film_depth_sums(&film, segments, kind)[15], expected[segments - 3][kind] << 30);
+    ck_assert(film_merge(&other, &film, &error) && film_merge(&other, &film, &error));
+    ck_assert_int_eq(film_depth_sums(&other, 5, FILM_KIND_LIGHT)[15], (int64_t)4 << 30);
+    film_clear(&other);
+    ck_assert_int_eq(film_depth_sums(&other, 5, FILM_KIND_LIGHT)[15], 0);
+    memcpy(huge.crop, whole, sizeof whole);
+    ck_assert(!film_depths_reserve(&huge, 5, &error));
+    ck_assert_msg(strstr(error.message, "8192 x 4096") != NULL, "%s", error.message);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
 /* What a device keeps: 12 pixels of three sums, two counters, counts by twos, and the light's and the rare ones when there are
  * any. */
 START_TEST(test_sums_of_a_device)
@@ -397,6 +437,7 @@ int main(void)
     tcase_add_test(tcase, test_order_does_not_matter);
     tcase_add_test(tcase, test_merge_equals_one_film);
     tcase_add_test(tcase, test_rare);
+    tcase_add_test(tcase, test_depths);
     tcase_add_test(tcase, test_sums_of_a_device);
     tcase_add_test(tcase, test_rounding);
     tcase_add_test(tcase, test_units_of_any_float);

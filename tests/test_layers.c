@@ -1,5 +1,6 @@
 /* What an image holds besides the picture: variances, halves, albedo, normal, depth, and the picture without specks. */
 #include "despeckle.h"
+#include "film_sum.h"
 #include "render_fixture.h"
 #include "render_layers.h"
 
@@ -132,6 +133,43 @@ START_TEST(test_halves)
 }
 END_TEST
 
+/* Layers by depth add up to indirect light, but for the rounding of single sums; of chains alone, too. The picture is the one
+ * without them, but for the rounding of paths that bring light of several depths. */
+START_TEST(test_by_depth)
+{
+    char path[512];
+    double largest = 0.0, other = 0.0;
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_BY_DEPTH)};
+    RenderedImage image, plain;
+    RenderSetup setup = {.path = path,
+                         .width = 24,
+                         .height = 18,
+                         .samples = 200,
+                         .max_depth = 6,
+                         .integrator = integrator_mmlt(),
+                         .chains = {.unblended = _i == 1}};
+    snprintf(path, sizeof path, "%s/scenes/glossy.pbrt", test_source_folder());
+    fixture_render(&setup, &plain);
+    setup.layers = &layers;
+    fixture_render(&setup, &image);
+    const Film *film = &image.film;
+    ck_assert_uint_eq(film->depth_last, 6);
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
+        double sum = 0.0, light = (double)film->light_sums[i];
+        for (uint segments = 3; segments <= 6; ++segments)
+            sum += (double)film_depth_sums(film, segments, FILM_KIND_LIGHT)[i];
+        largest = fmax(largest, fabs(sum - light) / (fabs(light) + (double)film->light_samples));
+        other = fmax(other, fabs((double)(image.rgb[i] - plain.rgb[i])) / (fabs((double)plain.rgb[i]) + 1e-2));
+    }
+    printf("by depth: off by %.2g, the picture by %.2g\n", largest, other);
+    ck_assert_double_lt(largest, 1e-4);
+    ck_assert_double_lt(other, 1e-5);
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+    fixture_destroy(&plain);
+}
+END_TEST
+
 /* The variance that an image states is that of its pixels over seeds, on average over the picture. */
 START_TEST(test_variance)
 {
@@ -178,6 +216,7 @@ int main(void)
     tcase_add_test(tcase, test_despeckle);
     tcase_add_loop_test(tcase, test_variables, 0, 3);
     tcase_add_test(tcase, test_halves);
+    tcase_add_loop_test(tcase, test_by_depth, 0, 2);
     tcase_add_test(tcase, test_variance);
     suite_add_tcase(suite, tcase);
     return test_run(suite);

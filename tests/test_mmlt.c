@@ -85,6 +85,39 @@ START_TEST(test_streams)
 }
 END_TEST
 
+/* The layer of every number of segments against bidirectional path tracing of such paths; of chains alone, too. */
+START_TEST(test_depths)
+{
+    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
+    if (test_effort() == 1 && _i % 3 != 2)
+        return; /* make check-long does them all */
+    for (int depth = 3; depth <= scene->depth; ++depth) {
+        PictureGroups expected, got;
+        char name[96];
+        GroupSetup setup = {.groups = 16,
+                            .at_depth = true,
+                            .render = {.text = bidirectional_text(scene),
+                                       .samples = 32,
+                                       .max_depth = depth,
+                                       .threads = 1,
+                                       .integrator = integrator_bdpt()}};
+        groups_render(&setup, &expected);
+        setup.at_depth = false;
+        setup.layer_depth = (unsigned)depth;
+        setup.render.max_depth = scene->depth;
+        setup.render.samples = 128;
+        setup.render.seed = 9000;
+        setup.render.integrator = integrator_mmlt();
+        setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .unblended = depth % 2 == 0};
+        groups_render(&setup, &got);
+        snprintf(name, sizeof name, "%s, %d segments", scene->name, depth);
+        groups_compare(name, &got, &expected, 4, false);
+        groups_destroy(&got);
+        groups_destroy(&expected);
+    }
+}
+END_TEST
+
 /* ---- modes ------------------------------------------------------------------------------------------------------- */
 
 /* A glass ball shows two caustics on the floor that nothing connects: each of a small lamp through a small ball. */
@@ -323,6 +356,7 @@ int main(void)
     tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(case_make(suite, "streams"), test_streams, 0, BIDIRECTIONAL_SCENE_COUNT * BLEND_STREAMS);
+    tcase_add_loop_test(case_make(suite, "depths"), test_depths, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
     TCase *counts = case_make(suite, "counts");
