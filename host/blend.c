@@ -5,12 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shares before anything is known. */
-static const double FIRST_SHARES[BLEND_STREAMS] = {0.5, 0.5, 0.0};
-
 /* What a sample of each stream takes, in samples of path tracing: typical ones of the CPU backend. Figures that do not
  * depend on the machine, so that the image does not either. */
 static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
+
+/* Before anything is known, work of path tracing counts for so much of that of pools. With all of it, lamps in glass and
+ * beaten metal had a third more square error in small pictures; with none, a large one of a diffuse room had a third more. */
+#define FIRST_PATHS 0.25
 
 /* Keeps what has no variance, because it is black, from a division by zero. */
 #define SPREAD_MIN 1e-30
@@ -91,27 +92,32 @@ static TileBlend tile_blend(const BlendTile *tile, const double samples[BLEND_ST
     return best;
 }
 
-/* Of each stream in the tile; all of them 1 together. */
-static void shares_set(Blend *blend, BlendTile *tile, Film *const films[])
+/* Whether the variances of all streams that have samples are there. */
+static bool blend_known(const Blend *blend, const double samples[BLEND_STREAMS])
 {
-    double samples[BLEND_STREAMS];
-    bool known = true;
-    memcpy(tile->share, FIRST_SHARES, sizeof tile->share);
-    for (int s = 0; s < BLEND_STREAMS; ++s) {
-        samples[s] = (double)films[s]->light_samples;
-        known = known && (samples[s] == 0.0 || blend->ready[s]);
-    }
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        if (samples[s] > 0.0 && !blend->ready[s])
+            return false;
+    return true;
+}
+
+/* Of each stream in the tile; all of them 1 together. Before anything is known, what counts is the work, and chains are worth
+ * the pool from which they begin. So a large picture, of which the first pools see few pixels, is path traced at first. */
+static void shares_set(Blend *blend, BlendTile *tile, const double samples[BLEND_STREAMS], bool known)
+{
+    memset(tile->share, 0, sizeof tile->share);
     if (blend->shown > 0) {
-        memset(tile->share, 0, sizeof tile->share);
         tile->share[blend->shown - 1] = 1.0;
     } else if (known) {
         TileBlend best = tile_blend(tile, samples);
         tile->share[BLEND_PATHS] = best.paths;
         tile->share[BLEND_CHAINS] = (1.0 - best.paths) * best.chains;
         tile->share[BLEND_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
-    } else if (samples[BLEND_PATHS] == 0.0) {
-        tile->share[BLEND_CHAINS] += tile->share[BLEND_PATHS];
-        tile->share[BLEND_PATHS] = 0.0;
+    } else {
+        double pool = COSTS[BLEND_POOL] * samples[BLEND_POOL];
+        double paths = FIRST_PATHS * COSTS[BLEND_PATHS] * samples[BLEND_PATHS];
+        tile->share[BLEND_CHAINS] = tile->share[BLEND_POOL] = pool / (2.0 * pool + paths);
+        tile->share[BLEND_PATHS] = paths / (2.0 * pool + paths);
     }
     for (int s = 0; s < BLEND_STREAMS; ++s)
         blend->share[s] += tile->share[s] / (double)blend_tile_count(blend);
@@ -166,10 +172,11 @@ static void films_join(Blend *blend, Film *const films[])
     double samples[BLEND_STREAMS];
     for (int s = 0; s < BLEND_STREAMS; ++s)
         samples[s] = (double)films[s]->light_samples;
+    bool known = blend_known(blend, samples);
     double work = fmax(1.0, rint(blend_work(samples)));
     memset(blend->share, 0, sizeof blend->share);
     for (size_t i = 0; i < blend_tile_count(blend); ++i)
-        shares_set(blend, &blend->known[i], films);
+        shares_set(blend, &blend->known[i], samples, known);
     StreamSums sums = stream_sums(films);
     sums_join(blend, &sums, samples, work);
     for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {

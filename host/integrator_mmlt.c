@@ -31,16 +31,34 @@
 /* A generation takes no longer than this part of the time so far, so that stopping and saving are prompt. */
 #define GENERATION_PART 0.1
 
+/* But for one with a sample of path tracing of every pixel, which may take so much. */
+#define WHOLE_SAMPLE_PART 0.25
+
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
 
-/* Chains that the work left is enough for, rounded up. */
-static uint64_t chains_left(const Mmlt *mmlt, uint64_t total)
+/* Work of a chain and of what goes with it. */
+static double chain_work(const Mmlt *mmlt)
 {
     double steps = (double)mmlt->options.steps;
     const double samples[BLEND_STREAMS] = {[BLEND_CHAINS] = steps,
                                            [BLEND_POOL] = mmlt->options.paper ? 0.0 : steps * mmlt->pool_per_step,
                                            [BLEND_PATHS] = steps * mmlt->paths_per_step};
-    return (uint64_t)ceil((double)(total - mmlt->work_done) / blend_work(samples));
+    return blend_work(samples);
+}
+
+/* Chains that the work left is enough for, rounded up. */
+static uint64_t chains_left(const Mmlt *mmlt, uint64_t total)
+{
+    return (uint64_t)ceil((double)(total - mmlt->work_done) / chain_work(mmlt));
+}
+
+/* Chains that go with one sample of path tracing of every pixel, while that is no more work than a part of all so far:
+ * generations that have no path tracing show easy light badly. */
+static uint chains_of_sample(const Mmlt *mmlt)
+{
+    double whole = (double)mmlt->run->crop_pixels / (mmlt->paths_per_step * (double)mmlt->options.steps);
+    double most = WHOLE_SAMPLE_PART * (double)mmlt->work_done / chain_work(mmlt);
+    return mmlt->options.unblended ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
 }
 
 /* Chains of the next generation: generations come in pairs of a size, one for either half of the image. With a number of
@@ -51,7 +69,11 @@ static uint chains_next(const Mmlt *mmlt, uint chains, double seconds, uint64_t 
     double elapsed = timing_now() - mmlt->run->start;
     bool grow = options->samples > 0 ? 2.0 * (double)mmlt->work_last < GENERATION_PART * (double)mmlt->work_done
                                      : 2.0 * seconds < GENERATION_PART * elapsed;
-    uint next = grow && mmlt->generation % 2 == 0 && chains < mmlt->options.chains ? 2 * chains : chains;
+    uint next = chains, whole = chains_of_sample(mmlt);
+    if (mmlt->generation % 2 == 0) {
+        next = grow && chains < mmlt->options.chains ? 2 * chains : chains;
+        next = next < whole ? whole : next;
+    }
     next = next < mmlt->options.chains ? next : mmlt->options.chains;
     uint64_t left = chains_left(mmlt, total);
     return left < next ? (uint)left : next;

@@ -291,8 +291,8 @@ static void chains_count(Mmlt *mmlt, uint count)
 
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
 
-/* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one of either half of the
- * image. */
+/* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one in the first two
+ * generations of either half of the image, from which its variances are known. */
 static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
@@ -300,7 +300,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *
     double begin = timing_now();
     mmlt->paths_wanted += mmlt->paths_per_step * (double)steps / (double)run->crop_pixels;
     uint64_t target = (uint64_t)mmlt->paths_wanted, first = (uint64_t)mmlt->generation + 1;
-    if (mmlt->generation < 2 && target < first)
+    if (mmlt->generation < 2 * MMLT_HALVES && target < first)
         target = first;
     film_clear(&mmlt->paths_film);
     const SplatSink sink = render_run_sink(&mmlt->paths_film);

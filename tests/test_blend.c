@@ -106,11 +106,14 @@ START_TEST(test_blind)
 }
 END_TEST
 
-/* A stream without samples this time has no share, and the others have all. Path tracing has none before variances are
- * known either: in hard light it is far worse than the others. */
+/* A stream without samples this time has no share, and the others have all. Before variances are known path tracing's goes as
+ * a part of its work, those of chains and pool as the pool's: in hard light it is far worse than the others, and of a large
+ * picture it is nearly all. */
 START_TEST(test_absent)
 {
     Streams streams;
+    const double pool[BLEND_STREAMS] = {[BLEND_POOL] = 1.0}, paths[BLEND_STREAMS] = {[BLEND_PATHS] = 2.0};
+    const double part = 0.25 * blend_work(paths);
     streams_init(&streams);
     for (int g = 0; g < 6; ++g) {
         stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 1.0);
@@ -123,8 +126,10 @@ START_TEST(test_absent)
         ck_assert_double_eq_tol(generation(&streams), 1.0, 0.08);
         const double *share = streams.blend.share;
         ck_assert_double_eq_tol(share[0] + share[1] + share[2], 1.0, 1e-12);
-        if (g == _i || g < 2)
+        if (g == _i)
             ck_assert_double_eq(share[BLEND_PATHS], 0.0);
+        else if (g < 2)
+            ck_assert_double_eq_tol(share[BLEND_PATHS], part / (2.0 * blend_work(pool) + part), 1e-12);
         else if (g > 2)
             ck_assert_double_gt(share[BLEND_PATHS], 0.0);
     }
