@@ -1,6 +1,7 @@
 /* A generation: a pool of independent samples, chains that begin with some of them, path tracing, and what all show. */
 #include "mmlt.h"
 
+#include "pixel_order.h"
 #include "render_layers.h"
 #include "rng.h"
 #include "sample_statistics.h"
@@ -95,7 +96,7 @@ static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
     generation_frame(mmlt, frame);
     frame->sample_index = mmlt->pool_sample;
     frame->pixel_first = mmlt->pool_pixel;
-    frame->pixel_stride = render_pixel_stride((uint)mmlt->run->crop_pixels);
+    frame->pixel_stride = pixel_order_stride(frame->crop_x1 - frame->crop_x0, frame->crop_y1 - frame->crop_y0);
 }
 
 void mmlt_frame_film(FrameParams *frame, const Film *film)

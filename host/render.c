@@ -5,6 +5,7 @@
 
 #include "diagnostics.h"
 #include "log.h"
+#include "pixel_order.h"
 #include "state.h"
 #include "timing.h"
 
@@ -63,20 +64,6 @@ static int pilot_compare(const void *a, const void *b)
     return (x->luminance > y->luminance) - (x->luminance < y->luminance);
 }
 
-uint render_pixel_stride(uint n)
-{
-    for (uint stride = (uint)(0.6180339887 * n) | 1u;; ++stride) {
-        uint a = stride, b = n;
-        while (b != 0) {
-            uint rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1)
-            return stride;
-    }
-}
-
 /* Mean radiance from a few thousand paths over the whole film, so that a crop has the quantum and with it the bits of
  * the whole picture. The sum is taken in the order of pixels, so it does not depend on threads. */
 static bool pilot_run(const BackendInterface *interface, Backend *backend, FrameParams frame, const StepList *list,
@@ -94,7 +81,7 @@ static bool pilot_run(const BackendInterface *interface, Backend *backend, Frame
     frame.first_item = 0;
     frame.item_count = PILOT_ITEMS;
     frame.sample_index = PILOT_SAMPLE;
-    frame.pixel_stride = render_pixel_stride(frame.width * frame.height);
+    frame.pixel_stride = pixel_order_stride(frame.width, frame.height);
     const SplatSink sink = {.splats = pilot_splats, .context = pilot};
     bool done = interface->run(backend, &frame, list, &sink, &never, NULL, error);
     double sum = 0.0;

@@ -20,9 +20,6 @@ typedef struct RenderRun {
 /* Adds splats to the film; frame.film_exponent must be its quantum_exponent. */
 SplatSink render_run_sink(Film *film);
 
-/* A number without common factor with n, near the golden section of it: k * stride mod n visits n pixels evenly. */
-uint render_pixel_stride(uint n);
-
 /* Calls `progress`. fraction: of the samples wanted; 0 where their number is not limited. */
 void render_run_report(const RenderRun *run, double fraction);
 

@@ -1,4 +1,5 @@
 /* Whole pictures: analytic scenes, furnaces, determinism, references. */
+#include "pixel_order.h"
 #include "render_fixture.h"
 #include "test_util.h"
 
@@ -8,6 +9,43 @@
     "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"                                             \
     "PixelFilter \"box\"\n"                                                                                            \
     "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
+
+/* ---- the order of pixels ----------------------------------------------------------------------------------------- */
+
+/* All pixels in turn, and of large pictures neighbours far apart: in which tenth of the order they are says nothing. */
+START_TEST(test_pixel_order)
+{
+    static const uint SIZES[][2] = {{1, 1},   {1, 7},     {5, 1},       {2, 2},       {6, 35},       {16, 16},
+                                    {77, 60}, {400, 400}, {1920, 1080}, {8192, 8192}, {32768, 32767}};
+    const uint width = SIZES[_i][0], height = SIZES[_i][1], n = width * height,
+               stride = pixel_order_stride(width, height);
+    uint a = stride, b = n;
+    while (b != 0) {
+        uint rest = a % b;
+        a = b;
+        b = rest;
+    }
+    ck_assert_uint_eq(a, 1);
+    ck_assert(n == 1 || stride < n);
+    if (n < 4000 || n > 1 << 21)
+        return;
+    uint *number = malloc(n * sizeof *number);
+    ck_assert_ptr_nonnull(number);
+    for (uint k = 0; k < n; ++k)
+        number[(uint64_t)k * stride % n] = k;
+    const int near[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
+    for (size_t i = 0; i < sizeof near / sizeof near[0]; ++i) {
+        uint from = height / 2 * width + width / 2;
+        uint to = from + (uint)(near[i][1] * (int)width + near[i][0]);
+        uint apart = (number[to] + n - number[from]) % n;
+        printf("%u x %u: pixel %d %d away is %.3f of the order later\n", width, height, near[i][0], near[i][1],
+               (double)apart / n);
+        ck_assert_uint_gt(apart, n / 10);
+        ck_assert_uint_lt(apart, n - n / 10);
+    }
+    free(number);
+}
+END_TEST
 
 /* ---- analytic scenes, to 0.5 % --------------------------------------------------------------------------------- */
 
@@ -266,6 +304,7 @@ int main(void)
     tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
     tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
     tcase_add_test(determinism, test_seeds_differ);
+    tcase_add_loop_test(determinism, test_pixel_order, 0, 11);
     suite_add_tcase(suite, determinism);
     return test_run(suite);
 }
