@@ -9,8 +9,8 @@
  * depend on the machine, so that the image does not either. */
 static const double COSTS[BLEND_STREAMS] = {2.2, 6.0, 1.0};
 
-/* Before anything is known, work of path tracing counts for so much of that of pools. With all of it, lamps in glass and
- * beaten metal had a third more square error in small pictures; with none, a large one of a diffuse room had a third more. */
+/* Before anything is known, work of path tracing counts for so much of that of pools. With all of it, a lamp in glass had a
+ * third more square error in small pictures and beaten metal a sixth; with none, a large one of a diffuse room had a third more. */
 #define FIRST_PATHS 0.25
 
 /* Keeps what has no variance, because it is black, from a division by zero. */

@@ -62,7 +62,8 @@ SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint
         contribution = candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
                                        state_load_float(paths, stride, BD_COVER, t),
                                        state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
-    state_store(paths, stride, BD_GATHERED, t, depth);
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, BD_GATHERED, t, depth);
     bd_add_radiance(paths, stride, t, contribution);
 }
 

@@ -20,7 +20,7 @@ typedef struct FilmView {
     __global ulong *sums; /* 3 a pixel */
     __global ulong *light_sums; /* the same for splats with SPLAT_FROM_LIGHT */
     __global ulong *rare_sums; /* of all with SPLAT_RARE, which are in one of the others, too */
-    __global ulong *depth_sums; /* the same once more for every number of segments: depth_sums_of */
+    __global ulong *depth_sums; /* the same once more for every number of segments: film_depth_place */
     uint depth_kinds; /* of them: 0 (names have no depth), 1: from the light, or 3: their own and rare ones, too */
     uint depth_last; /* from SPLAT_DEPTH_MIN on */
     __global uint *counts; /* samples of a pixel */

@@ -21,7 +21,7 @@
 #define ROULETTE_FIRST_DEPTH 2u
 
 /* Path tracing beside chains (frame->split_direct) shows light of longer paths than these up to the frame's limit. */
-#define DIRECT_DEPTH 2u
+#define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
 
 /* And roulette leaves at least so many of them alive: what it takes from some others carry, above the limit. */
 #define SURVIVED_LEAST 0.125f

@@ -9,15 +9,20 @@
 static const unsigned STEPS[] = {1, 4, 16, 64};
 #define STEPS_COUNT (int)(sizeof STEPS / sizeof STEPS[0])
 
-/* The scene by bidirectional path tracing; what it returns renders the same by chains. */
-static GroupSetup expected_render(const BidirectionalScene *scene, unsigned samples, PictureGroups *expected)
+static GroupSetup bdpt_setup(const BidirectionalScene *scene, unsigned samples)
 {
-    GroupSetup setup = {.groups = 16,
+    return (GroupSetup){.groups = 16,
                         .render = {.text = bidirectional_text(scene),
                                    .samples = samples,
                                    .max_depth = scene->depth,
                                    .threads = 1,
                                    .integrator = integrator_bdpt()}};
+}
+
+/* The scene by bidirectional path tracing; what it returns renders the same by chains. */
+static GroupSetup expected_render(const BidirectionalScene *scene, unsigned samples, PictureGroups *expected)
+{
+    GroupSetup setup = bdpt_setup(scene, samples);
     groups_render(&setup, expected);
     setup.render.integrator = integrator_mmlt();
     return setup;
@@ -94,13 +99,9 @@ START_TEST(test_depths)
     for (int depth = 3; depth <= scene->depth; ++depth) {
         PictureGroups expected, got;
         char name[96];
-        GroupSetup setup = {.groups = 16,
-                            .at_depth = true,
-                            .render = {.text = bidirectional_text(scene),
-                                       .samples = 32,
-                                       .max_depth = depth,
-                                       .threads = 1,
-                                       .integrator = integrator_bdpt()}};
+        GroupSetup setup = bdpt_setup(scene, 32);
+        setup.at_depth = true;
+        setup.render.max_depth = depth;
         groups_render(&setup, &expected);
         setup.at_depth = false;
         setup.layer_depth = (unsigned)depth;
