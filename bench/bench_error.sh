@@ -1,11 +1,14 @@
 #!/bin/sh
-# Speed against error of all integrators without a reference: one table on standard output (tab separated).
+# Speed against error of all integrators: one table on standard output (tab separated).
 #
 # The error is the variance of a pixel: half the mean square difference of two images with different seeds, which needs
 # no reference and has no floor; relative variance is half of relMSE between the two without its worst thousandth, so that
 # a single bright dot does not decide. Efficiency is 1 / (relative variance x seconds), the median over the budgets; the
 # time to equal error of two integrators has the inverse ratio. `twinlight bench` measures against a reference, which takes
-# longer, and sees what all seeds miss; it draws, too. The last column is the same with the worst thousandth.
+# longer, and sees what all seeds miss; it draws, too. The next column is the same with the worst thousandth. Both divide by
+# the square of one of the two images: where they are noisy, that exaggerates. So the last two are relMSE, without and with the
+# worst thousandth, mean of the two images, to reference/NAME.exr beside the scene, where there is one of this size (else a
+# minus sign); they have the reference's own error in them.
 # Each integrator renders twice for the last of BUDGETS (ascending); the others are what it had saved by then. A scene takes
 # 8 times the last budget: 64 s. INTEGRATORS: which. usage: bench_error.sh TWINLIGHT SCENE...
 set -eu
@@ -51,23 +54,41 @@ images() {
     done
 }
 
-# variances INTEGRATOR SCENE: a line "seconds samples/s variance relative-variance with-the-worst" for each budget.
+# to_reference BUDGET SCENE: "relMSE-without-the-worst relMSE" of both images, their mean.
+to_reference() {
+    reference=$(dirname "$2")/reference/$(basename "$2" .pbrt).exr
+    for seed in 1 2; do
+        if ! [ -f "$reference" ] ||
+            ! "$twinlight" compare --json "$folder/$seed.$1.exr" "$reference" >"$folder/reference.$seed.json" 2>"$folder/err"; then
+            printf -- '-\t-'
+            return
+        fi
+    done
+    awk "BEGIN { printf \"%.6g\t%.6g\", \
+        ($(number rel_mse_trimmed "$folder/reference.1.json") + $(number rel_mse_trimmed "$folder/reference.2.json")) / 2, \
+        ($(number rel_mse "$folder/reference.1.json") + $(number rel_mse "$folder/reference.2.json")) / 2 }"
+}
+
+# variances INTEGRATOR SCENE: a line "seconds samples/s variance relative-variance with-the-worst" and to_reference for each
+# budget.
 variances() {
     images "$1" 1 "$2"
     images "$1" 2 "$2"
     for budget in $BUDGETS; do
         "$twinlight" compare --json "$folder/1.$budget.exr" "$folder/2.$budget.exr" >"$folder/compare.json"
-        awk "BEGIN { printf \"%.3f\t%.0f\t%.6g\t%.6g\t%.6g\n\", \
+        awk "BEGIN { printf \"%.3f\t%.0f\t%.6g\t%.6g\t%.6g\t\", \
             ($(cat "$folder/1.$budget.time") + $(cat "$folder/2.$budget.time")) / 2, \
             ($(number samples_per_second "$folder/1.json") + $(number samples_per_second "$folder/2.json")) / 2, \
             $(number mse "$folder/compare.json") / 2, $(number rel_mse_trimmed "$folder/compare.json") / 2, \
             $(number rel_mse "$folder/compare.json") / 2 }"
+        to_reference "$budget" "$2"
+        echo
     done
 }
 
 head_print
 printf '# setting\t%s segments, %s pixels\n' "$DEPTH" "$RESOLUTION"
-printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\twith the worst\n'
+printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\twith the worst\tto the reference\twith the worst\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
     for integrator in $INTEGRATORS; do
