@@ -34,7 +34,8 @@ typedef struct Blend {
     int size[2], tiles[2];
     PixelSeries pixels[BLEND_SERIES], sums[BLEND_SERIES]; /* luminances of pixels, and summed over tiles */
     PixelSeries direct; /* of pixels */
-    double pool_gaps; /* part of the pixels that a pool does not visit, summed over pools */
+    double *rarity; /* of a tile: by how much more rarely pools visit it than if they visited all alike */
+    double *gaps; /* of a tile: that less what a pool has visited of a pixel, where it is less, summed over pools */
     BlendTile *known; /* a tile */
     bool ready[BLEND_SERIES]; /* the stream's variances are there */
     double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
@@ -55,6 +56,10 @@ void blend_destroy(Blend *blend);
  * shares that `teacher` has learnt, then teaches `blend` what they were. Both may be the same where generations know
  * nothing of each other. */
 bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error);
+
+/* Relative square error of a tile's pixels from so many samples of every stream, direct light left out. Zeros before enough is
+ * known. */
+void blend_errors(const Blend *blend, const double samples[BLEND_STREAMS], double *errors);
 
 /* How many samples for every step of a chain. */
 typedef struct BlendPlan {

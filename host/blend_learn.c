@@ -69,8 +69,8 @@ static void series_learn(Blend *blend, int s, const Film *film, const int64_t *s
     }
     pixel_series_add(&blend->pixels[s], picture, NULL, samples);
     pixel_series_add(&blend->sums[s], tiles, NULL, samples);
-    if (s == BLEND_POOL)
-        blend->pool_gaps += fmax(1.0 - samples / (double)pixels, 0.0);
+    for (size_t i = 0; s == BLEND_POOL && i < blend_tile_count(blend); ++i)
+        blend->gaps[i] += fmax(blend->rarity[i] - samples / (double)pixels, 0.0);
 }
 
 void blend_films_learn(Blend *blend, Film *const films[], float *picture, float *tiles)
@@ -128,12 +128,12 @@ static double light_square(const Blend *blend, size_t pixel, const BlendTile *ti
 
 /* Corrects what a tile has seen of pools too small to visit all pixels: which of them they visit changes from pool to pool,
  * but evens out over all of them. A pixel of mean m that a part q of the pools visits seems to vary by
- * m^2 (1 / q - 1) more than it does. */
+ * m^2 (1 / q - 1) more than it does; q is the pool's samples over the pixels and over the rarity. */
 static void pool_correct(Blend *blend)
 {
-    double gap = seen(blend, BLEND_POOL) > 0.0 ? blend->pool_gaps / (seen(blend, BLEND_POOL) + 1.0) : 0.0;
     for (size_t i = 0; i < blend_tile_count(blend); ++i) {
         BlendTile *tile = &blend->known[i];
+        double gap = seen(blend, BLEND_POOL) > 0.0 ? blend->gaps[i] / (seen(blend, BLEND_POOL) + 1.0) : 0.0;
         double light = (double)blend->sums[BLEND_POOL].mean[i], *pool = &tile->spread[BLEND_POOL];
         double less = gap * (double)blend->direct.pixels * light * light / (BLEND_TILE * BLEND_TILE);
         *pool = fmax(*pool - less, POOL_SPREAD_LEAST * *pool);

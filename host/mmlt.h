@@ -1,4 +1,5 @@
-/* Metropolis light transport under way: what its loop (integrator_mmlt.c) and a generation (mmlt_generation.c) share. */
+/* Metropolis light transport under way: what its loop (integrator_mmlt.c), a generation (mmlt_generation.c) and
+ * its pool (mmlt_pool.c) share. */
 #ifndef TWINLIGHT_MMLT_H
 #define TWINLIGHT_MMLT_H
 
@@ -34,13 +35,17 @@ typedef struct Mmlt {
     uint next_sample; /* of the pool: numbers below it are used */
     uint pool_sample; /* the first of the latest pool */
     uint pool_pixel; /* where the latest pool began in the order in which they visit the pixels */
-    uint pool_next; /* and where the next will */
+    uint pool_next[MMLT_HALVES + 1]; /* where the next of a half will; last: of all that visit every pixel alike */
     uint generation;
     uint pool_count; /* room for so many samples */
     uint *pool_words;
     uint *begun; /* words of the chains as their pass began, where somebody wants to know */
     ChainPopulation populations[MMLT_HALVES];
     float importance[MMLT_HALVES][IMPORTANCE_CELLS];
+    uint visits[MMLT_HALVES][IMPORTANCE_CELLS + 1]; /* of pools: importance_visits */
+    double visited[MMLT_HALVES]
+                  [IMPORTANCE_CELLS]; /* visits of a cell's pixels over those of all, summed over samples */
+    double visited_all[MMLT_HALVES]; /* samples of pools */
     ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Blend blends[MMLT_HALVES];
@@ -60,12 +65,21 @@ ChainPopulation *mmlt_population(Mmlt *mmlt);
 /* For a pass whose splats go to `film`. */
 void mmlt_frame_film(FrameParams *frame, const Film *film);
 
-/* What passes of the latest pool and of chains from it are given. */
-FrameParams mmlt_pool_frame(const Mmlt *mmlt);
+/* Which half of the image a generation is for; `paper` has chains that never end. */
+int mmlt_half(const Mmlt *mmlt, uint generation);
+
+/* What all passes of a generation have in common: importance and limit. */
+void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame);
+
+/* What passes of the latest pool, of `count` samples, and of chains from it are given. */
+FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count);
 FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
 /* A pool, and where `count` chains begin (the words of mmlt->chains). *whole: not stopped before its end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error);
+
+/* Takes down where the latest pool has been. */
+void mmlt_visits_count(Mmlt *mmlt);
 
 /* Writes what makes the bad ones of a pass of `count` chains again where somebody wants to know (RenderOptions.bad_chains). */
 void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);

@@ -7,6 +7,9 @@
 #define STEP_RIGHT 0.7548776662466927
 #define STEP_DOWN 0.5698402909980532
 
+/* 1 / golden ratio. */
+#define STEP_GOLDEN 0.6180339887498949
+
 /* Among so many numbers there is one without common factor with any of 32 bits. */
 #define CANDIDATES_LEAST 64u
 
@@ -45,4 +48,13 @@ uint pixel_order_stride(uint width, uint height)
         }
     }
     return best;
+}
+
+uint pixel_order_stride_of(uint n)
+{
+    uint stride = (uint)(STEP_GOLDEN * n);
+    stride = stride > 0 ? stride : 1;
+    while (n > 1 && inverse(stride % n, n) == 0)
+        ++stride;
+    return stride;
 }

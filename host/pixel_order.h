@@ -10,4 +10,7 @@
  * sequences", 2018). */
 uint pixel_order_stride(uint width, uint height);
 
+/* The same for n >= 1 items in a row: s has no common factor with n, and is the golden part of it but for that. */
+uint pixel_order_stride_of(uint n);
+
 #endif

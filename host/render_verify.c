@@ -43,7 +43,7 @@ static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t i
     if (same && run->frame.max_depth >= CHAIN_DEPTH_MIN) {
         mmlt.options.pool = count;
         same = mmlt_seeds_run(&mmlt, count, stop, &whole, error);
-        FrameParams pool = mmlt_pool_frame(&mmlt), chains = mmlt_chain_frame(&mmlt);
+        FrameParams pool = mmlt_pool_frame(&mmlt, mmlt.pool.pass_stride), chains = mmlt_chain_frame(&mmlt);
         same = same && (!whole || list_verify(sides, "a pool, ", &pool, &mmlt.pool, count, stop, error)) &&
                (!whole || !(mmlt_population(&mmlt)->brightness > 0.0) ||
                 list_verify(sides, "chains, ", &chains, &mmlt.chains, count, stop, error));

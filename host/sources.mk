@@ -76,6 +76,7 @@ libtwinlight_host_la_SOURCES = \
 	host/mmlt.h \
 	host/mmlt_bad.c \
 	host/mmlt_generation.c \
+	host/mmlt_pool.c \
 	host/name_table.c host/name_table.h \
 	host/option_values.c host/option_values.h \
 	host/options.c host/options.h \

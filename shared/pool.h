@@ -1,5 +1,6 @@
 /* The pool from which chains begin: independent bidirectional samples, each a pair of walks with all connections between
- * them, of which one path is kept in proportion to what it carries (a bundle of candidates, and one of them drawn).
+ * them, of which one path is kept in proportion to what it carries (a bundle of candidates, and one of them drawn). From
+ * frame->pool_lights on they have the camera's walk alone, with what it meets and is connected with of lights.
  *
  * The random numbers of a pool's sample are a chain's coordinates: the same light and the same point on the lens serve
  * every connection, and the film position is two of the numbers. So the path kept can be made again from the sample's
@@ -10,6 +11,7 @@
 #include "bd_random.h"
 #include "bd_start.h"
 #include "film_splat.h"
+#include "item.h"
 
 /* BUFFER_PASS of a pool: what a sample is worth, and the path kept of it (chain_key); 0: none. */
 #define POOL_WEIGHT 0u /* sum of the luminances of all its paths, times their importance */
@@ -60,7 +62,8 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
     state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
     state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, film));
-    state_store_float(paths, stride, BD_WEIGHT, t, weight / film_reach_factor(frame));
+    float rarity = pool_rarity(frame, state_load(paths, stride, BD_PIXEL, t));
+    state_store_float(paths, stride, BD_WEIGHT, t, rarity * (weight / film_reach_factor(frame)));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
 }
 
@@ -73,10 +76,12 @@ SHARED_FUNCTION Vec3 candidate_offer(__global const FrameParams *frame, __global
     uint stride = frame->stride;
     float luminance = rgb_luminance(contribution) * importance;
     float f = luminance * cover * survival; /* of a chain there, which knows no roulette */
+    float weight = s > 1u ? frame->pool_lights_weight : 1.0f; /* fewer items can have made it */
     if (!(f > 0.0f) || !float_finite(luminance))
-        return contribution;
+        return vec3_scale(contribution, weight);
     /* Over the density of the numbers: those of a film position that the path does not have (t = 1) are uniform. */
-    float worth = t == 1u ? luminance * cover : luminance / film_reach_factor(frame);
+    float worth = weight * luminance;
+    worth *= t == 1u ? cover : pool_rarity(frame, state_load(paths, stride, BD_PIXEL, item)) / film_reach_factor(frame);
     float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + worth;
     state_store_float(paths, stride, BD_CANDIDATE_SUM, item, sum);
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CANDIDATES + s * 64u + t);
@@ -84,7 +89,7 @@ SHARED_FUNCTION Vec3 candidate_offer(__global const FrameParams *frame, __global
         state_store(paths, stride, BD_CANDIDATE, item, chain_key(s + t - 1u, s));
         state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, f);
     }
-    return f > frame->limit ? vec3_scale(contribution, frame->limit / f) : contribution;
+    return vec3_scale(contribution, f > frame->limit ? weight * (frame->limit / f) : weight);
 }
 
 #endif

@@ -312,6 +312,9 @@ typedef struct SceneLayout {
 #define IMPORTANCE_SIDE 32u
 #define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
 
+/* A pool visits a pixel no more often than this while it visits the least of them once. */
+#define VISITS_MOST 32u
+
 typedef struct FrameParams {
     SceneLayout layout;
     uint features;
@@ -328,6 +331,8 @@ typedef struct FrameParams {
     uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
     uint pool; /* 1: bidirectional samples are a pool for chains (pool.h) */
+    uint pool_lights; /* of a pool: items below this have a walk from the light, the others none */
+    float pool_lights_weight; /* all of its items over those */
     uint strategies; /* STRATEGIES_* (mis.h) of bidirectional integrators */
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
@@ -339,6 +344,8 @@ typedef struct FrameParams {
     float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
     float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/importance.h) */
+    uint visits[IMPORTANCE_CELLS +
+                1u]; /* of a pool: those of all pixels before each cell, and of all; last 0: one of each */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */

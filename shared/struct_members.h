@@ -161,6 +161,8 @@
     MEMBER(FrameParams, min_depth)                                                                                     \
     MEMBER(FrameParams, roulette_depth)                                                                                \
     MEMBER(FrameParams, pool)                                                                                          \
+    MEMBER(FrameParams, pool_lights)                                                                                   \
+    MEMBER(FrameParams, pool_lights_weight)                                                                            \
     MEMBER(FrameParams, strategies)                                                                                    \
     MEMBER(FrameParams, mis_exponent)                                                                                  \
     MEMBER(FrameParams, only_s)                                                                                        \
@@ -173,6 +175,7 @@
     MEMBER(FrameParams, limit)                                                                                         \
     MEMBER(FrameParams, brightness)                                                                                    \
     MEMBER(FrameParams, importance)                                                                                    \
+    MEMBER(FrameParams, visits)                                                                                        \
     MEMBER(FrameParams, seed_low)                                                                                      \
     MEMBER(FrameParams, seed_high)                                                                                     \
     MEMBER(FrameParams, stride)                                                                                        \

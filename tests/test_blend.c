@@ -262,6 +262,54 @@ START_TEST(test_importance)
 }
 END_TEST
 
+/* Pools go where the error is: of a picture of four columns of tiles, whose last one has ten times the standard deviation of the
+ * others, by the root of the square error, but for a quarter that is even. The column beside it is believed to have a third of
+ * that square (blend_learn.c). Pools that have been there more often already say that there is more. What nothing is known of
+ * is visited alike. */
+START_TEST(test_visits)
+{
+    Streams streams;
+    Error error = {0};
+    double samples[BLEND_STREAMS] = {1.0, 1.0, 1.0}, visited[IMPORTANCE_CELLS];
+    uint visits[IMPORTANCE_CELLS + 1];
+    streams_init(&streams);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        visited[i] = _i == 0 || i % IMPORTANCE_SIDE < 24 ? 1.0 : 4.0;
+    ck_assert(importance_visits(&streams.blend, samples, visited, visits, &error));
+    ck_assert_uint_eq(visits[IMPORTANCE_CELLS], 0);
+    for (int g = 0; g < 20; ++g) {
+        for (int s = 0; s < BLEND_STREAMS; ++s) {
+            stream_set(&streams, s, 1.0, 1.0, 0.1);
+            for (size_t i = 0; i < 3 * PIXELS; ++i)
+                if (i / 3 % SIDE >= 24)
+                    streams.films[s].light_sums[i] = llrint((1.0 + noise(&streams)) * 0x1p30);
+        }
+        generation(&streams);
+    }
+    ck_assert(importance_visits(&streams.blend, samples, visited, visits, &error));
+    double columns[4] = {0.0}, all = (double)visits[IMPORTANCE_CELLS] / (double)PIXELS, sum = 0.0;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) { /* a pixel each */
+        double each = visits[i + 1] - visits[i];
+        ck_assert(each >= 1.0 && each <= VISITS_MOST);
+        ck_assert_double_eq_tol(importance_rarity(&streams.blend, visits, i) * each, all, 1e-9);
+        columns[i % IMPORTANCE_SIDE / 8] += each / (all * (double)PIXELS / 4.0);
+    }
+    const double deviations[4] = {1.0, 1.0, sqrt(34.0), _i == 0 ? 10.0 : 20.0};
+    for (int i = 0; i < 4; ++i)
+        sum += deviations[i] / 4.0;
+    for (int i = 0; i < 4; ++i) {
+        printf("visits of column %d: %.3f times the mean\n", i, columns[i]);
+        ck_assert_double_eq_tol(columns[i], 0.25 + 0.75 * deviations[i] / sum, 0.25);
+    }
+    importance_tell(visits, &streams.blend);
+    double tiles = 0.0;
+    for (size_t i = 0; i < 16; ++i)
+        tiles += 1.0 / streams.blend.rarity[i] / 16.0;
+    ck_assert_double_eq_tol(tiles, 1.0, 0.05);
+    streams_destroy(&streams);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("blend");
@@ -274,6 +322,7 @@ int main(void)
     tcase_add_test(tcase, test_excess);
     tcase_add_loop_test(tcase, test_plan, 0, 2);
     tcase_add_test(tcase, test_importance);
+    tcase_add_loop_test(tcase, test_visits, 0, 2);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }

@@ -223,7 +223,7 @@ START_TEST(test_runs)
         const RenderSetup setup = {.text = TWO_CAUSTICS,
                                    .width = 16,
                                    .height = 16,
-                                   .samples = 16,
+                                   .samples = 22,
                                    .max_depth = 6,
                                    .threads = 2,
                                    .integrator = integrator_mmlt(),
@@ -234,7 +234,7 @@ START_TEST(test_runs)
     }
     for (int depth = 3; depth <= 6; ++depth)
         printf("longest run of refused proposals at depth %d: %u\n", depth, (unsigned)counted[0].longest_run[depth]);
-    ck_assert_uint_eq(counted[0].steps, counted[1].steps); /* 16 samples are enough for 128 of each chain */
+    ck_assert_uint_eq(counted[0].steps, counted[1].steps); /* 22 samples are enough for 192 of each chain */
     ck_assert_mem_eq(counted[0].accepted, counted[1].accepted, sizeof counted[0].accepted);
     ck_assert_mem_eq(counted[0].longest_run, counted[1].longest_run, sizeof counted[0].longest_run);
     uint64_t longest = 0;
