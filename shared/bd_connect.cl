@@ -29,19 +29,21 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     uint lengths = state_load(paths, stride, BD_LENGTHS, item);
     if ((s > 1u && s > (lengths & 0xffffu)) || t > (lengths >> 16) + 1u || !strategy_wanted(frame, s, t))
         return;
+    uint base_y = vertex_base(frame, SIDE_LIGHT, s - 1u), base_z = vertex_base(frame, SIDE_CAMERA, t - 1u);
+    if ((s > 1u && vertex_smooth(vertices, stride, base_y, item)) ||
+        (t > 1u && vertex_smooth(vertices, stride, base_z, item)))
+        return;
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
     Vertex y = {0}, z = {0};
     float back_y = 0.0f, back_z = 0.0f;
     if (s > 1u) {
-        y = vertex_load(&scene, vertices, stride, vertex_base(frame, SIDE_LIGHT, s - 1u), item);
-        back_y = walk_back_stored(paths, vertices, stride, item, SIDE_LIGHT, s - 1u,
-                                  vertex_base(frame, SIDE_LIGHT, s - 2u), y.p);
+        y = vertex_load(&scene, vertices, stride, base_y, item);
+        back_y = state_load_float(vertices, stride, base_y + VERTEX_BACK, item);
     }
     if (t > 1u) {
-        z = vertex_load(&scene, vertices, stride, vertex_base(frame, SIDE_CAMERA, t - 1u), item);
-        back_z = walk_back_stored(paths, vertices, stride, item, SIDE_CAMERA, t - 1u,
-                                  vertex_base(frame, SIDE_CAMERA, t - 2u), z.p);
+        z = vertex_load(&scene, vertices, stride, base_z, item);
+        back_z = state_load_float(vertices, stride, base_z + VERTEX_BACK, item);
     }
     Random4 random = bd_random_connection(frame, paths, item, s, t);
     bool possible = connect_ends(&scene, s, t, &y, back_y, &z, back_z, random, &connection);

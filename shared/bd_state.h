@@ -74,7 +74,8 @@
 #define VERTEX_BSDF_ETA 28u
 #define VERTEX_BSDF_COAT 29u
 #define VERTEX_SURVIVAL 30u /* BD_SURVIVAL there */
-#define VERTEX_WORDS 31u
+#define VERTEX_BACK 31u /* BD_BACK there; of pools and BDPT */
+#define VERTEX_WORDS 32u
 
 /* ---- densities --------------------------------------------------------------------------------------------------- */
 

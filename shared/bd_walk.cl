@@ -103,10 +103,13 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
             bd_add_met(frame, paths, t, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
-    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
-    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
-                     vertex_base(frame, side, depth), random_float(random.x[0]), &meeting))
+    float u_mix = 0.5f;
+    if (SCENE_HAS(&scene, FEATURE_MIX))
+        u_mix = random_float(bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
+    uint base = vertex_base(frame, side, depth);
+    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u), base, u_mix, &meeting))
         return;
+    state_store_float(vertices, stride, base + VERTEX_BACK, t, meeting.back);
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
     state_store(paths, stride, BD_LENGTHS, t, lengths);

@@ -59,6 +59,12 @@ SHARED_FUNCTION Vertex vertex_load(const SceneView *scene, __global const uint *
     return vertex;
 }
 
+/* Whether nothing can be connected with the stored vertex. */
+SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint t)
+{
+    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u;
+}
+
 /* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
  * into one per area there. */
 SHARED_FUNCTION float solid_angle_to_area(Vec3 w, Vec3 n, float distance2)

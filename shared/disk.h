@@ -14,8 +14,17 @@ SHARED_FUNCTION Vec2 disk_parameters(__global const Quadric *quadric, Vec3 p)
     return vec2(float_clamp(u, 0.0f, 1.0f), float_clamp(v, 0.0f, 1.0f));
 }
 
-/* The intersection with 0 < t < t_max, and its point in object space. */
-SHARED_FUNCTION bool disk_query(__global const Quadric *quadric, const RayQuery *query, float *t, Vec3 *p)
+/* The point of the disk that o + t d means, in object space, and in *world in the space around. */
+SHARED_FUNCTION Vec3 disk_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
+{
+    Vec3 p = vec3_mad(affine_point(quadric->object_from_world, o), t, affine_vector(quadric->object_from_world, d));
+    p.z = quadric->z_min;
+    *world = affine_point(quadric->world_from_object, p);
+    return p;
+}
+
+/* The intersection with 0 < t < t_max. */
+SHARED_FUNCTION bool disk_query(__global const Quadric *quadric, const RayQuery *query, float *t)
 {
     RayQuery inner = ray_query_transform(quadric->object_from_world, query);
     float height = quadric->z_min;
@@ -27,13 +36,13 @@ SHARED_FUNCTION bool disk_query(__global const Quadric *quadric, const RayQuery 
     float error = inner.error.z + 2.0f * FLOAT_EPSILON * (float_abs(inner.o.z) + *t * float_abs(inner.d.z));
     if (!ray_query_clear(&inner, *t, float_abs(inner.d.z), error))
         return false;
-    *p = vec3_mad(inner.o, *t, inner.d);
-    p->z = height;
-    float distance_squared = p->x * p->x + p->y * p->y;
+    Vec3 p = vec3_mad(inner.o, *t, inner.d);
+    p.z = height;
+    float distance_squared = p.x * p.x + p.y * p.y;
     if (!(distance_squared <= quadric->radius * quadric->radius) ||
         distance_squared < quadric->inner_radius * quadric->inner_radius)
         return false;
-    return quadric->phi_max >= 2.0f * PI || quadric_phi(*p) <= quadric->phi_max;
+    return quadric->phi_max >= 2.0f * PI || quadric_phi(p) <= quadric->phi_max;
 }
 
 #endif

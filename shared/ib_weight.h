@@ -10,7 +10,7 @@
 
 /* Fields behind those of bd_state.h. With v_1, v_2 ... v_j the walk's vertices and r_i the density of v_i as the other
  * side makes it over that as its own side does: r_i is known when the walk has left v_{i+1}. */
-#define IB_PRODUCT BD_HEADER_WORDS /* r_1 r_2 ... r_{j-2}: mantissa, exponent */
+#define IB_PRODUCT BD_HEADER_WORDS /* r_1 r_2 ... r_{j-2}: value, exponent */
 #define IB_OWN (BD_HEADER_WORDS + 2u) /* of v_j, as its own side makes it */
 #define IB_OWN_BEFORE (BD_HEADER_WORDS + 3u) /* of v_{j-1} */
 #define IB_FIRST_RATIO (BD_HEADER_WORDS + 4u) /* of y_0 on the light's side, once the walk has left y_1 */
@@ -20,14 +20,14 @@
 SHARED_FUNCTION Scaled ib_product_load(__global const uint *paths, uint stride, uint t)
 {
     Scaled product;
-    product.mantissa = state_load_float(paths, stride, IB_PRODUCT, t);
+    product.value = state_load_float(paths, stride, IB_PRODUCT, t);
     product.exponent = (int)state_load(paths, stride, IB_PRODUCT + 1u, t);
     return product;
 }
 
 SHARED_FUNCTION void ib_product_store(__global uint *paths, uint stride, uint t, Scaled product)
 {
-    state_store_float(paths, stride, IB_PRODUCT, t, product.mantissa);
+    state_store_float(paths, stride, IB_PRODUCT, t, product.value);
     state_store(paths, stride, IB_PRODUCT + 1u, t, (uint)product.exponent);
 }
 

@@ -13,7 +13,7 @@ typedef struct Ray {
 } Ray;
 
 /* The closest intersection is the smallest (t, instance, primitive), in that order. primitive NONE: a miss.
- * u, v: triangle: barycentric weights of vertices b and c. Patch: its (u, v). Quadric: pbrt's (u, v) parameters. */
+ * u, v: triangle: barycentric weights of vertices b and c. Patch: its (u, v). Of quadrics 0. */
 typedef struct Hit {
     float t;
     uint primitive;
@@ -27,7 +27,7 @@ typedef struct Surface {
     Vec3 ng; /* geometric normal, unit, on the side that pbrt calls outside (an area light shines to this side) */
     Vec3 ns; /* shading normal, unit; in the hemisphere of ng before bump mapping */
     Vec3 dpdu, dpdv; /* shading tangents; only in scenes with FEATURE_TANGENTS */
-    Vec2 uv; /* texture coordinates */
+    Vec2 uv; /* texture coordinates; of spheres and disks only in scenes with FEATURE_TEXTURE */
     float u, v; /* as in Hit: where on the primitive */
     uint shape;
 } Surface;

@@ -47,6 +47,24 @@ SHARED_FUNCTION Vec2 patch_uv(const SceneView *scene, const Shape *shape, uint p
                 w00 * corner[0].y + w10 * corner[1].y + w01 * corner[2].y + w11 * corner[3].y);
 }
 
+/* The point of the sphere or disk that o + t d means, in object space, and in *world in the space around. */
+SHARED_FUNCTION Vec3 quadric_point(const SceneView *scene, const Primitive *primitive, Vec3 o, Vec3 d, float t,
+                                   Vec3 *world)
+{
+    __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    return primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? sphere_point(quadric, o, d, t, world)
+                                                                                 : disk_point(quadric, o, d, t, world);
+}
+
+/* Texture coordinates of a point of a sphere or disk in object space. Hits have none: four arcs a sphere, which only
+ * textures ask for. */
+SHARED_FUNCTION Vec2 quadric_uv(const SceneView *scene, const Primitive *primitive, Vec3 p)
+{
+    __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    return primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? sphere_parameters(quadric, p)
+                                                                                 : disk_parameters(quadric, p);
+}
+
 /* Number of a sphere's far side in ray_hash: its own with this bit. */
 #define PRIMITIVE_FAR_SIDE 0x80000000u
 
@@ -82,11 +100,15 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     TexturePoint point;
     point.p = vec3_mad(query->o, hit->t, query->d);
-    point.uv = vec2(hit->u, hit->v);
     if (kind == PRIMITIVE_TRIANGLE)
         point.uv = triangle_uv(scene, &shape, primitive, hit->u, hit->v);
-    if (kind == PRIMITIVE_BILINEAR)
+    else if (kind == PRIMITIVE_BILINEAR)
         point.uv = patch_uv(scene, &shape, primitive->a, hit->u, hit->v);
+    else {
+        Vec3 world;
+        Vec3 p = quadric_point(scene, primitive, query->o, query->d, hit->t, &world);
+        point.uv = quadric_uv(scene, primitive, p);
+    }
     float alpha = texture_eval_float(scene, shape.alpha, &point);
     if (alpha >= 1.0f)
         return true;
@@ -109,7 +131,6 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
                                            float after, Hit *hit)
 {
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    Vec3 p;
     if (SCENE_HAS(scene, FEATURE_BILINEAR) && kind == PRIMITIVE_BILINEAR) {
         PatchCorners corners = patch_corners(scene, primitive->a);
         return patch_query(&corners, query, &hit->t, &hit->u, &hit->v);
@@ -117,14 +138,8 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
     if (!SCENE_HAS(scene, FEATURE_SPHERE | FEATURE_DISK))
         return false;
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
-    bool sphere = kind == PRIMITIVE_SPHERE;
-    bool found = sphere ? sphere_query(quadric, query, after, &hit->t, &p) : disk_query(quadric, query, &hit->t, &p);
-    if (!found)
-        return false;
-    Vec2 uv = sphere ? sphere_parameters(quadric, p) : disk_parameters(quadric, p);
-    hit->u = uv.x;
-    hit->v = uv.y;
-    return true;
+    return kind == PRIMITIVE_SPHERE ? sphere_query(quadric, query, after, &hit->t)
+                                    : disk_query(quadric, query, &hit->t);
 }
 
 /* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it not,
@@ -142,7 +157,7 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
            primitive_alpha_keeps(scene, query, id ^ PRIMITIVE_FAR_SIDE, &primitive, hit);
 }
 
-/* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, u, v. Depends on nothing
+/* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and u, v but of quadrics. Depends on nothing
  * but ray and primitive. */
 SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {

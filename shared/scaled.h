@@ -5,110 +5,107 @@
 
 #include "platform.h"
 
-/* mantissa 2^exponent with 1 <= mantissa < 2, or mantissa 0 and exponent SCALED_ZERO; never negative. Infinity is
- * mantissa 1 and exponent SCALED_INFINITE, and stays it but for a product with zero, which is zero. */
+/* value 2^exponent, never negative. The value is SCALED_LEAST or more and below SCALED_MOST, so that products, quotients and
+ * sums of two are normal floats: as long as they are within these bounds, too, which is nearly always, there is no more to
+ * do than plain arithmetic, and the rounding is that of any other exponent. Zero and infinity are the float's, with
+ * exponent 0. Infinity stays it but for a product with zero, which is zero. */
 typedef struct Scaled {
-    float mantissa;
+    float value;
     int exponent;
 } Scaled;
 
-#define SCALED_ZERO (-0x20000000)
-#define SCALED_INFINITE 0x20000000
+#define SCALED_LEAST 8.673617380e-19f /* 2^-60 */
+#define SCALED_MOST 1.152921505e18f /* 2^60 */
+
+/* value 2^exponent for any float; NaN and negative numbers give 0. */
+SHARED_FUNCTION Scaled scaled_make(float value, int exponent)
+{
+    Scaled result;
+    result.value = value;
+    result.exponent = exponent;
+    if (value >= SCALED_LEAST && value < SCALED_MOST)
+        return result;
+    bool regular = value > 0.0f && float_finite(value);
+    result.exponent = 0;
+    if (regular)
+        result.value = float_mantissa(value, &result.exponent);
+    else if (!(value > 0.0f))
+        result.value = 0.0f;
+    result.exponent += regular ? exponent : 0;
+    return result;
+}
 
 SHARED_FUNCTION Scaled scaled_zero(void)
 {
-    Scaled zero;
-    zero.mantissa = 0.0f;
-    zero.exponent = SCALED_ZERO;
-    return zero;
+    return scaled_make(0.0f, 0);
 }
 
-SHARED_FUNCTION Scaled scaled_infinite(void)
-{
-    Scaled infinite;
-    infinite.mantissa = 1.0f;
-    infinite.exponent = SCALED_INFINITE;
-    return infinite;
-}
-
-/* x >= 0; NaN and negative numbers give 0. */
 SHARED_FUNCTION Scaled scaled_from(float x)
 {
+    return scaled_make(x, 0);
+}
+
+SHARED_FUNCTION bool scaled_is_infinite(Scaled a)
+{
+    return !float_finite(a.value);
+}
+
+/* The same with a value in [1, 2); neither zero nor infinite. */
+SHARED_FUNCTION Scaled scaled_normalize(Scaled a)
+{
+    int shift;
     Scaled result;
-    if (!(x > 0.0f))
-        return scaled_zero();
-    if (!float_finite(x))
-        return scaled_infinite();
-    result.mantissa = float_mantissa(x, &result.exponent);
+    result.value = float_mantissa(a.value, &shift);
+    result.exponent = a.exponent + shift;
     return result;
 }
 
 /* Zero where it underflows, infinity where it overflows. */
 SHARED_FUNCTION float scaled_float(Scaled a)
 {
-    if (a.mantissa == 0.0f || a.exponent < -126)
+    if (a.exponent == 0)
+        return a.value;
+    a = scaled_normalize(a);
+    if (a.exponent < -126)
         return 0.0f;
     if (a.exponent > 127)
         return FLOAT_INFINITY;
-    return a.mantissa * bits_float((uint)(a.exponent + 127) << 23);
-}
-
-SHARED_FUNCTION bool scaled_is_infinite(Scaled a)
-{
-    return a.exponent == SCALED_INFINITE;
+    return a.value * bits_float((uint)(a.exponent + 127) << 23);
 }
 
 SHARED_FUNCTION Scaled scaled_multiply(Scaled a, Scaled b)
 {
-    if (a.mantissa == 0.0f || b.mantissa == 0.0f)
-        return scaled_zero();
-    if (scaled_is_infinite(a) || scaled_is_infinite(b))
-        return scaled_infinite();
-    Scaled product;
-    product.mantissa = a.mantissa * b.mantissa;
-    product.exponent = a.exponent + b.exponent;
-    if (product.mantissa >= 2.0f) {
-        product.mantissa = product.mantissa * 0.5f;
-        product.exponent += 1;
-    }
-    return product;
+    return scaled_make(a.value * b.value, a.exponent + b.exponent);
 }
 
 /* a / b; anything over zero is infinite, but zero over anything is zero. Infinite over infinite is 1. */
 SHARED_FUNCTION Scaled scaled_divide(Scaled a, Scaled b)
 {
-    if (a.mantissa == 0.0f)
-        return scaled_zero();
-    if (b.mantissa == 0.0f)
-        return scaled_infinite();
-    if (scaled_is_infinite(b))
-        return scaled_is_infinite(a) ? scaled_from(1.0f) : scaled_zero();
-    if (scaled_is_infinite(a))
+    float value = a.value / b.value;
+    if (value != value && scaled_is_infinite(a))
+        return scaled_from(1.0f);
+    return scaled_make(value, a.exponent - b.exponent);
+}
+
+/* The sum of numbers of different exponents. */
+SHARED_FUNCTION Scaled scaled_add_shifted(Scaled a, Scaled b)
+{
+    if (a.value == 0.0f || scaled_is_infinite(b))
+        return b;
+    if (b.value == 0.0f || scaled_is_infinite(a))
         return a;
-    Scaled quotient;
-    quotient.mantissa = a.mantissa / b.mantissa;
-    quotient.exponent = a.exponent - b.exponent;
-    if (quotient.mantissa < 1.0f) {
-        quotient.mantissa = quotient.mantissa * 2.0f;
-        quotient.exponent -= 1;
-    }
-    return quotient;
+    a = scaled_normalize(a);
+    b = scaled_normalize(b);
+    Scaled larger = a.exponent >= b.exponent ? a : b, smaller = a.exponent >= b.exponent ? b : a;
+    int shift = larger.exponent - smaller.exponent;
+    if (shift > 30)
+        return larger;
+    return scaled_make(larger.value + smaller.value * bits_float((uint)(127 - shift) << 23), larger.exponent);
 }
 
 SHARED_FUNCTION Scaled scaled_add(Scaled a, Scaled b)
 {
-    Scaled larger = a.exponent >= b.exponent ? a : b, smaller = a.exponent >= b.exponent ? b : a;
-    int shift = larger.exponent - smaller.exponent;
-    if (smaller.mantissa == 0.0f || shift > 30 || scaled_is_infinite(larger))
-        return larger;
-    Scaled sum;
-    sum.mantissa = larger.mantissa + smaller.mantissa * bits_float((uint)(127 - shift) << 23);
-    sum.exponent = larger.exponent;
-    if (sum.mantissa >= 2.0f) {
-        sum.mantissa = sum.mantissa * 0.5f;
-        sum.exponent += 1;
-    }
-    return sum;
+    return a.exponent == b.exponent ? scaled_make(a.value + b.value, a.exponent) : scaled_add_shifted(a, b);
 }
 
 #endif

@@ -82,9 +82,23 @@ SHARED_FUNCTION bool sphere_roots(Vec3 f, Vec3 d, float r, float *t_near, float 
     return true;
 }
 
-/* The first intersection with after < t < t_max, after >= 0, and its point on the sphere in object space. */
-SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuery *query, float after, float *t,
-                                  Vec3 *p)
+/* The point of the sphere that o + t d means, in object space, and in *world in the space around. */
+SHARED_FUNCTION Vec3 sphere_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
+{
+    if (quadric->whole) {
+        Vec3 f = vec3_mad(vec3_sub(o, quadric->center), t, d);
+        Vec3 outward = sphere_project(f, quadric->world_radius);
+        *world = vec3_add(quadric->center, outward);
+        return sphere_project(affine_vector(quadric->object_from_world, outward), quadric->radius);
+    }
+    Vec3 p = vec3_mad(affine_point(quadric->object_from_world, o), t, affine_vector(quadric->object_from_world, d));
+    p = sphere_project(p, quadric->radius);
+    *world = affine_point(quadric->world_from_object, p);
+    return p;
+}
+
+/* The first intersection with after < t < t_max, after >= 0. */
+SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuery *query, float after, float *t)
 {
     RayQuery inner = *query;
     Vec3 center = vec3_splat(0.0f);
@@ -104,12 +118,8 @@ SHARED_FUNCTION bool sphere_query(__global const Quadric *quadric, const RayQuer
         if (!(roots[i] > after && roots[i] < query->t_max && ray_query_clear(&inner, roots[i], root, tolerance)))
             continue;
         *t = roots[i];
-        *p = sphere_project(vec3_mad(f, roots[i], inner.d), radius);
-        if (quadric->whole) {
-            *p = affine_vector(quadric->object_from_world, *p);
-            *p = sphere_project(*p, quadric->radius);
-        }
-        if (!sphere_is_clipped(quadric) || sphere_keeps(quadric, *p))
+        if (!sphere_is_clipped(quadric) ||
+            sphere_keeps(quadric, sphere_project(vec3_mad(f, roots[i], inner.d), radius)))
             return true;
     }
     return false;

@@ -188,49 +188,27 @@ SHARED_FUNCTION void disk_tangents(__global const Quadric *quadric, Vec3 p, Vec3
     *dpdv = vec3_scale(vec3(x, y, 0.0f), quadric->inner_radius - quadric->radius);
 }
 
-/* The point of the sphere that o + t d means, in object space, and in *world in the space around. */
-SHARED_FUNCTION Vec3 sphere_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
-{
-    if (quadric->whole) {
-        Vec3 f = vec3_mad(vec3_sub(o, quadric->center), t, d);
-        Vec3 outward = sphere_project(f, quadric->world_radius);
-        *world = vec3_add(quadric->center, outward);
-        return sphere_project(affine_vector(quadric->object_from_world, outward), quadric->radius);
-    }
-    Vec3 p = vec3_mad(affine_point(quadric->object_from_world, o), t, affine_vector(quadric->object_from_world, d));
-    p = sphere_project(p, quadric->radius);
-    *world = affine_point(quadric->world_from_object, p);
-    return p;
-}
-
-SHARED_FUNCTION Vec3 disk_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
-{
-    Vec3 p = vec3_mad(affine_point(quadric->object_from_world, o), t, affine_vector(quadric->object_from_world, d));
-    p.z = quadric->z_min;
-    *world = affine_point(quadric->world_from_object, p);
-    return p;
-}
-
 /* o, d: the ray in the space that the quadric's transform leads to. */
 SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *shape, const Primitive *primitive,
                                           Vec3 o, Vec3 d, const Hit *hit, Surface *surface)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
     bool sphere = (primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT) == PRIMITIVE_SPHERE;
-    Vec3 p, dpdu, dpdv, normal;
-    if (sphere) {
-        p = sphere_point(quadric, o, d, hit->t, &surface->p);
+    Vec3 p = quadric_point(scene, primitive, o, d, hit->t, &surface->p);
+    /* dp/du x dp/dv, which loses its direction near a sphere's poles */
+    Vec3 normal = sphere ? p : vec3(0.0f, 0.0f, 1.0f);
+    surface_normals_set(surface, affine_normal(quadric->object_from_world, normal), vec3_splat(0.0f), shape->flags);
+    surface->uv = SCENE_HAS(scene, FEATURE_TEXTURE) ? quadric_uv(scene, primitive, p) : vec2(0.0f, 0.0f);
+    surface->dpdu = surface->dpdv = vec3_splat(0.0f);
+    if (!SCENE_HAS(scene, FEATURE_TANGENTS))
+        return;
+    Vec3 dpdu, dpdv;
+    if (sphere)
         sphere_tangents(quadric, p, &dpdu, &dpdv);
-        normal = p; /* dp/du x dp/dv, which loses its direction near the poles */
-    } else {
-        p = disk_point(quadric, o, d, hit->t, &surface->p);
+    else
         disk_tangents(quadric, p, &dpdu, &dpdv);
-        normal = vec3(0.0f, 0.0f, 1.0f);
-    }
-    surface->uv = vec2(hit->u, hit->v);
     surface->dpdu = affine_vector(quadric->world_from_object, dpdu);
     surface->dpdv = affine_vector(quadric->world_from_object, dpdv);
-    surface_normals_set(surface, affine_normal(quadric->object_from_world, normal), vec3_splat(0.0f), shape->flags);
 }
 
 /* ---- all ------------------------------------------------------------------------------------------------------- */

@@ -135,7 +135,7 @@ START_TEST(test_partial_sphere)
             Vec3 p = affine_point(test.view.quadrics[0].object_from_world, surface.p);
             ck_assert(fabsf(vec3_length(p) - 1.5f) < 1e-5f);
             ck_assert(p.z > quadric.z_min - 1e-5f && p.z < quadric.z_max + 1e-5f);
-            ck_assert(hit.u >= 0.0f && hit.u <= 1.0f && hit.v >= 0.0f && hit.v <= 1.0f);
+            ck_assert(surface.uv.x >= 0.0f && surface.uv.x <= 1.0f && surface.uv.y >= 0.0f && surface.uv.y <= 1.0f);
         }
         test_scene_destroy(&test);
     }
@@ -292,9 +292,9 @@ START_TEST(test_disk)
         if (border || hit.primitive == NONE)
             continue;
         ck_assert(fabsl(hit.t - t) < 2e-6L * (1 + fabsl(t)) / fabsf(ray.d.z));
-        ck_assert(fabsl(hit.u - phi / 4) < 1e-5L / fabsf(ray.d.z) &&
-                  fabsl(hit.v - (2 - r) / 1.5L) < 1e-5L / fabsf(ray.d.z));
         Surface surface = surface_from_hit(&test.view, &ray, hit);
+        ck_assert(fabsl(surface.uv.x - phi / 4) < 1e-5L / fabsf(ray.d.z) &&
+                  fabsl(surface.uv.y - (2 - r) / 1.5L) < 1e-5L / fabsf(ray.d.z));
         ck_assert(surface.p.z == 0.25f && surface.ng.z == 1.0f);
         Ray next = ray_spawn(surface.p, surface.ng, random_direction(&random));
         ck_assert(brute_force(&test, &next).primitive == NONE);
