@@ -1,5 +1,5 @@
 /* The kernels of bidirectional paths. They evaluate BSDFs in so many places that the compiler would need a gigabyte and
- * minutes to inline everything, as kernels.c does; what it chooses itself costs less than a tenth of the speed. */
+ * minutes to inline everything, as kernels.c does; configure tells it to inline more than it would choose itself. */
 #include "kernel_loop.h"
 
 #include "bd_connect.cl"

@@ -14,7 +14,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
 libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)
-libtwinlight_kernels_la_CFLAGS = $(AM_CFLAGS) $(KERNEL_CFLAGS)
+libtwinlight_kernels_la_CFLAGS = $(AM_CFLAGS) $(KERNEL_CFLAGS) $(INLINE_CFLAGS)
 if ENABLE_DOUBLE
 libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene_double.c
 else

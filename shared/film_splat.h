@@ -22,6 +22,19 @@ SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, flo
     return (cdf[cell + 1u] - cdf[cell]) * ((0.5f * (float)PIXEL_FILTER_CELLS) / radius);
 }
 
+/* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be none
+ * (false). */
+SHARED_FUNCTION bool film_splat_reach(float radius, uint begin, uint end, float film, uint *first, uint *last)
+{
+    float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
+    float high = float_min(float_floor(film - 0.5f + radius), (float)end - 1.0f);
+    if (!(low <= high))
+        return false;
+    *first = (uint)low;
+    *last = (uint)high;
+    return true;
+}
+
 /* Draws one of the pixels begin <= i < end along an axis in proportion to |f(film - i - 0.5)|; NONE when no filter
  * covers `film`. *weight: the sum of |f| / (integral of |f|) over all of them times the sign of the one drawn.
  *
@@ -30,14 +43,12 @@ SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, flo
 SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float radius, uint begin, uint end, float film,
                                      float u, float *weight)
 {
-    float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
-    float high = float_min(float_floor(film - 0.5f + radius), (float)end - 1.0f);
-    uint chosen = NONE;
+    uint chosen = NONE, first, last;
     float sum = 0.0f, sign = 1.0f;
     *weight = 0.0f;
-    if (!(low <= high))
+    if (!film_splat_reach(radius, begin, end, film, &first, &last))
         return NONE;
-    for (uint i = (uint)low; i <= (uint)high; ++i) {
+    for (uint i = first; i <= last; ++i) {
         float sign_here;
         float f = film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign_here);
         if (!(f > 0.0f))
@@ -46,12 +57,24 @@ SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float r
         sum += f;
         place = u * sum;
         bool take = chosen == NONE || place < f;
-        u = take ? place / f : (place - f) / before;
+        u = float_select(take, place, place - f) / float_select(take, f, before);
         chosen = take ? i : chosen;
         sign = take ? sign_here : sign;
     }
     *weight = sign * sum;
     return chosen;
+}
+
+/* |*weight| of film_splat_axis. */
+SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float radius, uint begin, uint end, float film)
+{
+    uint first, last;
+    float sum = 0.0f, sign;
+    if (!film_splat_reach(radius, begin, end, film, &first, &last))
+        return 0.0f;
+    for (uint i = first; i <= last; ++i)
+        sum += float_max(film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign), 0.0f);
+    return sum;
 }
 
 /* The pixel (y * width + x, inside the crop window) that a splat at film position `film` (pixels, continuous) goes to
@@ -76,10 +99,8 @@ SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
 {
     __global const FrameParams *frame = scene->frame;
     __global const PixelFilter *filter = &frame->filter;
-    float x, y;
-    film_splat_axis(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x, 0.5f, &x);
-    film_splat_axis(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y, 0.5f, &y);
-    return float_abs(x * y);
+    return film_splat_sum(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x) *
+           film_splat_sum(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y);
 }
 
 /* The cell along an axis of `pixels` pixels, from `first` on, that `film` is in or nearest to. */
