@@ -157,8 +157,8 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
            primitive_alpha_keeps(scene, query, id ^ PRIMITIVE_FAR_SIDE, &primitive, hit);
 }
 
-/* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and u, v but of quadrics. Depends on nothing
- * but ray and primitive. */
+/* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and but for quadrics u, v.
+ * Depends on nothing but ray and primitive. */
 SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];
