@@ -36,17 +36,12 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Connection connection = {0};
     Vertex y = {0}, z = {0};
-    float back_y = 0.0f, back_z = 0.0f;
-    if (s > 1u) {
+    if (s > 1u)
         y = vertex_load(&scene, vertices, stride, base_y, item);
-        back_y = state_load_float(vertices, stride, base_y + VERTEX_BACK, item);
-    }
-    if (t > 1u) {
+    if (t > 1u)
         z = vertex_load(&scene, vertices, stride, base_z, item);
-        back_z = state_load_float(vertices, stride, base_z + VERTEX_BACK, item);
-    }
     Random4 random = bd_random_connection(frame, paths, item, s, t);
-    bool possible = connect_ends(&scene, s, t, &y, back_y, &z, back_z, random, &connection);
+    bool possible = connect_ends(&scene, s, t, &y, &z, random, &connection);
     if (possible && t == 1u)
         possible = connection_aim(&scene, random, &connection);
     if (!possible || !connection_traceable(&connection))

@@ -1,5 +1,4 @@
-/* Connections of bidirectional paths: what they contribute and the densities that only they know. `back` turns a
- * solid-angle density at the vertex into an area density at the one before it (walk_back). */
+/* Connections of bidirectional paths: what they contribute and the densities that only they know. */
 #ifndef TWINLIGHT_BD_CONNECT_H
 #define TWINLIGHT_BD_CONNECT_H
 
@@ -32,8 +31,7 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
 }
 
 /* t = 1: y = y_{s-1}, s >= 2, seen from a point on the lens. random: lens. */
-SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, float back, Random4 random,
-                                    Connection *connection)
+SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Random4 random, Connection *connection)
 {
     CameraConnection camera;
     if ((y->bsdf.flags & BSDF_SMOOTH) != 0u ||
@@ -44,13 +42,12 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, flo
     connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
     connection->shadow = ray_between(y->p, y->ng, camera.p, vec3_splat(0.0f));
     connection->ends.camera_y1 = camera.pdf * float_abs(vec3_dot(camera.wi, y->ng));
-    connection->ends.camera_y2 = f.pdf_rev_w * back;
+    connection->ends.camera_y2 = f.pdf_rev_w * y->back;
     return true;
 }
 
 /* s = 1: a point on a light drawn for z = z_{t-1}, t >= 2. random: which light (x, y), where on it. */
-SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, float back, Random4 random,
-                                   Connection *connection)
+SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
 {
     if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
         return false;
@@ -65,7 +62,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, floa
     connection->shadow = light_shadow_ray(z->p, z->ng, &sample);
     StrategyEnds *ends = &connection->ends;
     float at_z = float_abs(vec3_dot(sample.wi, z->ng));
-    ends->light_z2 = f.pdf_rev_w * back;
+    ends->light_z2 = f.pdf_rev_w * z->back;
     ends->hittable = sample.delta == 0u;
     ends->connect = 1.0f;
     if (sample.infinite != 0u) {
@@ -89,8 +86,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, floa
 }
 
 /* s >= 2, t >= 2: two surfaces. */
-SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, float back_y, const Vertex *z,
-                                      float back_z, Connection *connection)
+SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z, Connection *connection)
 {
     Vec3 d = vec3_sub(y->p, z->p);
     float distance2 = vec3_length_squared(d);
@@ -106,24 +102,24 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, f
     connection->shadow = ray_between(z->p, z->ng, y->p, y->ng);
     StrategyEnds *ends = &connection->ends;
     ends->light_z1 = fy.pdf_w * solid_angle_to_area(w, z->ng, distance2);
-    ends->light_z2 = fz.pdf_rev_w * back_z;
+    ends->light_z2 = fz.pdf_rev_w * z->back;
     ends->camera_y1 = fz.pdf_w * solid_angle_to_area(w, y->ng, distance2);
-    ends->camera_y2 = fy.pdf_rev_w * back_y;
+    ends->camera_y2 = fy.pdf_rev_w * y->back;
     return true;
 }
 
 /* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not read.
  * random: of whichever it is. */
-SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, float back_y,
-                                  const Vertex *z, float back_z, Random4 random, Connection *connection)
+SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
+                                  Random4 random, Connection *connection)
 {
     connection->target = NONE;
     connection->ends.connect = 1.0f;
     if (t == 1u)
-        return connect_camera(scene, y, back_y, random, connection);
+        return connect_camera(scene, y, random, connection);
     if (s == 1u)
-        return connect_light(scene, z, back_z, random, connection);
-    return connect_surfaces(scene, y, back_y, z, back_z, connection);
+        return connect_light(scene, z, random, connection);
+    return connect_surfaces(scene, y, z, connection);
 }
 
 /* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */

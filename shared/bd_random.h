@@ -5,6 +5,7 @@
 
 #include "bd_state.h"
 #include "rng.h"
+#include "scene_view.h"
 
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
 #define BD_RANDOM_LIGHT 1u /* x, y: which light */
@@ -43,6 +44,14 @@ SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global 
 SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
 {
     return BD_RANDOM_VERTICES + (2u * i + side) * 2u + what;
+}
+
+/* What decides the mix materials of the vertex after `depth` segments of a side; asked for only where there are any. */
+SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint t, uint side, uint depth)
+{
+    if (!SCENE_HAS(scene, FEATURE_MIX))
+        return 0.5f;
+    return random_float(bd_random(scene->frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
 }
 
 /* A chain has one point of the lens and one light for whatever they are connected with: its coordinates (camera: film,

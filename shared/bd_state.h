@@ -32,24 +32,23 @@
 #define BD_PDF 17u /* density of the last direction, per solid angle (or per area across it: WALK_PARALLEL) */
 #define BD_WALK_FLAGS 18u /* WALK_* */
 #define BD_ETA_SCALE 19u /* product of eta^2 over refractions, for Russian roulette */
-#define BD_BACK 20u /* turns a solid-angle density at the vertex into an area density at the one before it */
 /* The connection under way */
-#define BD_S 21u
-#define BD_T 22u
-#define BD_CONTRIBUTION 23u /* if nothing lies between, 3 */
-#define BD_TARGET 26u /* pixel it goes to; NONE: the path's own */
-#define BD_TARGET_WEIGHT 27u /* of the pixel filter, there */
-#define BD_COVER 28u /* of a pool: film_splat_cover where the camera's path began */
+#define BD_S 20u
+#define BD_T 21u
+#define BD_CONTRIBUTION 22u /* if nothing lies between, 3 */
+#define BD_TARGET 25u /* pixel it goes to; NONE: the path's own */
+#define BD_TARGET_WEIGHT 26u /* of the pixel filter, there */
+#define BD_COVER 27u /* of a pool: film_splat_cover where the camera's path began */
 /* Of a pool (pool.h) */
-#define BD_CANDIDATE_SUM 29u
-#define BD_CANDIDATE 30u
-#define BD_CANDIDATE_LUMINANCE 31u /* of the candidate without roulette, as a chain sees it */
-#define BD_CONNECTION_SURVIVAL 32u /* what roulette left of both walks to the connection under way */
-#define BD_SURVIVAL 33u /* probability with which roulette has let the walk under way come so far */
-#define BD_IMPORTANCE 34u /* of the film position where the camera's path began */
-#define BD_TARGET_IMPORTANCE 35u /* of the one that the connection under way is seen at (t = 1) */
-#define BD_GATHERED 36u /* frame->split_depths: segments of the path that has brought BD_RADIANCE */
-#define BD_HEADER_WORDS 37u
+#define BD_CANDIDATE_SUM 28u
+#define BD_CANDIDATE 29u
+#define BD_CANDIDATE_LUMINANCE 30u /* of the candidate without roulette, as a chain sees it */
+#define BD_CONNECTION_SURVIVAL 31u /* what roulette left of both walks to the connection under way */
+#define BD_SURVIVAL 32u /* probability with which roulette has let the walk under way come so far */
+#define BD_IMPORTANCE 33u /* of the film position where the camera's path began */
+#define BD_TARGET_IMPORTANCE 34u /* of the one that the connection under way is seen at (t = 1) */
+#define BD_GATHERED 35u /* frame->split_depths: segments of the path that has brought BD_RADIANCE */
+#define BD_HEADER_WORDS 36u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can meet it */
@@ -74,7 +73,7 @@
 #define VERTEX_BSDF_ETA 28u
 #define VERTEX_BSDF_COAT 29u
 #define VERTEX_SURVIVAL 30u /* BD_SURVIVAL there */
-#define VERTEX_BACK 31u /* BD_BACK there; of pools and BDPT */
+#define VERTEX_BACK 31u /* Vertex.back (bd_walk.h) */
 #define VERTEX_WORDS 32u
 
 /* ---- densities --------------------------------------------------------------------------------------------------- */

@@ -95,7 +95,6 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
         walk_end(paths, rays, stride, t);
         return;
     }
-    state_store_float(paths, stride, BD_BACK, t, meeting.back);
     if (side == SIDE_CAMERA && meeting.light != NONE) {
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(&scene, &meeting, &ends);
@@ -103,13 +102,9 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
             bd_add_met(frame, paths, t, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
-    float u_mix = 0.5f;
-    if (SCENE_HAS(&scene, FEATURE_MIX))
-        u_mix = random_float(bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
-    uint base = vertex_base(frame, side, depth);
-    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u), base, u_mix, &meeting))
+    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
+                     vertex_base(frame, side, depth), bd_random_mix(&scene, paths, t, side, depth), &meeting))
         return;
-    state_store_float(vertices, stride, base + VERTEX_BACK, t, meeting.back);
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
     state_store(paths, stride, BD_LENGTHS, t, lengths);
@@ -136,8 +131,7 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
         return;
     walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u)
-        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t,
-                          step.reverse * state_load_float(paths, stride, BD_BACK, t));
+        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t, step.reverse);
     walk_step_store(paths, rays, stride, t, depth, &step);
 }
 

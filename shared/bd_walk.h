@@ -31,6 +31,7 @@ typedef struct Vertex {
     Vec3 p, ng;
     Vec3 wo; /* in the frame */
     Vec3 beta;
+    float back; /* turns a solid-angle density here into an area density at the vertex before it (walk_back) */
     Frame frame;
     Bsdf bsdf;
 } Vertex;
@@ -43,6 +44,7 @@ SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertice
     frame_store(vertices, stride, base + VERTEX_FRAME_N, t, vertex->frame);
     state_store_vec3(vertices, stride, base + VERTEX_WO, t, vertex->wo);
     state_store_vec3(vertices, stride, base + VERTEX_BETA, t, vertex->beta);
+    state_store_float(vertices, stride, base + VERTEX_BACK, t, vertex->back);
     bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, t, &vertex->bsdf);
 }
 
@@ -55,6 +57,7 @@ SHARED_FUNCTION Vertex vertex_load(const SceneView *scene, __global const uint *
     vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, t);
     vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, t);
     vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, t);
+    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, t);
     vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, t);
     return vertex;
 }
@@ -210,8 +213,8 @@ SHARED_FUNCTION bool vertex_make(const SceneView *scene, Surface *surface, Vec3 
 typedef struct WalkStep {
     Ray ray;
     Vec3 beta;
-    float forward; /* density of the new direction, and of the way back; per solid angle */
-    float reverse;
+    float forward; /* density of the new direction, per solid angle */
+    float reverse; /* of the way back, per area at the vertex before */
     float eta_scale;
     float survival; /* probability of roulette here */
     uint delta;
@@ -261,6 +264,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     step->reverse = sample.pdf_rev_w;
     if (sample.delta != 0u)
         delta_densities(&sample, vertex->wo, &step->forward, &step->reverse);
+    step->reverse *= vertex->back;
     return true;
 }
 
@@ -294,7 +298,7 @@ typedef struct WalkMeeting {
     Vec3 from_ng; /* geometric normal there; the ray's direction for the camera's first */
     float distance2;
     float own; /* density with which the walk has made the point; of a miss, of its direction */
-    float back; /* BD_BACK there */
+    float back; /* Vertex.back there */
     uint light; /* that the primitive is; NONE */
     bool missed;
 } WalkMeeting;
@@ -348,6 +352,7 @@ SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, t,
                           emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex.p));
+    vertex.back = meeting->back;
     vertex_store(scene, vertices, stride, base, t, &vertex);
     state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
     return true;

@@ -50,11 +50,10 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
 }
 
 #define CHAIN_HALF_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
-#define CHAIN_HALF_BACK 1u /* BD_BACK of the last vertex */
-#define CHAIN_HALF_EMITTER_FLAGS 2u
-#define CHAIN_HALF_CONNECT 3u
-#define CHAIN_LIGHT_HALF_WORDS 4u
-#define CHAIN_CAMERA_HALF_WORDS 2u /* without the last two */
+#define CHAIN_HALF_EMITTER_FLAGS 1u
+#define CHAIN_HALF_CONNECT 2u
+#define CHAIN_LIGHT_HALF_WORDS 3u
+#define CHAIN_CAMERA_HALF_WORDS 1u /* without the last two */
 
 #define HALF_LIGHT 0x1u
 #define HALF_CAMERA 0x2u

@@ -24,7 +24,7 @@ SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, flo
 
 /* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be none
  * (false). */
-SHARED_FUNCTION bool film_splat_reach(float radius, uint begin, uint end, float film, uint *first, uint *last)
+SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float film, uint *first, uint *last)
 {
     float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
     float high = float_min(float_floor(film - 0.5f + radius), (float)end - 1.0f);
@@ -46,7 +46,7 @@ SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float r
     uint chosen = NONE, first, last;
     float sum = 0.0f, sign = 1.0f;
     *weight = 0.0f;
-    if (!film_splat_reach(radius, begin, end, film, &first, &last))
+    if (!film_splat_range(radius, begin, end, film, &first, &last))
         return NONE;
     for (uint i = first; i <= last; ++i) {
         float sign_here;
@@ -70,10 +70,10 @@ SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float r
 {
     uint first, last;
     float sum = 0.0f, sign;
-    if (!film_splat_reach(radius, begin, end, film, &first, &last))
+    if (!film_splat_range(radius, begin, end, film, &first, &last))
         return 0.0f;
     for (uint i = first; i <= last; ++i)
-        sum += float_max(film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign), 0.0f);
+        sum += film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign);
     return sum;
 }
 

@@ -74,14 +74,12 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
         walk_end(paths, rays, stride, t);
         return;
     }
-    state_store_float(paths, stride, BD_BACK, t, meeting.back);
     if (side == SIDE_CAMERA && meeting.light != NONE) {
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(&scene, &meeting, &ends);
         ib_add_met(frame, paths, t, depth, radiance, &ends);
     }
-    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX));
-    walk_vertex(&scene, paths, rays, vertices, t, 0u, 0u, random_float(random.x[0]), &meeting);
+    walk_vertex(&scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(&scene, paths, t, side, depth), &meeting);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -101,12 +99,11 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     SceneView scene = scene_view(frame, geometry, tables, texels);
     Vertex vertex = vertex_load(&scene, vertices, stride, 0u, item);
     Random4 random = bd_random_connection(frame, paths, item, s, t);
-    float back = state_load_float(paths, stride, BD_BACK, item);
     Connection connection = {0};
     connection.target = NONE;
-    bool possible = side == SIDE_LIGHT ? connect_camera(&scene, &vertex, back, random, &connection) &&
+    bool possible = side == SIDE_LIGHT ? connect_camera(&scene, &vertex, random, &connection) &&
                                              connection_aim(&scene, random, &connection)
-                                       : connect_light(&scene, &vertex, back, random, &connection);
+                                       : connect_light(&scene, &vertex, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
     if (side == SIDE_LIGHT)
@@ -148,8 +145,7 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
     WalkStep step = {0};
     if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
         return;
-    ib_leave(paths, stride, t, side, depth, step.reverse * state_load_float(paths, stride, BD_BACK, t),
-             step.delta != 0u);
+    ib_leave(paths, stride, t, side, depth, step.reverse, step.delta != 0u);
     walk_step_store(paths, rays, stride, t, depth, &step);
 }
 

@@ -144,7 +144,6 @@ SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride
     uint part = chain_half(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
     uint flag = side == SIDE_LIGHT ? HALF_LIGHT : HALF_CAMERA;
     state_store(paths, stride, part + CHAIN_HALF_DELTA, t, state_load(paths, stride, mask, t));
-    state_store(paths, stride, part + CHAIN_HALF_BACK, t, state_load(paths, stride, BD_BACK, t));
     if (side == SIDE_LIGHT) {
         state_store(paths, stride, part + CHAIN_HALF_EMITTER_FLAGS, t, state_load(paths, stride, BD_EMITTER_FLAGS, t));
         state_store(paths, stride, part + CHAIN_HALF_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
@@ -248,7 +247,6 @@ __kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __globa
         walk_end(paths, rays, stride, t);
         return;
     }
-    state_store_float(paths, stride, BD_BACK, t, meeting.back);
     float u_mix = 0.5f;
     if (SCENE_HAS(&scene, FEATURE_MIX))
         u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
@@ -280,8 +278,7 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
     walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u) {
         uint before = chain_density(frame, side, bank, s, depth - 1u);
-        float other = step.reverse * state_load_float(paths, stride, BD_BACK, t);
-        state_store_float(densities, stride, before, t, other / state_load_float(densities, stride, before, t));
+        state_store_float(densities, stride, before, t, step.reverse / state_load_float(densities, stride, before, t));
     }
     walk_step_store(paths, rays, stride, t, depth, &step);
 }
@@ -294,23 +291,18 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    uint light_half = chain_half(SIDE_LIGHT, light_bank), camera_half = chain_half(SIDE_CAMERA, camera_bank);
+    uint light_half = chain_half(SIDE_LIGHT, light_bank);
     Vertex y = {0}, z = {0};
-    float back_y = 0.0f, back_z = 0.0f;
-    if (s > 1u) {
+    if (s > 1u)
         y = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_LIGHT, light_bank), t);
-        back_y = state_load_float(paths, stride, light_half + CHAIN_HALF_BACK, t);
-    }
-    if (camera > 1u) {
+    if (camera > 1u)
         z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), t);
-        back_z = state_load_float(paths, stride, camera_half + CHAIN_HALF_BACK, t);
-    }
     Random4 random = film;
     if (camera == 1u)
         random = connection_random_lens(film, film);
     else if (s == 1u)
         random = connection_random_light(chain_select(frame, paths, t), chain_emit(frame, paths, t));
-    bool possible = connect_ends(scene, s, camera, &y, back_y, &z, back_z, random, connection);
+    bool possible = connect_ends(scene, s, camera, &y, &z, random, connection);
     if (s >= 2u) {
         uint flags = state_load(paths, stride, light_half + CHAIN_HALF_EMITTER_FLAGS, t);
         connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;

@@ -17,6 +17,16 @@ typedef struct Scaled {
 #define SCALED_LEAST 8.673617380e-19f /* 2^-60 */
 #define SCALED_MOST 1.152921505e18f /* 2^60 */
 
+/* value 2^exponent with a value in [1, 2), from a positive finite one. */
+SHARED_FUNCTION Scaled scaled_normalize(float value, int exponent)
+{
+    int shift;
+    Scaled result;
+    result.value = float_mantissa(value, &shift);
+    result.exponent = exponent + shift;
+    return result;
+}
+
 /* value 2^exponent for any float; NaN and negative numbers give 0. */
 SHARED_FUNCTION Scaled scaled_make(float value, int exponent)
 {
@@ -25,13 +35,10 @@ SHARED_FUNCTION Scaled scaled_make(float value, int exponent)
     result.exponent = exponent;
     if (value >= SCALED_LEAST && value < SCALED_MOST)
         return result;
-    bool regular = value > 0.0f && float_finite(value);
+    if (value > 0.0f && float_finite(value))
+        return scaled_normalize(value, exponent);
+    result.value = value > 0.0f ? value : 0.0f;
     result.exponent = 0;
-    if (regular)
-        result.value = float_mantissa(value, &result.exponent);
-    else if (!(value > 0.0f))
-        result.value = 0.0f;
-    result.exponent += regular ? exponent : 0;
     return result;
 }
 
@@ -50,22 +57,12 @@ SHARED_FUNCTION bool scaled_is_infinite(Scaled a)
     return !float_finite(a.value);
 }
 
-/* The same with a value in [1, 2); neither zero nor infinite. */
-SHARED_FUNCTION Scaled scaled_normalize(Scaled a)
-{
-    int shift;
-    Scaled result;
-    result.value = float_mantissa(a.value, &shift);
-    result.exponent = a.exponent + shift;
-    return result;
-}
-
 /* Zero where it underflows, infinity where it overflows. */
 SHARED_FUNCTION float scaled_float(Scaled a)
 {
     if (a.exponent == 0)
         return a.value;
-    a = scaled_normalize(a);
+    a = scaled_normalize(a.value, a.exponent);
     if (a.exponent < -126)
         return 0.0f;
     if (a.exponent > 127)
@@ -94,8 +91,8 @@ SHARED_FUNCTION Scaled scaled_add_shifted(Scaled a, Scaled b)
         return b;
     if (b.value == 0.0f || scaled_is_infinite(a))
         return a;
-    a = scaled_normalize(a);
-    b = scaled_normalize(b);
+    a = scaled_normalize(a.value, a.exponent);
+    b = scaled_normalize(b.value, b.exponent);
     Scaled larger = a.exponent >= b.exponent ? a : b, smaller = a.exponent >= b.exponent ? b : a;
     int shift = larger.exponent - smaller.exponent;
     if (shift > 30)
