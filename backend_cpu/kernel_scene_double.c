@@ -31,6 +31,7 @@ enum {
         uint *: MEMBER_WORDS,                                                                                          \
         int: MEMBER_WORDS,                                                                                             \
         Vec3: STRUCT_Vec3,                                                                                             \
+        Vec3 *: STRUCT_Vec3,                                                                                           \
         Affine: STRUCT_Affine,                                                                                         \
         ColorParam: STRUCT_ColorParam,                                                                                 \
         FloatParam: STRUCT_FloatParam,                                                                                 \
@@ -61,9 +62,11 @@ static const Member *struct_begin(int type)
     return member;
 }
 
-/* How many numbers or words a member of numbers or words holds. */
+/* How many numbers, words or structs a member holds. */
 static size_t member_count(const Member *member)
 {
+    if (member->kind > MEMBER_WORDS)
+        return member->size / struct_begin(member->kind)->size;
     return member->size / (member->kind == MEMBER_FLOATS ? sizeof(float) : sizeof(uint));
 }
 
@@ -72,7 +75,7 @@ static size_t struct_words(int type) // NOLINT(misc-no-recursion)
 {
     size_t words = 0;
     for (const Member *m = struct_begin(type) + 1; m < MEMBERS + MEMBER_COUNT && m->kind != -1; ++m)
-        words += m->kind > MEMBER_WORDS ? struct_words(m->kind) : member_count(m);
+        words += member_count(m) * (m->kind > MEMBER_WORDS ? struct_words(m->kind) : 1);
     return words;
 }
 
@@ -81,13 +84,11 @@ static void struct_widen(int type, const uint *words, char *out) // NOLINT(misc-
 {
     for (const Member *m = struct_begin(type) + 1; m < MEMBERS + MEMBER_COUNT && m->kind != -1; ++m) {
         char *to = out + m->offset;
-        if (m->kind > MEMBER_WORDS) {
-            struct_widen(m->kind, words, to);
-            words += struct_words(m->kind);
-            continue;
-        }
-        for (size_t i = 0; i < member_count(m); ++i, ++words) {
-            if (m->kind == MEMBER_FLOATS)
+        size_t step = m->kind > MEMBER_WORDS ? struct_words(m->kind) : 1;
+        for (size_t i = 0; i < member_count(m); ++i, words += step) {
+            if (m->kind > MEMBER_WORDS)
+                struct_widen(m->kind, words, to + i * struct_begin(m->kind)->size);
+            else if (m->kind == MEMBER_FLOATS)
                 ((float *)(void *)to)[i] = bits_float(*words);
             else
                 ((uint *)(void *)to)[i] = *words;

@@ -232,6 +232,7 @@ const Integrator *integrator_mmlt(void)
                                           .summary = "multiplexed Metropolis light transport",
                                           .depth_limit = MMLT_DEPTH_LIMIT,
                                           .strategies = STRATEGIES_BDPT,
+                                          .aims = true,
                                           .render = mmlt_render};
     return &integrator;
 }

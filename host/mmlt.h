@@ -11,8 +11,7 @@
 #include "integrator.h"
 #include "render_run.h"
 
-/* Paths of fewer segments are left to path tracing. */
-#define CHAIN_DEPTH_MIN SPLAT_DEPTH_MIN
+#include "chain.h"
 
 /* Samples of a pool for every step of a chain, at least. On a Cornell box a sample takes as long as four or five steps, so
  * pools take about a quarter of the time. */

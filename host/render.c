@@ -250,6 +250,8 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->pixel_stride = 1;
     frame->min_depth = 1;
     frame->roulette_depth = ROULETTE_DEPTH;
+    if (!integrator->aims || options->chains.paper || options->chains.aimless)
+        frame->aim_count = 0;
 }
 
 /* Sets the quantum from what path tracing sees, whatever the integrator: films of all can be merged. */

@@ -1,6 +1,7 @@
 /* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables. */
 #include "scene.h"
 
+#include "aim_setup.h"
 #include "box.h"
 #include "camera_setup.h"
 #include "coat_table.h"
@@ -349,6 +350,7 @@ bool scene_finish(Scene *scene, Error *error)
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
         !light_setup(scene, error))
         return false;
+    aim_setup(scene);
     scene->frame.light_count = (uint)scene->lights.count;
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
     scene->frame.pixel_stride = 1;

@@ -1,5 +1,6 @@
 noinst_LTLIBRARIES += libtwinlight_host.la
 libtwinlight_host_la_SOURCES = \
+	host/aim_setup.c host/aim_setup.h \
 	host/arena.c host/arena.h \
 	host/array.c host/array.h \
 	host/backend.h \

@@ -54,19 +54,28 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
     return bsdf_value_zero();
 }
 
-/* Draws wi from u_lobe (which lobe) and u (where in it), all in [0,1). Fills every member of *sample. False: the light
- * is absorbed, or the sample fell on the wrong side of the surface; it contributes nothing. */
-SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                 uint transport, BsdfSample *sample)
+/* Whether bsdf_sample_base asks for u_base. */
+SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
+{
+    return (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE) ||
+           (SCENE_HAS(scene, FEATURE_COATED_DIFFUSE) && bsdf->kind == MATERIAL_COATED_DIFFUSE) ||
+           (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION);
+}
+
+/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills every
+ * member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it contributes
+ * nothing. */
+SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                      Vec2 u_base, uint transport, BsdfSample *sample)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
         return false;
     if (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE)
-        return diffuse_sample(bsdf, wo, u, sample);
+        return diffuse_sample(bsdf, wo, u_base, sample);
     if (SCENE_HAS(scene, FEATURE_COATED_DIFFUSE) && bsdf->kind == MATERIAL_COATED_DIFFUSE)
-        return coated_sample(scene, bsdf, wo, u_lobe, u, sample);
+        return coated_sample(scene, bsdf, wo, u_lobe, u, u_base, sample);
     if (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION)
-        return diffuse_transmission_sample(bsdf, wo, u_lobe, u, sample);
+        return diffuse_transmission_sample(bsdf, wo, u_lobe, u_base, sample);
     if (SCENE_HAS(scene, FEATURE_THIN_DIELECTRIC) && bsdf->kind == MATERIAL_THIN_DIELECTRIC)
         return thin_dielectric_sample(bsdf, wo, u_lobe, sample);
     bool rough = SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
@@ -76,6 +85,13 @@ SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 
         return rough ? dielectric_rough_sample(bsdf, wo, u_lobe, u, transport, sample)
                      : dielectric_smooth_sample(bsdf, wo, u_lobe, transport, sample);
     return false;
+}
+
+/* The same with one point for all lobes. */
+SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                 uint transport, BsdfSample *sample)
+{
+    return bsdf_sample_base(scene, bsdf, wo, u_lobe, u, u, transport, sample);
 }
 
 #endif

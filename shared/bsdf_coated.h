@@ -99,8 +99,9 @@ SHARED_FUNCTION BsdfValue coated_eval(const SceneView *scene, const Bsdf *bsdf, 
     return coated_eval_above(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip));
 }
 
-/* One direction from the mixture of both lobes; the delta reflection of a smooth coat stays apart. */
-SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+/* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta reflection of
+ * a smooth coat stays apart. */
+SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, Vec2 u_base,
                                    BsdfSample *sample)
 {
     bool flip = wo.z < 0.0f;
@@ -112,7 +113,7 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
     float specular = coated_specular_probability(t_o, base_max, escape * bsdf->eta * bsdf->eta);
     Vec3 i;
     if (!(u_lobe < specular)) {
-        i = warp_cosine_hemisphere(u);
+        i = warp_cosine_hemisphere(u_base);
     } else if (rough) {
         Vec3 m = ggx_sample_visible(o, bsdf->alpha_x, bsdf->alpha_y, u);
         i = vec3_mad(vec3_negate(o), 2.0f * vec3_dot(o, m), m);

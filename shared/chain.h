@@ -13,6 +13,9 @@
 #include "pool.h"
 #include "scene_view.h"
 
+/* Paths of fewer segments are left to path tracing. */
+#define CHAIN_DEPTH_MIN SPLAT_DEPTH_MIN
+
 /* ---- state ------------------------------------------------------------------------------------------------------- */
 
 #define CHAIN_KEY BD_HEADER_WORDS /* chain_key of the current path; 0: the chain never began */
@@ -195,16 +198,24 @@ SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, 
 
 /* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path,
  * half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With
- * a scale for each coordinate the longest decides, as there are many. */
+ * a scale for each coordinate the longest decides, as there are many; and the more there are, the shorter all must be. For the
+ * same work, a door ajar and a glossy hall have 1.15 times the square error where all depths have the same steps and none are
+ * as short as the fourth scale, a relief 1.2 times; a lamp in glass and a pool's caustics the same or a little less. */
 #define STEP_SHIFT_CAMERA 3u
 #define STEP_SHIFT_OTHERS 4u
-#define STEP_SCALES 3u
+#define STEP_SCALES 4u
 
-/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, either sign alike. (Kelemen et
- * al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
-SHARED_FUNCTION uint mutation_offset(uint bits, uint shift)
+/* How long the steps of a path of d segments are, in units of 2^-16 of those of one of three. */
+SHARED_FUNCTION uint mutation_length(uint d)
 {
-    uint size = bits >> 1 >> shift;
+    return ((CHAIN_DEPTH_MIN + 1u) << 16) / (d + 1u);
+}
+
+/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, times length (mutation_length),
+ * either sign alike. (Kelemen et al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
+SHARED_FUNCTION uint mutation_offset(uint bits, uint shift, uint length)
+{
+    uint size = (uint)((ulong)(bits >> 1 >> shift) * length >> 16);
     return (bits & 1u) != 0u ? size : 0u - size;
 }
 
@@ -222,8 +233,9 @@ SHARED_FUNCTION Random4 chain_proposed(__global const FrameParams *frame, __glob
     bool large = mutation == MUTATION_LARGE;
     uint shift = chain_move(paths, stride, t, MOVE_SCALE) +
                  (block == CHAIN_BLOCK_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
+    uint length = mutation_length(chain_key_depth(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)));
     for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i], shift);
+        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i], shift, length);
     return numbers;
 }
 

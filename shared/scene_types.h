@@ -308,6 +308,9 @@ typedef struct SceneLayout {
 #define AOV_DEPTH 2u
 #define AOV_COUNT 3u
 
+/* Lights that chains look for. */
+#define AIMS_MAX 8u
+
 /* Cells of the importance a side. */
 #define IMPORTANCE_SIDE 32u
 #define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
@@ -343,6 +346,10 @@ typedef struct FrameParams {
     float large_step; /* probability of a large step */
     float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
+    uint aim_count; /* of chains and their pools: lights that directions count from (aim.h) */
+    Vec3 aims[AIMS_MAX]; /* positions, or directions */
+    float aims_near[AIMS_MAX]; /* 1 of positions, 0 of directions */
+    float aims_power[AIMS_MAX]; /* over the square of the distance, of a direction's length: what they send somewhere */
     float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/importance.h) */
     uint visits[IMPORTANCE_CELLS +
                 1u]; /* of a pool: those of all pixels before each cell, and of all; last 0: one of each */

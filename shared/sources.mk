@@ -1,11 +1,13 @@
 # Shared kernels and what they use: headers of the common subset of C11 and OpenCL C 1.2, and kernel files (.cl).
 SHARED_FILES = \
+	shared/aim.h \
 	shared/aov.cl \
 	shared/bd_connect.cl \
 	shared/bd_connect.h \
 	shared/bd_random.h \
 	shared/bd_start.h \
 	shared/bd_state.h \
+	shared/bd_vertex.h \
 	shared/bd_walk.cl \
 	shared/bd_walk.h \
 	shared/bd_weight.h \

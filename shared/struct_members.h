@@ -174,6 +174,10 @@
     MEMBER(FrameParams, large_step)                                                                                    \
     MEMBER(FrameParams, limit)                                                                                         \
     MEMBER(FrameParams, brightness)                                                                                    \
+    MEMBER(FrameParams, aim_count)                                                                                     \
+    MEMBER(FrameParams, aims)                                                                                          \
+    MEMBER(FrameParams, aims_near)                                                                                     \
+    MEMBER(FrameParams, aims_power)                                                                                    \
     MEMBER(FrameParams, importance)                                                                                    \
     MEMBER(FrameParams, visits)                                                                                        \
     MEMBER(FrameParams, seed_low)                                                                                      \

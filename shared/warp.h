@@ -32,6 +32,17 @@ SHARED_FUNCTION Vec2 warp_disk_concentric(Vec2 u)
     return warp_disk_polar(u, &radius);
 }
 
+/* The point of the square that warp_disk_polar takes to d, which is in the disk but for rounding; the middle for d = 0. */
+SHARED_FUNCTION Vec2 warp_disk_inverse(Vec2 d)
+{
+    bool wide = float_abs(d.x) > float_abs(d.y);
+    float along = wide ? d.x : d.y, across = wide ? d.y : d.x;
+    float r = float_copy_sign(float_min(float_sqrt(d.x * d.x + d.y * d.y), 1.0f), along);
+    float angle = r == 0.0f ? 0.0f : float_atan2(float_copy_sign(1.0f, along) * across, float_abs(along));
+    float other = r * (angle * (4.0f * INV_PI));
+    return vec2(0.5f * ((wide ? r : other) + 1.0f), 0.5f * ((wide ? other : r) + 1.0f));
+}
+
 /* A direction with density cos(theta)/pi (Malley). cos(theta) > 0 for u of random_float. */
 SHARED_FUNCTION Vec3 warp_cosine_hemisphere(Vec2 u)
 {

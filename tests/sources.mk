@@ -4,6 +4,7 @@ LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_hos
 
 if HAVE_CHECK
 check_PROGRAMS += \
+	tests/test_aim \
 	tests/test_analytic \
 	tests/test_bench \
 	tests/test_bidirectional \

@@ -181,15 +181,16 @@ END_TEST
 /* ---- bits -------------------------------------------------------------------------------------------------------- */
 
 /* A small step and its opposite are equally probable: they are the same random word but for its lowest bit. Sizes are
- * uniform up to 2^-(shift + 1) of the range. */
+ * uniform up to 2^-(shift + 1) of the range times 4 / (d + 1). */
 START_TEST(test_offsets_symmetric)
 {
-    const uint shift = STEP_SHIFT_CAMERA + (uint)_i, most = 0x80000000u >> shift, draws = 1u << 20;
+    const uint shift = STEP_SHIFT_CAMERA + (uint)_i, d = CHAIN_DEPTH_MIN + 2u * (uint)_i, draws = 1u << 20;
+    const double most = ldexp(4.0 / (d + 1.0), 31 - (int)shift);
     double sum = 0.0;
     uint largest = 0;
     for (uint i = 0; i < draws; ++i) {
-        uint bits = random_four(i, 1, 2, 3, 4, 5).x[0], offset = mutation_offset(bits, shift);
-        TEST_TRUE(mutation_offset(bits ^ 1u, shift) == 0u - offset);
+        uint bits = random_four(i, 1, 2, 3, 4, 5).x[0], offset = mutation_offset(bits, shift, mutation_length(d));
+        TEST_TRUE(mutation_offset(bits ^ 1u, shift, mutation_length(d)) == 0u - offset);
         uint size = (bits & 1u) != 0u ? offset : 0u - offset;
         TEST_TRUE(size < most);
         largest = size > largest ? size : largest;
@@ -220,8 +221,9 @@ START_TEST(test_kinds)
             share = 1.0;
         ck_assert_double_eq_tol((double)kinds[kind] / draws, share, 5.0 * sqrt(share * (1.0 - share) / draws) + 1e-12);
     }
+    const double share = 1.0 / STEP_SCALES;
     for (uint scale = 0; scale < STEP_SCALES; ++scale)
-        ck_assert_double_eq_tol((double)scales[scale] / draws, 1.0 / 3.0, 5.0 * sqrt(2.0 / 9.0 / draws));
+        ck_assert_double_eq_tol((double)scales[scale] / draws, share, 5.0 * sqrt(share * (1.0 - share) / draws));
 }
 END_TEST
 

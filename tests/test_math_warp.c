@@ -200,6 +200,28 @@ static Vec3 disk_as_vec3(Vec2 u)
     return vec3(d.x, d.y, 0.0f);
 }
 
+/* And back. The square's border, the diagonals and the middle are among the points. */
+START_TEST(test_disk_inverse)
+{
+    uint64_t state = 12;
+    for (int i = 0; i < 200000; ++i) {
+        Vec2 u = vec2(test_uniform(&state), test_uniform(&state));
+        if (i % 4 == 1)
+            u.y = i % 8 == 1 ? u.x : 1.0f - u.x;
+        if (i % 4 == 2)
+            u.x = i % 8 == 2 ? 0.0f : 1.0f;
+        if (i % 4 == 3)
+            u.y = 0.5f;
+        Vec2 back = warp_disk_inverse(warp_disk_concentric(u));
+        test_require(fabsf(back.x - u.x) < 1e-6f && fabsf(back.y - u.y) < 1e-6f, "(%g, %g) becomes (%g, %g)",
+                     (double)u.x, (double)u.y, (double)back.x, (double)back.y);
+    }
+    Vec2 middle = warp_disk_inverse(vec2(0.0f, 0.0f)), beyond = warp_disk_inverse(vec2(-1.1f, 0.0f));
+    ck_assert(middle.x == 0.5f && middle.y == 0.5f);
+    ck_assert(beyond.x == 0.0f && beyond.y == 0.5f);
+}
+END_TEST
+
 static Vec3 triangle_as_vec3(Vec2 u)
 {
     Vec2 b = warp_triangle(u);
@@ -253,6 +275,7 @@ TCase *test_math_warp(void)
     tcase_add_loop_test(tcase, test_cone_tiny, 0, 5);
     tcase_add_test(tcase, test_disk);
     tcase_add_test(tcase, test_triangle);
+    tcase_add_test(tcase, test_disk_inverse);
     tcase_add_test(tcase, test_continuous);
     tcase_add_test(tcase, test_extremes);
     return tcase;
