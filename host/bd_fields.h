@@ -19,8 +19,9 @@
         {BUFFER_PATHS, BD_SIDE, 1, false, "side"}, {BUFFER_PATHS, BD_DEPTH, 1, false, "depth"},                        \
         {BUFFER_PATHS, BD_BETA, 3, true, "throughput"},                                                                \
         {BUFFER_PATHS, BD_PDF, 1, true, "density of the last direction"},                                              \
-        {BUFFER_PATHS, BD_WALK_FLAGS, 1, false, "flags of the walk"}, {BUFFER_PATHS, BD_ETA_SCALE, 1, true, "eta^2"},  \
-        {BUFFER_PATHS, BD_S, 1, false, "s"}, {BUFFER_PATHS, BD_T, 1, false, "t"},                                      \
+        {BUFFER_PATHS, BD_WALK_FLAGS, 1, false, "flags of the walk"},                                                  \
+        {BUFFER_PATHS, BD_ROULETTE_SCALE, 1, true, "roulette scale"}, {BUFFER_PATHS, BD_S, 1, false, "s"},             \
+        {BUFFER_PATHS, BD_T, 1, false, "t"},                                                                           \
         {BUFFER_PATHS, BD_CONTRIBUTION, 3, true, "contribution of the connection"},                                    \
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \

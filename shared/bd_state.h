@@ -31,7 +31,7 @@
 #define BD_BETA 14u /* throughput, 3 */
 #define BD_PDF 17u /* density of the last direction, per solid angle (or per area across it: WALK_PARALLEL) */
 #define BD_WALK_FLAGS 18u /* WALK_* */
-#define BD_ETA_SCALE 19u /* product of eta^2 over refractions, for Russian roulette */
+#define BD_ROULETTE_SCALE 19u /* Russian roulette goes by the throughput times this: pool_roulette_weigh, eta^2 */
 /* The connection under way */
 #define BD_S 20u
 #define BD_T 21u

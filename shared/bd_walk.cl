@@ -33,6 +33,8 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
                           bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT),
                           &own))
         return;
+    if (frame->pool != 0u)
+        pool_roulette_weigh(frame, paths, t, 1.0f);
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
     state_store(paths, stride, BD_LENGTHS, t, 1u);
 }

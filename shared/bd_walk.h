@@ -36,7 +36,7 @@ SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *re
     state_store_vec3(paths, stride, BD_BETA, t, beta);
     state_store_float(paths, stride, BD_PDF, t, pdf);
     state_store(paths, stride, BD_WALK_FLAGS, t, flags);
-    state_store_float(paths, stride, BD_ETA_SCALE, t, 1.0f / vec3_max_component(beta));
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, 1.0f / vec3_max_component(beta));
     state_store_float(paths, stride, BD_SURVIVAL, t, 1.0f);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
@@ -65,7 +65,7 @@ typedef struct WalkStep {
     Vec3 beta;
     float forward; /* density of the new direction, per solid angle */
     float reverse; /* of the way back, per area at the vertex before */
-    float eta_scale;
+    float roulette_scale;
     float survival; /* probability of roulette here */
     uint delta;
 } WalkStep;
@@ -91,8 +91,8 @@ SHARED_FUNCTION Vec2 scatter_point(Random4 random)
 /* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which
  * leaves the weights alone: they need not know of it to sum to one. random: lobe, direction, roulette. least:
  * walk_survival_least. */
-SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth, float eta_scale,
-                                  float least, Random4 random, WalkStep *step)
+SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth,
+                                  float roulette_scale, float least, Random4 random, WalkStep *step)
 {
     bool roulette = depth >= scene->frame->roulette_depth;
     BsdfSample sample;
@@ -107,8 +107,8 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     if (side == SIDE_LIGHT)
         step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
                                                            vertex->wo.z, sample.wi.z));
-    step->eta_scale = side == SIDE_CAMERA ? eta_scale * sample.eta * sample.eta : eta_scale;
-    float survival = roulette ? vec3_max_component(step->beta) * step->eta_scale : 1.0f;
+    step->roulette_scale = side == SIDE_CAMERA ? roulette_scale * sample.eta * sample.eta : roulette_scale;
+    float survival = roulette ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
     if (survival > 0.0f) /* not what is not a number */
         survival = float_max(survival, least);
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
@@ -133,7 +133,7 @@ SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uin
     state_store_vec3(paths, stride, BD_BETA, t, step->beta);
     state_store_float(paths, stride, BD_PDF, t, step->forward);
     state_store(paths, stride, BD_WALK_FLAGS, t, step->delta != 0u ? WALK_DELTA : 0u);
-    state_store_float(paths, stride, BD_ETA_SCALE, t, step->eta_scale);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, step->roulette_scale);
     state_store_float(paths, stride, BD_SURVIVAL, t, step->survival * state_load_float(paths, stride, BD_SURVIVAL, t));
     ray_store(rays, stride, t, step->ray);
 }
@@ -224,9 +224,9 @@ SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict 
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
     Vertex vertex = vertex_load(scene, vertices, stride, base, t);
-    float eta_scale = state_load_float(paths, stride, BD_ETA_SCALE, t);
+    float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, t);
     float least = walk_survival_least(scene->frame, paths, t);
-    if (walk_scatter(scene, &vertex, side, depth, eta_scale, least, random, step)) {
+    if (walk_scatter(scene, &vertex, side, depth, roulette_scale, least, random, step)) {
         if (ray_traceable(step->ray.o, step->ray.d))
             return true;
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);

@@ -51,6 +51,20 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
     return random;
 }
 
+/* Roulette goes by all that a sample's paths count for: what few samples have, a pixel rarely visited or a walk from the
+ * light, it may not make rarer still. In the same time a glossy hall has 0.85 times the square error, and 0.6 times with the
+ * worst thousandth of its pixels, which were paths that counted 128 times, so that fifty chains began with one; beaten metal
+ * has 0.7 times, a door ajar 0.8 times with the worst, others the same. */
+SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+                                         float rarity)
+{
+    uint stride = frame->stride;
+    float counts =
+        float_max(rarity, 1.0f) * (frame->first_item + t < frame->pool_lights ? frame->pool_lights_weight : 1.0f);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, t,
+                      counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, t));
+}
+
 /* The camera's first ray. What is gathered goes to the sample's pixel. */
 SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint t)
@@ -65,6 +79,7 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     float rarity = pool_rarity(frame, state_load(paths, stride, BD_PIXEL, t));
     state_store_float(paths, stride, BD_WEIGHT, t, rarity * (weight / film_reach_factor(frame)));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
+    pool_roulette_weigh(frame, paths, t, rarity);
 }
 
 /* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;

@@ -75,7 +75,7 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
 }
 
 /* Path tracing shows so many times as much of a path as a pool. */
-#define RARE_OVER_LIMIT 8.0f
+#define RARE_OVER_LIMIT 4.0f
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
 #define SPLAT_WORDS 4u
