@@ -138,18 +138,6 @@ typedef struct ClusterTest {
     Lanes edge[3];
 } ClusterTest;
 
-static inline Lanes lanes_min(Lanes a, Lanes b)
-{
-    LaneMask less = a < b;
-    return (Lanes)(((LaneMask)a & less) | ((LaneMask)b & ~less));
-}
-
-static inline Lanes lanes_max(Lanes a, Lanes b)
-{
-    LaneMask less = a < b;
-    return (Lanes)(((LaneMask)b & less) | ((LaneMask)a & ~less));
-}
-
 /* Bit i: lane i of the mask. */
 static inline unsigned lanes_bits(LaneMask mask)
 {
@@ -178,8 +166,8 @@ static inline Lanes lanes_edge(const ShearedLanes *p, const ShearedLanes *q)
     return p->x * q->y - p->y * q->x;
 }
 
-/* Which lanes triangle_query would go on with: its first half, and two cheap reasons to give up that it would find
- * later, all corners behind the origin or all beyond t_best by more than rounding. */
+/* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie ahead of
+ * the origin and not beyond t_best. The triangle that a ray starts on is nearly always turned away here. */
 static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
                                           ClusterTest *test)
 {
@@ -193,13 +181,12 @@ static inline unsigned cluster_candidates(const TriangleCluster *cluster, const 
     LaneMask positive = (test->edge[0] > zero) | (test->edge[1] > zero) | (test->edge[2] > zero);
     Lanes area = test->edge[0] + test->edge[1] + test->edge[2];
     LaneMask inside = ~(negative & positive) & ((area > zero) | (area < zero));
-    unsigned bits = lanes_bits(inside);
-    if (bits == 0)
+    if (lanes_bits(inside) == 0)
         return 0;
-    Lanes z_min = lanes_min(lanes_min(test->corner[0].z, test->corner[1].z), test->corner[2].z);
-    Lanes z_max = lanes_max(lanes_max(test->corner[0].z, test->corner[1].z), test->corner[2].z);
-    Lanes limit = zero + t_best * (1.0f + 16.0f * FLOAT_EPSILON);
-    return bits & lanes_bits((z_max > zero) & (z_min <= limit));
+    Lanes t =
+        (test->edge[0] * test->corner[0].z + test->edge[1] * test->corner[1].z + test->edge[2] * test->corner[2].z) /
+        area;
+    return lanes_bits(inside & (t > zero) & (t <= zero + t_best));
 }
 
 /* The other half of triangle_query for one lane, and the alpha texture. */
