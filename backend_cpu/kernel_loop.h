@@ -2,8 +2,17 @@
 #ifndef TWINLIGHT_KERNEL_LOOP_H
 #define TWINLIGHT_KERNEL_LOOP_H
 
+/* What kernels have instead of a view of their own: making one costs as much as loading a vertex, and compilers do not take it
+ * out of the loop. */
+#define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
+    const SceneView *scene = ((void)(frame), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
+
 #include "backend.h"
 #include "kernel_list.h"
+#include "scene_view.h"
+
+/* The scene of the loop under way. */
+static _Thread_local SceneView kernel_scene __attribute__((unused));
 
 typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
 
@@ -20,10 +29,12 @@ KERNEL_LIST(KERNEL_DECLARE)
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 
-/* One loop a kernel, with the kernel inlined into it, so that the scene's pointers are made once. */
+/* One loop a kernel, with the kernel inlined into it. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
     void kernel_loop_##name(void *const *buffers, const uint *items, uint count)                                       \
     {                                                                                                                  \
+        kernel_scene = scene_view(buffers[BUFFER_FRAME], buffers[BUFFER_GEOMETRY], buffers[BUFFER_TABLES],             \
+                                  buffers[BUFFER_TEXELS]);                                                             \
         for (uint i = 0; i < count; ++i) {                                                                             \
             platform_item = items ? items[i] : i;                                                                      \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \

@@ -65,8 +65,8 @@ __kernel void aov_splat(__global const FrameParams *restrict frame, __global con
     bool met = state_load(paths, stride, PATH_DEPTH, t) != 0u && hit.primitive != NONE;
     Vec3 value = vec3_splat(0.0f);
     if (met) {
-        SceneView scene = scene_view(frame, geometry, tables, texels);
-        value = aov_value(&scene, pixel, sample, ray_load(rays, stride, t), hit);
+        KERNEL_SCENE(frame, geometry, tables, texels);
+        value = aov_value(scene, pixel, sample, ray_load(rays, stride, t), hit);
     }
     if (frame->aov != AOV_DEPTH)
         value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, t));

@@ -33,17 +33,17 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     if ((s > 1u && vertex_smooth(vertices, stride, base_y, item)) ||
         (t > 1u && vertex_smooth(vertices, stride, base_z, item)))
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Connection connection = {0};
     Vertex y = {0}, z = {0};
     if (s > 1u)
-        y = vertex_load(&scene, vertices, stride, base_y, item);
+        y = vertex_load(scene, vertices, stride, base_y, item);
     if (t > 1u)
-        z = vertex_load(&scene, vertices, stride, base_z, item);
+        z = vertex_load(scene, vertices, stride, base_z, item);
     Random4 random = bd_random_connection(frame, paths, item, s, t);
-    bool possible = connect_ends(&scene, s, t, &y, &z, random, &connection);
+    bool possible = connect_ends(scene, s, t, &y, &z, random, &connection);
     if (possible && t == 1u)
-        possible = connection_aim(&scene, random, &connection);
+        possible = connection_aim(scene, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
     if (s >= 2u)

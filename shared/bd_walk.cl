@@ -19,7 +19,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     bd_header_begin(frame, paths, rays, shadows, stride, t);
     state_store(paths, stride, BD_LENGTHS, t, 0u);
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
@@ -29,7 +29,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     if (frame->max_depth < 2u || (frame->pool != 0u && frame->first_item + t >= frame->pool_lights))
         return;
     float own;
-    if (!walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
+    if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
                           bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT),
                           &own))
         return;
@@ -48,11 +48,11 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     if (frame->pool != 0u)
-        pool_start_camera(&scene, paths, rays, diagnostics, t);
+        pool_start_camera(scene, paths, rays, diagnostics, t);
     else
-        walk_start_camera(&scene, paths, rays, diagnostics, stride, t);
+        walk_start_camera(scene, paths, rays, diagnostics, stride, t);
 }
 
 /* s = 0: what is sent by lights that the walk has met after `depth` segments. */
@@ -83,15 +83,16 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, BD_DEPTH, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
-    WalkMeeting meeting = walk_meet(&scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u));
+    WalkMeeting meeting = {0};
+    walk_meet(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &meeting);
     Vec3 beta = state_load_vec3(paths, stride, BD_BETA, t);
     DensityView view = bd_density_view(frame, paths, densities, t);
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, t, meeting.own);
     if (meeting.missed) {
-        if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT)) {
-            Vec3 sum = walk_environment(&scene, view, meeting.ray.d, meeting.from_ng, depth);
+        if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
+            Vec3 sum = walk_environment(scene, view, meeting.ray.d, meeting.from_ng, depth);
             bd_add_met(frame, paths, t, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, t);
@@ -99,13 +100,13 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     }
     if (side == SIDE_CAMERA && meeting.light != NONE) {
         StrategyEnds ends = {0};
-        Vec3 radiance = emission_met(&scene, &meeting, &ends);
+        Vec3 radiance = emission_met(scene, &meeting, &ends);
         if (!vec3_is_zero(radiance))
             bd_add_met(frame, paths, t, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
-    if (!walk_vertex(&scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
-                     vertex_base(frame, side, depth), bd_random_mix(&scene, paths, t, side, depth), &meeting))
+    if (!walk_vertex(scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
+                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, t, side, depth), &meeting))
         return;
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
@@ -126,10 +127,10 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
         return;
     walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u)

@@ -151,45 +151,45 @@ SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint 
 
 typedef struct WalkMeeting {
     Ray ray;
-    Surface surface; /* unless missed */
-    Vec3 from; /* where the ray left */
-    Vec3 from_ng; /* geometric normal there; the ray's direction for the camera's first */
-    float distance2;
+    Vec3 from_ng; /* geometric normal where the ray left; its direction for the camera's first */
     float own; /* density with which the walk has made the point; of a miss, of its direction */
-    float back; /* Vertex.back there */
     uint light; /* that the primitive is; NONE */
     bool missed;
+    /* Unless missed: */
+    Surface surface;
+    Vec3 from; /* where the ray left */
+    float distance2;
+    float back; /* Vertex.back there */
 } WalkMeeting;
 
 /* From: the ray under way and its hit. `before`: base of the vertex that it left. */
-SHARED_FUNCTION WalkMeeting walk_meet(const SceneView *scene, __global const uint *restrict paths,
-                                      __global const uint *restrict rays, __global const uint *restrict hits,
-                                      __global const uint *restrict vertices, uint t, uint before)
+SHARED_FUNCTION void walk_meet(const SceneView *scene, __global const uint *restrict paths,
+                               __global const uint *restrict rays, __global const uint *restrict hits,
+                               __global const uint *restrict vertices, uint t, uint before, WalkMeeting *meeting)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
     bool first = side == SIDE_CAMERA && depth == 1u;
     Hit hit = hit_load(hits, stride, t);
-    WalkMeeting meeting = {0};
-    meeting.ray = ray_load(rays, stride, t);
-    meeting.missed = hit.primitive == NONE;
-    meeting.own = state_load_float(paths, stride, BD_PDF, t);
-    meeting.from_ng = first ? meeting.ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
-    meeting.light = NONE;
-    if (meeting.missed)
-        return meeting;
-    meeting.surface = surface_from_hit(scene, &meeting.ray, hit);
-    meeting.from = first || (flags & WALK_PARALLEL) != 0u ? meeting.ray.o
-                                                          : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
-    meeting.distance2 = vec3_length_squared(vec3_sub(meeting.surface.p, meeting.from));
-    meeting.own =
-        walk_density(scene->frame, &meeting.ray, &meeting.surface, meeting.distance2, side, depth, flags, meeting.own);
-    meeting.back = walk_back_stored(paths, vertices, stride, t, side, depth, before, meeting.surface.p);
-    uint first_light = scene->shapes[meeting.surface.shape].first_light;
+    meeting->ray = ray_load(rays, stride, t);
+    meeting->missed = hit.primitive == NONE;
+    meeting->own = state_load_float(paths, stride, BD_PDF, t);
+    meeting->from_ng = first ? meeting->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
+    meeting->light = NONE;
+    if (meeting->missed)
+        return;
+    meeting->surface = surface_from_hit(scene, &meeting->ray, hit);
+    meeting->from = first || (flags & WALK_PARALLEL) != 0u
+                        ? meeting->ray.o
+                        : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+    meeting->distance2 = vec3_length_squared(vec3_sub(meeting->surface.p, meeting->from));
+    meeting->own = walk_density(scene->frame, &meeting->ray, &meeting->surface, meeting->distance2, side, depth, flags,
+                                meeting->own);
+    meeting->back = walk_back_stored(paths, vertices, stride, t, side, depth, before, meeting->surface.p);
+    uint first_light = scene->shapes[meeting->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
-        meeting.light = first_light + hit.primitive - scene->shapes[meeting.surface.shape].first_primitive;
-    return meeting;
+        meeting->light = first_light + hit.primitive - scene->shapes[meeting->surface.shape].first_primitive;
 }
 
 /* Makes and stores the vertex at `base`, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is full. */

@@ -20,11 +20,11 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
     bd_header_begin(frame, paths, rays, shadows, stride, t);
     if (frame->max_depth >= 2u &&
-        walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, 0u,
+        walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, 0u,
                          bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, t, own);
 }
@@ -63,23 +63,24 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, BD_DEPTH, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
     /* The vertex takes the place of the one before it. */
-    WalkMeeting meeting = walk_meet(&scene, paths, rays, hits, vertices, t, 0u);
+    WalkMeeting meeting = {0};
+    walk_meet(scene, paths, rays, hits, vertices, t, 0u, &meeting);
     state_store_float(paths, stride, IB_OWN, t, meeting.own);
     if (meeting.missed) {
-        if (side == SIDE_CAMERA && SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT))
-            ib_add_environment(&scene, paths, t, depth, meeting.ray.d, meeting.from_ng);
+        if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
+            ib_add_environment(scene, paths, t, depth, meeting.ray.d, meeting.from_ng);
         walk_end(paths, rays, stride, t);
         return;
     }
     if (side == SIDE_CAMERA && meeting.light != NONE) {
         StrategyEnds ends = {0};
-        Vec3 radiance = emission_met(&scene, &meeting, &ends);
+        Vec3 radiance = emission_met(scene, &meeting, &ends);
         ib_add_met(frame, paths, t, depth, radiance, &ends);
     }
-    walk_vertex(&scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(&scene, paths, t, side, depth), &meeting);
+    walk_vertex(scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(scene, paths, t, side, depth), &meeting);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -96,14 +97,14 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     uint s = side == SIDE_LIGHT ? depth + 1u : 1u, t = side == SIDE_LIGHT ? 1u : depth + 1u;
     if (depth == 0u || !strategy_wanted(frame, s, t))
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    Vertex vertex = vertex_load(&scene, vertices, stride, 0u, item);
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Vertex vertex = vertex_load(scene, vertices, stride, 0u, item);
     Random4 random = bd_random_connection(frame, paths, item, s, t);
     Connection connection = {0};
     connection.target = NONE;
-    bool possible = side == SIDE_LIGHT ? connect_camera(&scene, &vertex, random, &connection) &&
-                                             connection_aim(&scene, random, &connection)
-                                       : connect_light(&scene, &vertex, random, &connection);
+    bool possible = side == SIDE_LIGHT ? connect_camera(scene, &vertex, random, &connection) &&
+                                             connection_aim(scene, random, &connection)
+                                       : connect_light(scene, &vertex, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
     if (side == SIDE_LIGHT)
@@ -140,10 +141,10 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
         return;
     ib_leave(paths, stride, t, side, depth, step.reverse, step.delta != 0u);
     walk_step_store(paths, rays, stride, t, depth, &step);

@@ -58,8 +58,8 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     walk_end(paths, rays, stride, t);
     if (item != NONE) {
-        SceneView scene = scene_view(frame, geometry, tables, texels);
-        chain_numbers_of_pool(&scene, paths, t, key, item);
+        KERNEL_SCENE(frame, geometry, tables, texels);
+        chain_numbers_of_pool(scene, paths, t, key, item);
         return;
     }
     for (uint i = 0u; i < words; ++i)
@@ -109,10 +109,10 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     chain_move_set(paths, stride, t, MOVE_REACHED, s < 2u ? kept | HALF_LIGHT : kept);
     if ((kept & HALF_LIGHT) != 0u || s < 2u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
     float own;
-    if (walk_start_light(&scene, paths, rays, vertices, diagnostics, stride, t, chain_vertex_base(SIDE_LIGHT, bank),
+    if (walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, chain_vertex_base(SIDE_LIGHT, bank),
                          chain_select(frame, paths, t), chain_emit(frame, paths, t), &own))
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), t, own);
 }
@@ -134,8 +134,8 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
         chain_move_set(paths, stride, t, MOVE_REACHED, HALF_BOTH);
         return;
     }
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    walk_start_film(&scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    walk_start_film(scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
 }
 
 /* The last vertex of a side is there: what the connection needs of the walk. */
@@ -235,22 +235,23 @@ __kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __globa
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), d = chain_key_depth(key), s = chain_key_s(key);
     uint bank = chain_bank(paths, stride, t, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
-    WalkMeeting meeting = walk_meet(&scene, paths, rays, hits, vertices, t, base);
+    WalkMeeting meeting = {0};
+    walk_meet(scene, paths, rays, hits, vertices, t, base, &meeting);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, meeting.own);
     if (s == 0u && depth == d)
-        chain_meet_light(&scene, paths, densities, t, d, &meeting);
+        chain_meet_light(scene, paths, densities, t, d, &meeting);
     if (meeting.missed || (s == 0u && depth == d)) {
         walk_end(paths, rays, stride, t);
         return;
     }
     float u_mix = 0.5f;
-    if (SCENE_HAS(&scene, FEATURE_MIX))
+    if (SCENE_HAS(scene, FEATURE_MIX))
         u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
-    if (!walk_vertex(&scene, paths, rays, vertices, t, base, base, u_mix, &meeting) || depth < last)
+    if (!walk_vertex(scene, paths, rays, vertices, t, base, base, u_mix, &meeting) || depth < last)
         return;
     chain_half_store(paths, stride, t, side, bank);
     walk_end(paths, rays, stride, t);
@@ -269,10 +270,10 @@ __kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __glo
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint s = chain_key_s(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)), bank = chain_bank(paths, stride, t, side);
     WalkStep step = {0};
-    if (!walk_leave(&scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
                     chain_vertex(frame, paths, t, side, depth), &step))
         return;
     walk_mark(paths, stride, t, side, depth, &step);
@@ -325,9 +326,9 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != HALF_BOTH)
         return;
     Random4 film = chain_camera(frame, paths, t);
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Connection connection = {0};
-    if (!chain_connect(&scene, paths, vertices, t, s, camera, film, &connection))
+    if (!chain_connect(scene, paths, vertices, t, s, camera, film, &connection))
         return;
     DensityView view = chain_density_view(frame, paths, densities, t, s, camera);
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
@@ -350,8 +351,8 @@ __kernel void mlt_accept(__global const FrameParams *restrict frame, __global co
     Vec3 color = state_load_vec3(paths, stride, BD_CONTRIBUTION, t);
     if (cast && !visible)
         color = vec3_splat(0.0f);
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    chain_decide(&scene, paths, splats, diagnostics, t, color);
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    chain_decide(scene, paths, splats, diagnostics, t, color);
 }
 
 /* From: the chains. To: what the film has not got of them, and where they ended. */
@@ -363,8 +364,8 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    chain_splat_current(&scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    chain_splat_current(scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
                         chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE));
     uint key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
     pass_store(frame, pass, CHAIN_PASS_KEY, t, chain_key(d, chain_key_s(key)));

@@ -41,12 +41,12 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     ItemPlace place = item_place(frame, t);
     uint pixel = place.pixel, sample = place.sample;
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
     float weight;
-    Vec2 offset = pixel_filter_sample(&scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
+    Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
@@ -157,34 +157,34 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Ray ray = ray_load(rays, stride, t);
     Hit hit = hit_load(hits, stride, t);
     if (hit.primitive == NONE) {
-        if (SCENE_HAS(&scene, FEATURE_INFINITE_LIGHT))
-            path_add_environment(&scene, paths, t, ray.d);
+        if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
+            path_add_environment(scene, paths, t, ray.d);
         path_end(paths, rays, stride, t);
         return;
     }
-    Surface surface = surface_from_hit(&scene, &ray, hit);
-    uint first_light = scene.shapes[surface.shape].first_light;
-    if (SCENE_HAS(&scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
-        uint light = first_light + hit.primitive - scene.shapes[surface.shape].first_primitive;
-        path_add_emission(&scene, paths, t, light, &surface, ray.d);
+    Surface surface = surface_from_hit(scene, &ray, hit);
+    uint first_light = scene->shapes[surface.shape].first_light;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
+        uint light = first_light + hit.primitive - scene->shapes[surface.shape].first_primitive;
+        path_add_emission(scene, paths, t, light, &surface, ray.d);
     }
     if (depth >= frame->max_depth) {
         path_end(paths, rays, stride, t);
         return;
     }
     float u_mix = 0.5f;
-    if (SCENE_HAS(&scene, FEATURE_MIX)) {
+    if (SCENE_HAS(scene, FEATURE_MIX)) {
         Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
                                      state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_MIX));
         u_mix = random_float(random.x[0]);
     }
     Bsdf bsdf;
     Frame shading;
-    material_resolve(&scene, u_mix, &surface, &bsdf, &shading);
+    material_resolve(scene, u_mix, &surface, &bsdf, &shading);
     if (bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(bsdf.color0)) {
         path_end(paths, rays, stride, t);
         return;
@@ -193,7 +193,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
     state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
     frame_store(paths, stride, PATH_FRAME, t, shading);
-    bsdf_store(&scene, paths, stride, PATH_BSDF, t, &bsdf);
+    bsdf_store(scene, paths, stride, PATH_BSDF, t, &bsdf);
 }
 
 /* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
@@ -207,21 +207,21 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
                                  state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_LIGHT));
-    uint light = light_select(&scene, random.x[0], random.x[1]);
+    uint light = light_select(scene, random.x[0], random.x[1]);
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
     LightSample sample = {0};
-    if (!light_sample(&scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+    if (!light_sample(scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return;
-    Bsdf bsdf = bsdf_load(&scene, paths, stride, PATH_BSDF, t);
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
     Frame shading = frame_load(paths, stride, PATH_FRAME, t);
-    BsdfValue value = bsdf_eval(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
+    BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
                                 frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
     if (vec3_is_zero(value.f_cos))
         return;
-    float pdf = scene.lights[light].select_pdf * sample.pdf_w;
+    float pdf = scene->lights[light].select_pdf * sample.pdf_w;
     float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
@@ -275,12 +275,12 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     uint depth = state_load(paths, stride, PATH_DEPTH, t);
     if (depth == 0u)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
                                  state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
-    Bsdf bsdf = bsdf_load(&scene, paths, stride, PATH_BSDF, t);
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
     BsdfSample sample;
-    if (!bsdf_sample(&scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
+    if (!bsdf_sample(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
                      vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
         path_end(paths, rays, stride, t);
         return;

@@ -17,8 +17,8 @@ __kernel void trace_closest(__global const FrameParams *restrict frame, __global
     Ray ray = ray_load(rays, stride, t);
     if (!(ray.t_max > 0.0f))
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    hit_store(hits, stride, t, bvh_closest(&scene, bvh, ray));
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    hit_store(hits, stride, t, bvh_closest(scene, bvh, ray));
 }
 
 __kernel void trace_shadow(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
@@ -31,8 +31,8 @@ __kernel void trace_shadow(__global const FrameParams *restrict frame, __global 
     Ray ray = ray_load(shadows, stride, t);
     if (!(ray.t_max > 0.0f))
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
-    state_store(shadows, stride, SHADOW_OCCLUDED, t, bvh_occluded(&scene, bvh, ray) ? 1u : 0u);
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    state_store(shadows, stride, SHADOW_OCCLUDED, t, bvh_occluded(scene, bvh, ray) ? 1u : 0u);
 }
 
 #endif

@@ -52,7 +52,7 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    SceneView scene = scene_view(frame, geometry, tables, texels);
+    KERNEL_SCENE(frame, geometry, tables, texels);
     uint step = state_load(paths, stride, WALK_STEP, t), h = state_load(paths, stride, WALK_HASH, t);
     for (uint field = 0; field < HIT_WORDS; ++field)
         h = walk_hash(h, state_load(hits, stride, field, t));
@@ -62,7 +62,7 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
     Vec3 d = warp_sphere(vec2(random_float(random.x[0]), random_float(random.x[1])));
     Vec3 p = frame->world_center, ng = vec3_splat(0.0f);
     if (hit.primitive != NONE) {
-        Surface surface = surface_from_hit(&scene, &ray, hit);
+        Surface surface = surface_from_hit(scene, &ray, hit);
         p = surface.p;
         ng = surface.ng;
     }
