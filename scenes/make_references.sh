@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes the pictures that the scenes' renderings are compared with: the mean of two renderings with different seeds, by an
 # integrator without Markov chains, at 128 x 128 pixels and up to 10 segments, as half floats. Prints how far the mean is
-# from the truth, by how far its halves are apart. All of them take about 30 minutes of processor time.
+# from the truth, by how far its halves are apart. All of them take about two hours of processor time.
 # usage: make_references.sh TWINLIGHT AVERAGE_IMAGES FOLDER [SCENE...], SCENE: cornell, door ...; default: all
 set -eu
 twinlight=$1
@@ -26,10 +26,10 @@ reference() {
 for name in "$@"; do
     case $name in
         cornell) reference cornell pt 2048 ;;
-        door) reference door bdpt 384 ;;
-        glossy) reference glossy bdpt 640 ;;
-        lamp) reference lamp bdpt 320 ;;
-        pool) reference pool pt 2048 ;;
+        door) reference door bdpt 3584 ;;
+        glossy) reference glossy bdpt 2560 ;;
+        lamp) reference lamp bdpt 4480 ;;
+        pool) reference pool pt 51200 ;;
         relief) reference relief bdpt 320 ;;
         windows) reference windows ibpt 640 ;;
         *)

@@ -17,9 +17,9 @@ static const struct {
     bool pt_misses; /* some light is hardly ever met by path tracing, and more samples do not help soon */
     double noise[INTEGRATORS];
 } SCENES[] = {
-    {"cornell", 0.010, false, {0.027, 0.029, 0.026, 0.018}}, {"door", 0.042, false, {0.63, 0.48, 0.52, 0.46}},
-    {"glossy", 0.020, true, {0.95, 0.52, 0.28, 0.24}},       {"lamp", 0.010, true, {0.82, 0.052, 0.063, 0.097}},
-    {"pool", 0.047, false, {0.80, 0.91, 0.95, 0.75}},        {"relief", 0.021, true, {0.61, 0.147, 0.12, 0.105}},
+    {"cornell", 0.010, false, {0.027, 0.029, 0.026, 0.018}}, {"door", 0.014, false, {0.65, 0.49, 0.52, 0.30}},
+    {"glossy", 0.012, true, {0.97, 0.50, 0.27, 0.24}},       {"lamp", 0.003, true, {0.80, 0.054, 0.068, 0.099}},
+    {"pool", 0.009, false, {0.78, 0.91, 0.95, 0.76}},        {"relief", 0.021, true, {0.61, 0.147, 0.12, 0.105}},
     {"windows", 0.031, true, {0.61, 0.30, 0.38, 0.58}},
 };
 #define SCENE_COUNT (int)(sizeof SCENES / sizeof SCENES[0])
