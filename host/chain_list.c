@@ -37,13 +37,25 @@ uint chain_pass_fields(const FrameParams *frame)
     return CHAIN_PASS_NUMBERS + (frame->keep_chains ? number_count(frame) : 0);
 }
 
+/* Up to `segments` segments of a walk. */
+static void record_walk(Recorder *recorder, uint segments)
+{
+    size_t end = recorder->count + (size_t)segments * 3 - 1;
+    for (uint i = 1; i <= segments; ++i) {
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_mlt_walk, true);
+        if (i < segments)
+            recorder_skip(recorder, end);
+    }
+}
+
 /* One proposal. The light's walk has up to max_depth - 1 segments (s = d), the camera's one more (s = 0). */
 static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
 {
     recorder_kernel(recorder, KERNEL_mlt_propose, false);
-    recorder_walk(recorder, max_depth - 1, KERNEL_mlt_shade_hits, KERNEL_mlt_extend_walks);
+    record_walk(recorder, max_depth - 1);
     recorder_kernel(recorder, KERNEL_mlt_start_camera, false);
-    recorder_walk(recorder, max_depth, KERNEL_mlt_shade_hits, KERNEL_mlt_extend_walks);
+    record_walk(recorder, max_depth);
     recorder_kernel(recorder, KERNEL_mlt_connect, false);
     recorder_step(recorder, STEP_TRACE_SHADOW);
     recorder_kernel(recorder, KERNEL_mlt_accept, false);
@@ -78,7 +90,7 @@ void chain_memory_print(const FrameParams *frame, unsigned chains)
 
 bool chain_list(const FrameParams *frame, uint steps, StepList *list, Error *error)
 {
-    size_t per_step = 5 + 4 * (2 * (size_t)frame->max_depth - 1), capacity = (steps + 1) * per_step + 2;
+    size_t per_step = 5 + 3 * (2 * (size_t)frame->max_depth - 1), capacity = (steps + 1) * per_step + 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;

@@ -31,11 +31,17 @@ typedef struct Vertex {
     Bsdf bsdf;
 } Vertex;
 
-SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint t,
-                                  const Vertex *vertex)
+/* What the next segment of a walk has to know of the vertex that it leaves. */
+SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint t, const Vertex *vertex)
 {
     state_store_vec3(vertices, stride, base + VERTEX_POINT, t, vertex->p);
     state_store_vec3(vertices, stride, base + VERTEX_NG, t, vertex->ng);
+}
+
+SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint t,
+                                  const Vertex *vertex)
+{
+    vertex_place_store(vertices, stride, base, t, vertex);
     frame_store(vertices, stride, base + VERTEX_FRAME_N, t, vertex->frame);
     state_store_vec3(vertices, stride, base + VERTEX_WO, t, vertex->wo);
     state_store_vec3(vertices, stride, base + VERTEX_BETA, t, vertex->beta);

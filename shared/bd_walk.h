@@ -192,47 +192,67 @@ SHARED_FUNCTION void walk_meet(const SceneView *scene, __global const uint *rest
         meeting->light = first_light + hit.primitive - scene->shapes[meeting->surface.shape].first_primitive;
 }
 
-/* Makes and stores the vertex at `base`, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is full. */
-SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                 __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
-                                 WalkMeeting *meeting)
+/* Makes the vertex, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is
+ * full. */
+SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *restrict paths,
+                                      __global uint *restrict rays, __global const uint *restrict vertices, uint t,
+                                      uint before, float u_mix, WalkMeeting *meeting, Vertex *vertex)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
-    Vertex vertex;
     if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
         !vertex_make(scene, &meeting->surface, meeting->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
-                     &vertex)) {
+                     vertex)) {
         walk_end(paths, rays, stride, t);
         return false;
     }
     /* Before the vertex may take the place of y_0. */
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, t,
-                          emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex.p));
-    vertex.back = meeting->back;
+                          emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex->p));
+    vertex->back = meeting->back;
+    return true;
+}
+
+/* The same, and stores it at `base`. */
+SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                 __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
+                                 WalkMeeting *meeting)
+{
+    uint stride = scene->frame->stride;
+    Vertex vertex;
+    if (!walk_vertex_make(scene, paths, rays, vertices, t, before, u_mix, meeting, &vertex))
+        return false;
     vertex_store(scene, vertices, stride, base, t, &vertex);
     state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
     return true;
 }
 
-/* Draws where the walk goes on from the vertex at `base`; false when it has ended. random: lobe, direction, roulette. */
-SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint t,
-                                uint base, Random4 random, WalkStep *step)
+/* Draws where the walk goes on from its last vertex; false when it has ended. random: lobe, direction, roulette. */
+SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, __global uint *restrict paths,
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint t,
+                                       const Vertex *vertex, Random4 random, WalkStep *step)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
-    Vertex vertex = vertex_load(scene, vertices, stride, base, t);
     float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, t);
     float least = walk_survival_least(scene->frame, paths, t);
-    if (walk_scatter(scene, &vertex, side, depth, roulette_scale, least, random, step)) {
+    if (walk_scatter(scene, vertex, side, depth, roulette_scale, least, random, step)) {
         if (ray_traceable(step->ray.o, step->ray.d))
             return true;
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
     }
     walk_end(paths, rays, stride, t);
     return false;
+}
+
+/* From the vertex stored at `base`. */
+SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint t,
+                                uint base, Random4 random, WalkStep *step)
+{
+    Vertex vertex = vertex_load(scene, vertices, scene->frame->stride, base, t);
+    return walk_leave_vertex(scene, paths, rays, diagnostics, t, &vertex, random, step);
 }
 
 /* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */

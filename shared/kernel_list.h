@@ -65,10 +65,8 @@
       BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
     X(mlt_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
       BUFFER_DIAGNOSTICS)                                                                                              \
-    X(mlt_shade_hits, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
-      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                                  \
-    X(mlt_extend_walks, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
-      BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
+    X(mlt_walk, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
+      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
     X(mlt_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,       \
       BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
     X(mlt_accept, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \

@@ -1,7 +1,7 @@
 /* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and, between
  * large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
  * mlt_begin; then per proposal mlt_propose, the light's walk, mlt_start_camera, the camera's walk, mlt_connect, (shadow
- * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_shade_hits, mlt_extend_walks.
+ * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk.
  * The first proposal of a pass is the current path itself, so that its vertices are there. */
 #ifndef TWINLIGHT_MLT_CL
 #define TWINLIGHT_MLT_CL
@@ -221,13 +221,35 @@ SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *res
     chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, plain);
 }
 
-/* From: closest hits. To: the vertex with its density; s = 0: at the last one what the light sends. A walk ends with its
- * last vertex, or where nothing can be made of it. */
-__kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                             __global const uint *restrict tables, __global const uint *restrict texels,
-                             __global uint *restrict paths, __global uint *restrict rays,
-                             __global const uint *restrict hits, __global uint *restrict vertices,
-                             __global uint *restrict densities)
+/* Where the walk goes on from a vertex that is not its last. Nobody asks for that vertex any more but for its place. */
+SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                   __global uint *restrict vertices, __global uint *restrict densities,
+                                   __global uint *restrict diagnostics, uint t, uint side, uint depth, uint s, uint bank,
+                                   Random4 numbers, Vertex *vertex)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride;
+    WalkStep step = {0};
+    vertex_place_store(vertices, stride, chain_vertex_base(side, bank), t, vertex);
+    vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as the pool, which has stored it */
+    if (!walk_leave_vertex(scene, paths, rays, diagnostics, t, vertex, numbers, &step))
+        return;
+    walk_mark(paths, stride, t, side, depth, &step);
+    if (side == SIDE_LIGHT || depth > 1u) {
+        uint before = chain_density(frame, side, bank, s, depth - 1u);
+        state_store_float(densities, stride, before, t, step.reverse / state_load_float(densities, stride, before, t));
+    }
+    walk_step_store(paths, rays, stride, t, depth, &step);
+}
+
+/* From: closest hits. To: the vertex with its density, the ratio of densities of the one before it, and the next ray;
+ * s = 0: at the last one what the light sends. A walk ends with its last vertex, by absorption, or where nothing can be
+ * made of it. */
+__kernel void mlt_walk(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                       __global const uint *restrict tables, __global const uint *restrict texels,
+                       __global uint *restrict paths, __global uint *restrict rays, __global const uint *restrict hits,
+                       __global uint *restrict vertices, __global uint *restrict densities,
+                       __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -248,40 +270,20 @@ __kernel void mlt_shade_hits(__global const FrameParams *restrict frame, __globa
         walk_end(paths, rays, stride, t);
         return;
     }
-    float u_mix = 0.5f;
-    if (SCENE_HAS(scene, FEATURE_MIX))
-        u_mix = random_float(chain_vertex(frame, paths, t, side, depth).x[3]);
-    if (!walk_vertex(scene, paths, rays, vertices, t, base, base, u_mix, &meeting) || depth < last)
+    Random4 numbers = {{0u, 0u, 0u, 0u}};
+    if (depth < last || SCENE_HAS(scene, FEATURE_MIX))
+        numbers = chain_vertex(frame, paths, t, side, depth);
+    float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(numbers.x[3]) : 0.5f;
+    Vertex vertex;
+    if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &meeting, &vertex))
         return;
+    if (depth < last) {
+        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, t, side, depth, s, bank, numbers, &vertex);
+        return;
+    }
+    vertex_store(scene, vertices, stride, base, t, &vertex);
     chain_half_store(paths, stride, t, side, bank);
     walk_end(paths, rays, stride, t);
-}
-
-/* From: the vertex. To: the ratio of densities of the one before it; the next ray, or the walk's end by absorption. */
-__kernel void mlt_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                               __global const uint *restrict tables, __global const uint *restrict texels,
-                               __global uint *restrict paths, __global uint *restrict rays,
-                               __global const uint *restrict vertices, __global uint *restrict densities,
-                               __global uint *restrict diagnostics)
-{
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
-        return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
-    if (depth == 0u)
-        return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
-    uint s = chain_key_s(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)), bank = chain_bank(paths, stride, t, side);
-    WalkStep step = {0};
-    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, chain_vertex_base(side, bank),
-                    chain_vertex(frame, paths, t, side, depth), &step))
-        return;
-    walk_mark(paths, stride, t, side, depth, &step);
-    if (side == SIDE_LIGHT || depth > 1u) {
-        uint before = chain_density(frame, side, bank, s, depth - 1u);
-        state_store_float(densities, stride, before, t, step.reverse / state_load_float(densities, stride, before, t));
-    }
-    walk_step_store(paths, rays, stride, t, depth, &step);
 }
 
 /* The connection of the two last vertices. film: chain_camera. */
