@@ -3,8 +3,9 @@
  * walk under way (bd_state.h).
  *
  * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
- * balance holds exactly and a coordinate that is left alone keeps its bits. A proposal is not stored: its coordinates
- * are a function of the current ones and of (seed, chain, step), and are made again when it is accepted. */
+ * balance holds exactly and a coordinate that is left alone keeps its bits. A large step adds one that is any with the same
+ * probability, so that the sum is, too. What is added is a function of (seed, chain, step): a proposal stands where the
+ * current coordinates stood, and one that is refused is taken away again. */
 #ifndef TWINLIGHT_CHAIN_H
 #define TWINLIGHT_CHAIN_H
 
@@ -184,11 +185,10 @@ SHARED_FUNCTION uint chain_slot_half(uint s, uint slot)
 #define MUTATION_CHANCE(kind) ((kind) == MUTATION_CAMERA ? 6u : 1u)
 
 /* Blocks of random numbers of one step, 256 of them. */
-#define CHAIN_BLOCK_CAMERA 0u
-#define CHAIN_BLOCK_EMIT 1u
-#define CHAIN_BLOCK_SELECT 2u /* which light; the new s of a large step */
-#define CHAIN_BLOCK_DECIDE 3u /* whether to accept; pixel of the splat */
-#define CHAIN_BLOCK_VERTICES 4u
+#define CHAIN_BLOCK_DECIDE 0u /* whether to accept; pixel of the splat */
+#define CHAIN_BLOCK_S 1u /* the new s of a large step */
+#define CHAIN_BLOCK_SMALL 2u /* offsets, eight to a block */
+#define CHAIN_BLOCK_LARGE 64u /* four to a block */
 
 SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, uint step, uint block)
 {
@@ -219,49 +219,110 @@ SHARED_FUNCTION uint mutation_offset(uint bits, uint shift, uint length)
     return (bits & 1u) != 0u ? size : 0u - size;
 }
 
-/* Four coordinates from `first` on as the proposal has them. `part`: whose they are. */
-SHARED_FUNCTION Random4 chain_proposed(__global const FrameParams *frame, __global const uint *paths, uint t,
-                                       uint first, uint count, uint part, uint block)
+/* One random word serves two small steps: its bits 0 and 16 are their signs, the 15 bits above each what counts most in the
+ * size of one, and what is below those in one is in the other's upper half. Both have all their sizes, and the word with
+ * both signs turned has both steps turned, so detailed balance is exact. place: 0 or 1, which of the two. */
+#define MUTATION_SIGNS 0x00010001u
+
+SHARED_FUNCTION uint mutation_half_bits(uint word, uint place)
 {
-    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
+    uint turned = place == 0u ? word : word >> 16 | word << 16;
+    return (turned & ~MUTATION_SIGNS) | (turned >> 16 & 1u);
+}
+
+/* The coordinates that a mutation changes: four from `first` on and the others from `second` on. */
+typedef struct ChangedNumbers {
+    uint first, second, count;
+} ChangedNumbers;
+
+SHARED_FUNCTION ChangedNumbers chain_changed(__global const FrameParams *frame, uint changed, uint d, uint s)
+{
+    uint words = chain_vertex_numbers(frame), camera = NUMBER_VERTICES + (s > 1u ? s - 1u : 0u) * words;
+    uint end = NUMBER_VERTICES + (d - 1u) * words;
+    ChangedNumbers numbers;
+    numbers.first = changed == HALF_LIGHT ? NUMBER_EMIT : NUMBER_CAMERA;
+    numbers.second = changed == HALF_CAMERA ? camera : numbers.first + 4u;
+    numbers.count = 4u + (changed == HALF_LIGHT ? camera : end) - numbers.second;
+    return numbers;
+}
+
+/* Adds `offset` to the changed coordinate i. */
+SHARED_FUNCTION void chain_number_add(__global uint *paths, uint stride, uint t, ChangedNumbers numbers, uint i,
+                                      uint offset)
+{
+    uint field = CHAIN_NUMBERS + (i < 4u ? numbers.first + i : numbers.second + i - 4u);
+    if (i < numbers.count)
+        state_store(paths, stride, field, t, state_load(paths, stride, field, t) + offset);
+}
+
+SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+                                     ChangedNumbers numbers, bool back)
+{
+    for (uint first = 0u; first < numbers.count; first += 4u) {
+        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_LARGE + first / 4u);
+        for (uint i = 0u; i < 4u; ++i)
+            chain_number_add(paths, frame->stride, t, numbers, first + i, back ? 0u - random.x[i] : random.x[i]);
+    }
+}
+
+SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+                                     ChangedNumbers numbers, uint scale, uint length, bool back)
+{
+    uint film = scale + (numbers.first == NUMBER_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
+    uint turn = back ? 1u : 0u;
+    for (uint first = 0u; first < numbers.count; first += 8u) {
+        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_SMALL + first / 8u);
+        for (uint i = 0u; i < 8u; ++i) {
+            uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
+            uint bits = mutation_half_bits(random.x[i / 2u], i % 2u) ^ turn;
+            chain_number_add(paths, frame->stride, t, numbers, first + i, mutation_offset(bits, shift, length));
+        }
+    }
+}
+
+/* The current coordinates become the proposal's; back: the other way. */
+SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint t, bool back)
+{
+    uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, t);
+    uint step = state_load(paths, stride, CHAIN_STEP, t), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    uint d = chain_key_depth(key);
+    ChangedNumbers numbers = chain_changed(frame, move >> MOVE_CHANGED & 0xfu, d, chain_key_s(key));
+    if ((move >> MOVE_MUTATION & 0xfu) == MUTATION_LARGE)
+        chain_add_large(frame, paths, t, step, numbers, back);
+    else
+        chain_add_small(frame, paths, t, step, numbers, move >> MOVE_SCALE & 0xfu, mutation_length(d), back);
+}
+
+SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __global const uint *paths, uint t, uint first,
+                                      uint count)
+{
     Random4 numbers;
     for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = i < count ? state_load(paths, stride, CHAIN_NUMBERS + first + i, t) : 0u;
-    if (mutation == MUTATION_REPLAY || (chain_move(paths, stride, t, MOVE_CHANGED) & part) == 0u)
-        return numbers;
-    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), block);
-    bool large = mutation == MUTATION_LARGE;
-    uint shift = chain_move(paths, stride, t, MOVE_SCALE) +
-                 (block == CHAIN_BLOCK_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
-    uint length = mutation_length(chain_key_depth(state_load(paths, stride, CHAIN_PROPOSED_KEY, t)));
-    for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = large ? random.x[i] : numbers.x[i] + mutation_offset(random.x[i], shift, length);
+        numbers.x[i] = i < count ? state_load(paths, frame->stride, CHAIN_NUMBERS + first + i, t) : 0u;
     return numbers;
 }
 
 SHARED_FUNCTION Random4 chain_camera(__global const FrameParams *frame, __global const uint *paths, uint t)
 {
-    return chain_proposed(frame, paths, t, NUMBER_CAMERA, 4u, HALF_CAMERA, CHAIN_BLOCK_CAMERA);
+    return chain_numbers(frame, paths, t, NUMBER_CAMERA, 4u);
 }
 
 SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global const uint *paths, uint t)
 {
-    return chain_proposed(frame, paths, t, NUMBER_EMIT, 4u, HALF_LIGHT, CHAIN_BLOCK_EMIT);
+    return chain_numbers(frame, paths, t, NUMBER_EMIT, 4u);
 }
 
 SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint t)
 {
-    return chain_proposed(frame, paths, t, NUMBER_SELECT, 2u, HALF_LIGHT, CHAIN_BLOCK_SELECT);
+    return chain_numbers(frame, paths, t, NUMBER_SELECT, 2u);
 }
 
 /* x: lobe, direction, direction, mix. */
 SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global const uint *paths, uint t, uint side,
-                                     uint i)
+                                     uint d, uint i)
 {
-    uint key = state_load(paths, frame->stride, CHAIN_PROPOSED_KEY, t), count = chain_vertex_numbers(frame);
-    uint slot = chain_slot(side, chain_key_depth(key), i);
-    return chain_proposed(frame, paths, t, NUMBER_VERTICES + slot * count, count,
-                          side == SIDE_LIGHT ? HALF_LIGHT : HALF_CAMERA, CHAIN_BLOCK_VERTICES + slot);
+    uint count = chain_vertex_numbers(frame);
+    return chain_numbers(frame, paths, t, NUMBER_VERTICES + chain_slot(side, d, i) * count, count);
 }
 
 SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint t, uint first, uint count,
@@ -269,27 +330,6 @@ SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint
 {
     for (uint i = 0u; i < count; ++i)
         state_store(paths, stride, CHAIN_NUMBERS + first + i, t, numbers.x[i]);
-}
-
-/* The proposal's coordinates become the chain's. */
-SHARED_FUNCTION void chain_take_numbers(__global const FrameParams *frame, __global uint *paths, uint t)
-{
-    uint stride = frame->stride, changed = chain_move(paths, stride, t, MOVE_CHANGED);
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), count = chain_vertex_numbers(frame);
-    uint d = chain_key_depth(key), s = chain_key_s(key);
-    if ((changed & HALF_CAMERA) != 0u)
-        chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, chain_camera(frame, paths, t));
-    if ((changed & HALF_LIGHT) != 0u) {
-        chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, chain_emit(frame, paths, t));
-        chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, chain_select(frame, paths, t));
-    }
-    for (uint slot = 0u; slot + 1u < d; ++slot) {
-        uint part = chain_slot_half(s, slot);
-        uint first = NUMBER_VERTICES + slot * count;
-        if ((changed & part) != 0u)
-            chain_store_numbers(paths, stride, t, first, count,
-                                chain_proposed(frame, paths, t, first, count, part, CHAIN_BLOCK_VERTICES + slot));
-    }
 }
 
 /* ---- how a chain begins ------------------------------------------------------------------------------------------ */

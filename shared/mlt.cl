@@ -105,9 +105,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
     walk_end(paths, rays, stride, t);
-    uint kept = HALF_BOTH & ~chain_move(paths, stride, t, MOVE_CHANGED);
-    chain_move_set(paths, stride, t, MOVE_REACHED, s < 2u ? kept | HALF_LIGHT : kept);
-    if ((kept & HALF_LIGHT) != 0u || s < 2u)
+    if ((chain_move(paths, stride, t, MOVE_REACHED) & HALF_LIGHT) != 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
@@ -272,7 +270,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     }
     Random4 numbers = {{0u, 0u, 0u, 0u}};
     if (depth < last || SCENE_HAS(scene, FEATURE_MIX))
-        numbers = chain_vertex(frame, paths, t, side, depth);
+        numbers = chain_vertex(frame, paths, t, side, d, depth);
     float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(numbers.x[3]) : 0.5f;
     Vertex vertex;
     if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &meeting, &vertex))

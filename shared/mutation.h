@@ -49,27 +49,30 @@ SHARED_FUNCTION uint mutation_halves(uint mutation, uint d, uint s)
     return HALF_BOTH;
 }
 
-/* Chooses what is proposed next. The first proposal of a pass is the current path. */
+/* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
 SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths, uint t)
 {
     uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
-    uint step = state_load(paths, stride, CHAIN_STEP, t);
-    bool first = state_load_float(paths, stride, CHAIN_LUMINANCE, t) == 0.0f;
-    uint mutation = MUTATION_REPLAY, changed = HALF_BOTH;
-    if (!first) {
+    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = HALF_BOTH, scale = 0u;
+    if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
         state_store(paths, stride, CHAIN_STEP, t, ++step);
         Random4 random = mutation_random(frame, t, step);
         mutation = mutation_choose(frame, random);
-        chain_move_set(paths, stride, t, MOVE_SCALE, mutation_scale(random));
+        scale = mutation_scale(random);
         changed = mutation_halves(mutation, d, chain_key_s(key));
     }
     if (mutation == MUTATION_LARGE) {
-        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_SELECT).x[2];
+        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
         key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
     }
-    chain_move_set(paths, stride, t, MOVE_MUTATION, mutation);
-    chain_move_set(paths, stride, t, MOVE_CHANGED, changed);
+    uint kept = HALF_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | HALF_LIGHT : kept;
+    uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
+    state_store(paths, stride, CHAIN_MOVE, t,
+                banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
+                    scale << MOVE_SCALE);
     state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
+    if (mutation != MUTATION_REPLAY)
+        chain_move_numbers(frame, paths, t, false);
 }
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
@@ -141,8 +144,6 @@ SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint
 {
     uint stride = frame->stride;
     Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
-    if (chain_move(paths, stride, t, MOVE_MUTATION) != MUTATION_REPLAY)
-        chain_take_numbers(frame, paths, t);
     state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
     chain_move_set(paths, stride, t, MOVE_BANKS,
                    chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED));
@@ -207,6 +208,7 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
         chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t),
                     chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color, accept, random);
         state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
+        chain_move_numbers(frame, paths, t, true);
     }
 }
 

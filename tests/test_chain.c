@@ -53,8 +53,8 @@ static void toy_end(Toy *toy)
 static void coordinates(const Toy *toy, uint t, float x[3])
 {
     x[0] = random_float(chain_camera(&toy->frame, toy->paths, t).x[0]);
-    x[1] = random_float(chain_vertex(&toy->frame, toy->paths, t, SIDE_LIGHT, 1u).x[1]);
-    x[2] = random_float(chain_vertex(&toy->frame, toy->paths, t, SIDE_CAMERA, 1u).x[2]);
+    x[1] = random_float(chain_vertex(&toy->frame, toy->paths, t, SIDE_LIGHT, DEPTH, 1u).x[1]);
+    x[2] = random_float(chain_vertex(&toy->frame, toy->paths, t, SIDE_CAMERA, DEPTH, 1u).x[2]);
 }
 
 /* A target with a step, a slope, a hole and a share for each s. Never above 8. */
@@ -201,6 +201,30 @@ START_TEST(test_offsets_symmetric)
 }
 END_TEST
 
+/* Both steps of one word: turned signs turn both, and sizes are uniform and know nothing of one another. */
+START_TEST(test_offsets_of_a_word)
+{
+    const uint draws = 1u << 20, shift = STEP_SHIFT_OTHERS, length = mutation_length(5u);
+    const double most = ldexp(4.0 / 6.0, 31 - (int)shift);
+    double sum[2] = {0.0, 0.0}, both = 0.0;
+    for (uint i = 0; i < draws; ++i) {
+        uint word = random_four(i, 3, 2, 1, 4, 5).x[0];
+        double signed_size[2];
+        for (uint k = 0; k < 2; ++k) {
+            uint bits = mutation_half_bits(word, k), offset = mutation_offset(bits, shift, length);
+            uint turned = mutation_offset(mutation_half_bits(word ^ MUTATION_SIGNS, k), shift, length);
+            TEST_TRUE(turned == 0u - offset);
+            sum[k] += (double)((bits & 1u) != 0u ? offset : 0u - offset) / most;
+            signed_size[k] = (double)(int)offset / most;
+        }
+        both += signed_size[0] * signed_size[1];
+    }
+    for (uint k = 0; k < 2; ++k)
+        ck_assert_double_eq_tol(sum[k] / draws, 0.5, 5.0 * sqrt(1.0 / 12.0 / draws));
+    ck_assert_double_eq_tol(both / draws, 0.0, 5.0 / 3.0 / sqrt(draws));
+}
+END_TEST
+
 /* Kinds of steps in their proportion, of those that are wanted alone; scales all alike. */
 START_TEST(test_kinds)
 {
@@ -253,18 +277,23 @@ START_TEST(test_null_mutations)
 }
 END_TEST
 
-/* What is never there is never taken. */
+/* What is never there is never taken, and leaves no bit of a coordinate behind. */
 START_TEST(test_zero_never_accepted)
 {
     Toy toy;
-    toy_begin(&toy, 7u, 0.0f, true);
+    uint before[WORDS];
+    toy_begin(&toy, 7u, _i == 0 ? 0.0f : 0.5f, true);
     draw(&toy, 0, false);
+    for (uint i = CHAIN_NUMBERS; i < WORDS; ++i)
+        before[i] = state_load(toy.paths, STRIDE, i, 0);
     float f = state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0);
     for (int k = 0; k < 1000; ++k) {
         chain_propose(&toy.frame, toy.paths, 0);
         float color = k % 3 == 0 ? 0.0f : k % 3 == 1 ? FLOAT_NAN : FLOAT_INFINITY;
         chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(color));
         TEST_TRUE(state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0) == f);
+        for (uint i = CHAIN_NUMBERS; i < WORDS; ++i)
+            TEST_TRUE(state_load(toy.paths, STRIDE, i, 0) == before[i]);
     }
     TEST_NEAR(state_load_float(toy.paths, STRIDE, CHAIN_PENDING, 0), 1000.0, 1e-3);
     ck_assert_uint_eq(toy.diagnostics[DIAGNOSTIC_NOT_FINITE], 666);
@@ -315,9 +344,10 @@ int main(void)
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_stationary, 0, (int)(sizeof KERNELS / sizeof KERNELS[0]));
     tcase_add_loop_test(tcase, test_offsets_symmetric, 0, 4);
+    tcase_add_test(tcase, test_offsets_of_a_word);
     tcase_add_loop_test(tcase, test_kinds, 0, 8);
     tcase_add_loop_test(tcase, test_null_mutations, 0, 2);
-    tcase_add_test(tcase, test_zero_never_accepted);
+    tcase_add_loop_test(tcase, test_zero_never_accepted, 0, 2);
     tcase_add_test(tcase, test_stuck);
     tcase_add_test(tcase, test_memory);
     suite_add_tcase(suite, tcase);
