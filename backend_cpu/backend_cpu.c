@@ -1,5 +1,6 @@
 #include "backend_cpu.h"
 
+#include "chunk.h"
 #include "kernel_list.h"
 #include "kernel_scene.h"
 #include "kernels.h"
@@ -17,19 +18,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Items that a thread carries through the whole list of steps at a time. Large enough that the two clock readings and
- * the hand-out of a chunk vanish, small enough that its state (about 280 bytes an item) stays in the second-level
- * cache. On the Cornell box 128 to 1024 differ by no more than the machine's noise. */
-#ifndef CHUNK_ITEMS
-#define CHUNK_ITEMS 512u
-#endif
-
 #define CHUNK_ITEMS_MIN 32u
 #define CHUNKS_PER_THREAD 8u
-
-/* Fields are one cache line more than a chunk apart. Were they a power of two apart, as CHUNK_ITEMS is, all fields of an
- * item would fall into the same two sets of the first-level cache and evict one another. */
-#define CHUNK_STRIDE (CHUNK_ITEMS + 16u)
 
 #define THREADS_MAX 1024
 

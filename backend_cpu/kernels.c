@@ -11,8 +11,6 @@
 #include "aov.cl"
 #include "pt.cl"
 
-#include <assert.h>
-
 KERNEL_LIST_PATHS(KERNEL_LOOP)
 
 #define KERNEL_ENTRY(name, n, ...) kernel_loop_##name,

@@ -1,4 +1,5 @@
 /* Kernels that the CPU backend runs for tests and benches alone: it has rays of its own, and counts them. */
+#define KERNEL_ANY_STRIDE
 #include "kernel_loop.h"
 
 #include "count.cl"

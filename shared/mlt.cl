@@ -12,14 +12,20 @@
 #include "chain.h"
 #include "mutation.h"
 
+/* Field of item t in BUFFER_PASS, which has a stride of its own. */
+SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint t)
+{
+    return (size_t)field * frame->pass_stride + (frame->first_item + t - frame->pass_first);
+}
+
 SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint t)
 {
-    return state_load(pass, frame->pass_stride, field, frame->first_item + t - frame->pass_first);
+    return pass[pass_place(frame, field, t)];
 }
 
 SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint *pass, uint field, uint t, uint value)
 {
-    state_store(pass, frame->pass_stride, field, frame->first_item + t - frame->pass_first, value);
+    pass[pass_place(frame, field, t)] = value;
 }
 
 /* From: a pool's gathered candidates. To: what the sample is worth, and the path kept. */

@@ -5,24 +5,31 @@
 
 #include "path_types.h"
 
+/* A backend whose buffers all have one stride may name it before: then every field has a constant address but for t. */
+#ifdef STATE_STRIDE
+#define STATE_PLACE(stride, field, t) ((void)(stride), (size_t)(field)*STATE_STRIDE + (t))
+#else
+#define STATE_PLACE(stride, field, t) ((size_t)(field) * (stride) + (t))
+#endif
+
 SHARED_FUNCTION uint state_load(__global const uint *buffer, uint stride, uint field, uint t)
 {
-    return buffer[(size_t)field * stride + t];
+    return buffer[STATE_PLACE(stride, field, t)];
 }
 
 SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field, uint t, uint value)
 {
-    buffer[(size_t)field * stride + t] = value;
+    buffer[STATE_PLACE(stride, field, t)] = value;
 }
 
 SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint t)
 {
-    return word_float(buffer + (size_t)field * stride + t);
+    return word_float(buffer + STATE_PLACE(stride, field, t));
 }
 
 SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint t, float value)
 {
-    word_set_float(buffer + (size_t)field * stride + t, value);
+    word_set_float(buffer + STATE_PLACE(stride, field, t), value);
 }
 
 /* A Vec3 takes three fields from `field` on. */
