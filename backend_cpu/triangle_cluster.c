@@ -23,6 +23,9 @@ static void cluster_set(TriangleCluster *cluster, int lane, const SceneView *sce
         cluster->corner[k][1][lane] = p.y;
         cluster->corner[k][2][lane] = p.z;
     }
+    Vec3 normal =
+        triangle_normal(scene->positions[primitive.a], scene->positions[primitive.b], scene->positions[primitive.c]);
+    cluster->solid[lane] = vec3_is_zero(normal) ? 0 : -1;
 }
 
 static void *build_leaf(RTCThreadLocalAllocator allocator, const struct RTCBuildPrimitive *primitives, size_t count,
@@ -134,8 +137,8 @@ typedef struct ShearedLanes {
 } ShearedLanes;
 
 typedef struct ClusterTest {
-    ShearedLanes corner[3];
-    Lanes edge[3];
+    Lanes edge_b, edge_c, area, t;
+    unsigned sure; /* candidates that are hits but for alpha; of the others triangle_query has to say */
 } ClusterTest;
 
 /* Bit i: lane i of the mask. */
@@ -148,6 +151,25 @@ static inline unsigned lanes_bits(LaneMask mask)
     for (int lane = 0; lane < CLUSTER_LANES; ++lane)
         bits |= (mask[lane] != 0 ? 1u : 0u) << lane;
     return bits;
+}
+
+/* a > b ? a : b */
+static inline Lanes lanes_max(Lanes a, Lanes b)
+{
+#if defined(__SSE__) && CLUSTER_LANES == 4 && !defined(PLATFORM_DOUBLE)
+    return __builtin_ia32_maxps(a, b);
+#endif
+    LaneMask more = a > b;
+    return (Lanes)(((LaneMask)a & more) | ((LaneMask)b & ~more));
+}
+
+static inline Lanes lanes_abs(Lanes a)
+{
+#ifdef PLATFORM_DOUBLE
+    return (Lanes)((LaneMask)a & INT64_MAX);
+#else
+    return (Lanes)((LaneMask)a & INT32_MAX);
+#endif
 }
 
 /* triangle_shear of four triangles' corner. */
@@ -166,47 +188,62 @@ static inline Lanes lanes_edge(const ShearedLanes *p, const ShearedLanes *q)
     return p->x * q->y - p->y * q->x;
 }
 
+static inline Lanes lanes_extent(const ShearedLanes *p)
+{
+    return lanes_max(lanes_abs(p->x), lanes_abs(p->y));
+}
+
+/* triangle_t_error of four triangles. */
+static inline Lanes lanes_t_error(const ShearedLanes corner[3], const RayQuery *query)
+{
+    Lanes extent = lanes_max(lanes_extent(&corner[0]), lanes_max(lanes_extent(&corner[1]), lanes_extent(&corner[2])));
+    Lanes depth = lanes_max(lanes_abs(corner[0].z), lanes_max(lanes_abs(corner[1].z), lanes_abs(corner[2].z)));
+    Lanes reach = depth + float_abs(query->sz) * (vec3_max_abs(query->o) + vec3_max_abs(query->error));
+    return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
+}
+
 /* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie ahead of
- * the origin and not beyond t_best. The triangle that a ray starts on is nearly always turned away here. */
+ * the origin and not beyond t_best. The triangle that a ray starts on is nearly always turned away here. Of the others nearly
+ * all are hits far from the ray's ends, which is all that triangle_finish has to find out. */
 static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
                                           ClusterTest *test)
 {
-    for (int k = 0; k < 3; ++k)
-        test->corner[k] = lanes_shear(cluster->corner[k], query);
-    test->edge[0] = lanes_edge(&test->corner[1], &test->corner[2]);
-    test->edge[1] = lanes_edge(&test->corner[2], &test->corner[0]);
-    test->edge[2] = lanes_edge(&test->corner[0], &test->corner[1]);
+    ShearedLanes corner[3];
     Lanes zero = {0.0f};
-    LaneMask negative = (test->edge[0] < zero) | (test->edge[1] < zero) | (test->edge[2] < zero);
-    LaneMask positive = (test->edge[0] > zero) | (test->edge[1] > zero) | (test->edge[2] > zero);
-    Lanes area = test->edge[0] + test->edge[1] + test->edge[2];
-    LaneMask inside = ~(negative & positive) & ((area > zero) | (area < zero));
+    for (int k = 0; k < 3; ++k)
+        corner[k] = lanes_shear(cluster->corner[k], query);
+    Lanes a = lanes_edge(&corner[1], &corner[2]), b = lanes_edge(&corner[2], &corner[0]),
+          c = lanes_edge(&corner[0], &corner[1]), area = a + b + c;
+    LaneMask negative = (a < zero) | (b < zero) | (c < zero), positive = (a > zero) | (b > zero) | (c > zero);
+    LaneMask inside = ~(negative & positive) & ((area > zero) | (area < zero)) & cluster->solid;
     if (lanes_bits(inside) == 0)
         return 0;
-    Lanes t =
-        (test->edge[0] * test->corner[0].z + test->edge[1] * test->corner[1].z + test->edge[2] * test->corner[2].z) /
-        area;
-    return lanes_bits(inside & (t > zero) & (t <= zero + t_best));
+    Lanes volume = a * corner[0].z + b * corner[1].z + c * corner[2].z, t = volume / area;
+    inside = inside & (t > zero) & (t <= zero + t_best);
+    unsigned candidates = lanes_bits(inside);
+    if (candidates == 0)
+        return 0;
+    Lanes error = lanes_t_error(corner, query), t_max = zero + query->t_max;
+    LaneMask ends = (lanes_abs(volume) <= error) | ((t_max - t) * lanes_abs(area) <= error);
+    *test = (ClusterTest){b, c, area, t, lanes_bits(~ends & (t < t_max)) & candidates};
+    return candidates;
 }
 
-/* The other half of triangle_query for one lane, and the alpha texture. */
-static bool cluster_finish(const SceneView *scene, const TriangleCluster *cluster, const ClusterTest *test, int lane,
-                           const RayQuery *query, Hit *hit)
+/* Whether the candidate in a lane is a hit. */
+static inline bool cluster_finish(const SceneView *scene, const TriangleCluster *cluster, const ClusterTest *test,
+                                  int lane, const RayQuery *query, Hit *hit)
 {
-    Vec3 p[3];
-    ShearedCorner s[3];
-    for (int k = 0; k < 3; ++k) {
-        p[k] = vec3(cluster->corner[k][0][lane], cluster->corner[k][1][lane], cluster->corner[k][2][lane]);
-        s[k] = (ShearedCorner){test->corner[k].x[lane], test->corner[k].y[lane], test->corner[k].z[lane]};
-    }
-    TriangleEdges edges = {test->edge[0][lane], test->edge[1][lane], test->edge[2][lane]};
-    if (!triangle_finish(p[0], p[1], p[2], s[0], s[1], s[2], edges, query, &hit->t, &hit->u, &hit->v))
-        return false;
+    uint id = cluster->primitive[lane];
+    if ((test->sure >> lane & 1u) == 0u)
+        return primitive_query(scene, id, query, hit);
+    hit->t = test->t[lane];
+    hit->u = test->edge_b[lane] / test->area[lane];
+    hit->v = test->edge_c[lane] / test->area[lane];
     if (!SCENE_HAS(scene, FEATURE_ALPHA))
         return true;
-    Primitive primitive = scene->primitives[cluster->primitive[lane]];
+    Primitive primitive = scene->primitives[id];
     return !(primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
-           primitive_alpha_keeps(scene, query, cluster->primitive[lane], &primitive, hit);
+           primitive_alpha_keeps(scene, query, id, &primitive, hit);
 }
 
 bool triangle_cluster_intersect(const SceneView *scene, const TriangleCluster *cluster, uint instance,
@@ -228,6 +265,8 @@ bool triangle_cluster_occludes(const SceneView *scene, const TriangleCluster *cl
 {
     ClusterTest test;
     unsigned candidates = cluster_candidates(cluster, query, query->t_max, &test);
+    if (candidates != 0 && test.sure != 0 && !SCENE_HAS(scene, FEATURE_ALPHA))
+        return true;
     for (; candidates != 0; candidates &= candidates - 1) {
         Hit hit = hit_none(query->t_max);
         if (cluster_finish(scene, cluster, &test, __builtin_ctz(candidates), query, &hit))

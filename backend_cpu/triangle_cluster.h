@@ -22,6 +22,7 @@ typedef int LaneMask __attribute__((vector_size(sizeof(float) * CLUSTER_LANES)))
 
 typedef struct TriangleCluster {
     Lanes corner[3][3]; /* corner, axis */
+    LaneMask solid; /* triangle_normal is not zero */
     uint primitive[CLUSTER_LANES]; /* NONE in unused lanes, whose corners are all zero */
 } TriangleCluster;
 
