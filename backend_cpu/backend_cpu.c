@@ -23,6 +23,13 @@
 
 #define THREADS_MAX 1024
 
+/* What has happened to rays since `live` was made. */
+typedef enum LiveList {
+    LIVE_ANY, /* anything */
+    LIVE_FEWER, /* only items of the list may have been touched */
+    LIVE_SAME
+} LiveList;
+
 /* What a thread owns. */
 typedef struct Worker {
     Backend *backend;
@@ -33,8 +40,9 @@ typedef struct Worker {
     size_t buffer_words[BUFFER_COUNT];
     uint64_t diagnostics[DIAGNOSTIC_COUNT];
     uint64_t closest_rays, shadow_rays, ray_nanoseconds;
-    uint live[CHUNK_ITEMS]; /* items with a ray in the latest closest-hit step */
+    uint live[CHUNK_ITEMS]; /* items with a ray when worker_find_live looked last */
     uint live_count;
+    LiveList live_list;
     char padding[64]; /* no two workers' counters on a cache line */
 } Worker;
 
@@ -113,29 +121,43 @@ static void worker_sum_diagnostics(Worker *worker)
     }
 }
 
+/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares rays and kernels the
+ * others. */
+static void worker_find_live(Worker *worker, uint count)
+{
+    const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;
+    uint live = 0, before = worker->live_list == LIVE_ANY ? count : worker->live_count;
+    if (worker->live_list == LIVE_SAME)
+        return;
+    for (uint i = 0; i < before; ++i) {
+        uint t = worker->live_list == LIVE_ANY ? i : worker->live[i];
+        worker->live[live] = t;
+        live += bits_float(t_max[t]) > 0.0f;
+    }
+    worker->live_count = live;
+    worker->live_list = LIVE_SAME;
+}
+
 static void worker_trace(Worker *worker, StepKind kind, uint count)
 {
     const RaysEmbree *rays = worker->backend->rays;
     uint64_t begin = nanoseconds_now();
     if (kind == STEP_TRACE_CLOSEST)
-        worker->closest_rays += rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS],
-                                                          worker->buffers[BUFFER_HITS], count, CHUNK_STRIDE);
+        worker->closest_rays +=
+            rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], worker->live,
+                                      worker->live_count, CHUNK_STRIDE);
     else
         worker->shadow_rays += rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
     worker->ray_nanoseconds += nanoseconds_now() - begin;
 }
 
-/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares the kernels the
- * others. */
-static void worker_find_live(Worker *worker, uint count)
+static void worker_run_kernel(Worker *worker, const Step *step, void *const *arguments, uint count)
 {
-    const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;
-    uint live = 0;
-    for (uint t = 0; t < count; ++t) {
-        worker->live[live] = t;
-        live += bits_float(t_max[t]) > 0.0f;
-    }
-    worker->live_count = live;
+    if (step->live_only)
+        kernel_run(step->kernel, arguments, worker->live, worker->live_count);
+    else
+        kernel_run(step->kernel, arguments, NULL, count);
+    worker->live_list = step->live_only && worker->live_list != LIVE_ANY ? LIVE_FEWER : LIVE_ANY;
 }
 
 /* Step i of the list; returns the next. */
@@ -144,8 +166,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
     const Step *step = &job->list->steps[i];
     switch (step->kind) {
     case STEP_KERNEL:
-        kernel_run(step->kernel, arguments, step->live_only ? worker->live : NULL,
-                   step->live_only ? worker->live_count : count);
+        worker_run_kernel(worker, step, arguments, count);
         break;
     case STEP_TRACE_CLOSEST:
         worker_find_live(worker, count);
@@ -203,6 +224,7 @@ static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
     worker->frame.pass_first = 0;
     worker->frame.pass_stride = job->list->pass_stride;
     worker_arguments(worker, job->list, arguments);
+    worker->live_list = LIVE_ANY;
     if (job->inspect)
         worker_clear_state(worker, job->list);
     for (size_t i = 0; i < job->list->count;)

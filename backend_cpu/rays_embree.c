@@ -375,10 +375,12 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
     return asked.tfar < 0.0f;
 }
 
-uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint count, uint stride)
+uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, const uint *items,
+                               uint count, uint stride)
 {
     uint traced = 0;
-    for (uint t = 0; t < count; ++t) {
+    for (uint i = 0; i < count; ++i) {
+        uint t = items ? items[i] : i;
         Ray ray = ray_load(ray_words, stride, t);
         if (!(ray.t_max > 0.0f))
             continue;

@@ -17,9 +17,10 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray);
 /* Whether anything lies within the ray. */
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray);
 
-/* The same over state buffers (state.h) of `count` items at `stride`. Rays with t_max <= 0 are not traced; what is
- * returned is the number of the others. */
-uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint count, uint stride);
+/* The same over state buffers (state.h) at `stride`: of `count` items, those that `items` lists or, where it is NULL, the
+ * first. Rays with t_max <= 0 are not traced; what is returned is the number of the others. */
+uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, const uint *items,
+                               uint count, uint stride);
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride);
 
 /* Bytes that Embree holds. */

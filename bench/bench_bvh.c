@@ -147,7 +147,7 @@ static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
     else if (shadow)
         *traced = rays_embree_trace_shadow(bench->rays, bench->buffers[BUFFER_SHADOWS], ITEMS, STRIDE);
     else
-        *traced = rays_embree_trace_closest(bench->rays, bench->buffers[BUFFER_RAYS], bench->buffers[BUFFER_HITS],
+        *traced = rays_embree_trace_closest(bench->rays, bench->buffers[BUFFER_RAYS], bench->buffers[BUFFER_HITS], NULL,
                                             ITEMS, STRIDE);
     return bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
 }

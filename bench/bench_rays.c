@@ -297,7 +297,7 @@ static double set_trace(const RaySet *set, const RaysEmbree *rays, RTCScene scen
         if (rays && shadow)
             rays_embree_trace_shadow(rays, shadows, STRIDE, STRIDE);
         else if (rays)
-            rays_embree_trace_closest(rays, closest, hits, STRIDE, STRIDE);
+            rays_embree_trace_closest(rays, closest, hits, NULL, STRIDE, STRIDE);
         else if (shadow)
             trace_shadow_bare(scene, shadows);
         else

@@ -67,7 +67,7 @@ static void closest_compare(Comparison *comparison, WalkState *state)
     memcpy(state->hits, hits, sizeof state->hits);
     kernel_run(KERNEL_trace_closest, state->buffers, NULL, BLOCK);
     atomic_fetch_add(&comparison->traced, rays_embree_trace_closest(comparison->rays, state->buffers[BUFFER_RAYS],
-                                                                    state->hits, BLOCK, BLOCK));
+                                                                    state->hits, NULL, BLOCK, BLOCK));
     uint differ = 0, met = 0;
     for (uint t = 0; t < BLOCK; ++t) {
         uint different = 0;
