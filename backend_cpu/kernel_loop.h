@@ -28,7 +28,7 @@ static _Thread_local SceneView kernel_scene __attribute__((unused));
 
 typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
 
-#define KERNEL_DECLARE(name, n, ...) KernelLoop kernel_loop_##name;
+#define KERNEL_DECLARE(name, n, ...) KernelLoop kernel_loop_##name, kernel_wide_##name;
 KERNEL_LIST(KERNEL_DECLARE)
 #undef KERNEL_DECLARE
 
@@ -41,9 +41,14 @@ KERNEL_LIST(KERNEL_DECLARE)
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 
+/* A translation unit that is compiled in another way has other names. */
+#ifndef KERNEL_LOOP_NAME
+#define KERNEL_LOOP_NAME(name) kernel_loop_##name
+#endif
+
 /* One loop a kernel, with the kernel inlined into it. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
-    void kernel_loop_##name(void *const *buffers, const uint *items, uint count)                                       \
+    void KERNEL_LOOP_NAME(name)(void *const *buffers, const uint *items, uint count)                                   \
     {                                                                                                                  \
         assert(STRIDE_IS_KNOWN((const FrameParams *)buffers[BUFFER_FRAME]));                                           \
         kernel_scene = scene_view(buffers[BUFFER_FRAME], buffers[BUFFER_GEOMETRY], buffers[BUFFER_TABLES],             \

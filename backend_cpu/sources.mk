@@ -21,3 +21,10 @@ libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene_double.c
 else
 libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene.c
 endif
+if WIDE_KERNELS
+noinst_LTLIBRARIES += libtwinlight_wide.la
+libtwinlight_wide_la_SOURCES = backend_cpu/kernels_mlt_wide.c
+libtwinlight_wide_la_CPPFLAGS = $(libtwinlight_kernels_la_CPPFLAGS)
+libtwinlight_wide_la_CFLAGS = $(libtwinlight_kernels_la_CFLAGS) $(WIDE_CFLAGS)
+libtwinlight_kernels_la_LIBADD = libtwinlight_wide.la
+endif
