@@ -1,6 +1,6 @@
 #include "chain_groups.h"
 
-#include "chain.h"
+#include "chain_numbers.h"
 
 #include <math.h>
 

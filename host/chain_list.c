@@ -1,7 +1,7 @@
 #include "chain_list.h"
 
 #include "bd_fields.h"
-#include "chain.h"
+#include "chain_numbers.h"
 #include "kernel_list.h"
 #include "step_recorder.h"
 

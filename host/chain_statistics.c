@@ -1,6 +1,6 @@
 #include "chain_statistics.h"
 
-#include "chain.h"
+#include "chain_numbers.h"
 
 static uint64_t larger(uint64_t a, uint64_t b)
 {

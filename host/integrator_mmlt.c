@@ -24,6 +24,11 @@
 
 #define LARGE_STEP_DEFAULT 0.3
 
+/* So many of the steps of the camera's half are shifts (shift.h). For the same work, relMSE of a glossy hall and, in brackets,
+ * that with the worst thousandth of its pixels: 0.040 (0.075) with none, 0.029 (0.039) with a quarter, 0.027 (0.037) with this,
+ * 0.029 (0.041) with 0.9; of a door ajar 0.087 (0.13) with none, 0.057 (0.090) with half. */
+#define SHIFTS 0.75f
+
 /* Samples of path tracing for every step of a chain: until variances are known, and where only direct light is wanted. */
 #define PATHS_FIRST 1.0
 #define PATHS_DIRECT 0.5
@@ -142,6 +147,7 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     frame->mutations = mmlt->options.mutations;
     frame->group_mutations = !mmlt->options.ungrouped;
     frame->large_step = mmlt->options.paper ? (float)mmlt->options.large_step : 0.0f;
+    frame->shifts = mmlt->options.paper || mmlt->options.shiftless ? 0.0f : SHIFTS;
     frame->keep_chains = 1;
     pool_frame = *frame;
     pool_frame.pool = 1;

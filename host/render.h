@@ -23,6 +23,7 @@ typedef struct ChainOptions {
     unsigned mutations; /* bit MUTATION_* */
     ChainOrder order;
     bool ungrouped; /* every chain its own kind of mutation */
+    bool shiftless; /* no step keeps the rest of the path */
     bool aimless; /* directions do not count from lights */
     bool unblended; /* the pool's samples are not shown (blend.h) */
     int shown; /* 1 + BLEND_*: that stream alone, with what it leaves to chains; 0: all. For tests */

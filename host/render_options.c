@@ -33,6 +33,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_SORT] = {"sort", 0, "ORDER", "mmlt: chains by strategy, that is, depth and strategy (default), or depth"},
     [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order in which they were drawn"},
     [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
+    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL, "mmlt: no steps across the film that keep the rest of the path"},
     [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: chains know nothing of where the lights are"},
     [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
@@ -225,6 +226,9 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
     case OPTION_NO_GROUP:
         chains->ungrouped = true;
         return true;
+    case OPTION_NO_SHIFT:
+        chains->shiftless = true;
+        return true;
     case OPTION_NO_AIM:
         chains->aimless = true;
         return true;
@@ -307,6 +311,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_SORT:
     case OPTION_NO_SORT:
     case OPTION_NO_GROUP:
+    case OPTION_NO_SHIFT:
     case OPTION_NO_AIM:
     case OPTION_NO_BLEND:
     case OPTION_DUMP_BAD:

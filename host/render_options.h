@@ -67,6 +67,7 @@ typedef enum RenderOption {
     OPTION_SORT,
     OPTION_NO_SORT,
     OPTION_NO_GROUP,
+    OPTION_NO_SHIFT,
     OPTION_NO_AIM,
     OPTION_NO_BLEND,
     OPTION_DUMP_BAD,

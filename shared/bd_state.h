@@ -39,6 +39,9 @@
 #define BD_TARGET 25u /* pixel it goes to; NONE: the path's own */
 #define BD_TARGET_WEIGHT 26u /* of the pixel filter, there */
 #define BD_COVER 27u /* of a pool: film_splat_cover where the camera's path began */
+/* Of a chain (shift.h); a pool has others in their place */
+#define BD_SHIFT_NUMBERS 27u /* coordinates that draw the directions at z_1 and z_2, 2 each */
+#define BD_SHIFT_DENSITY 33u /* of the last direction, of its lobe alone; 0: it cannot be drawn at will */
 /* Of a pool (pool.h) */
 #define BD_CANDIDATE_SUM 28u
 #define BD_CANDIDATE 29u

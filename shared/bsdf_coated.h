@@ -99,6 +99,15 @@ SHARED_FUNCTION BsdfValue coated_eval(const SceneView *scene, const Bsdf *bsdf, 
     return coated_eval_above(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip));
 }
 
+/* The same of direction o, o.z > 0, and in *t_o its T. */
+SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, Vec3 o, float *t_o)
+{
+    float escape;
+    *t_o = coated_transmission(scene, bsdf, o, &escape);
+    float base_max = vec3_max_component(coated_base(bsdf, escape));
+    return coated_specular_probability(*t_o, base_max, escape * bsdf->eta * bsdf->eta);
+}
+
 /* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta reflection of
  * a smooth coat stays apart. */
 SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, Vec2 u_base,
@@ -107,10 +116,7 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
     bool flip = wo.z < 0.0f;
     Vec3 o = direction_flip(wo, flip);
     bool rough = coated_is_rough(scene, bsdf);
-    float escape;
-    float t_o = coated_transmission(scene, bsdf, o, &escape);
-    float base_max = vec3_max_component(coated_base(bsdf, escape));
-    float specular = coated_specular_probability(t_o, base_max, escape * bsdf->eta * bsdf->eta);
+    float t_o, specular = coated_specular(scene, bsdf, o, &t_o);
     Vec3 i;
     if (!(u_lobe < specular)) {
         i = warp_cosine_hemisphere(u_base);

@@ -63,14 +63,14 @@
       BUFFER_RAYS, BUFFER_SHADOWS)                                                                                     \
     X(mlt_propose, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
       BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
-    X(mlt_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
-      BUFFER_DIAGNOSTICS)                                                                                              \
+    X(mlt_start_camera, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
     X(mlt_walk, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
       BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
     X(mlt_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,       \
       BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
-    X(mlt_accept, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
-      BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                                                               \
+    X(mlt_accept, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
+      BUFFER_VERTICES, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                                              \
     X(mlt_end, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SPLATS,            \
       BUFFER_PASS, BUFFER_DIAGNOSTICS)
 

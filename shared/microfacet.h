@@ -65,4 +65,15 @@ SHARED_FUNCTION Vec3 ggx_sample_visible(Vec3 w, float alpha_x, float alpha_y, Ve
     return vec3_normalize(vec3(alpha_x * x, alpha_y * y, z));
 }
 
+/* The u with which ggx_sample_visible draws h (of any length and sign). */
+SHARED_FUNCTION Vec2 ggx_invert_visible(Vec3 w, Vec3 h, float alpha_x, float alpha_y)
+{
+    Vec3 stretched = vec3_normalize(vec3(alpha_x * w.x, alpha_y * w.y, w.z));
+    Vec3 m = vec3_normalize(vec3(h.x / alpha_x, h.y / alpha_y, h.z));
+    Vec3 c = vec3_mad(vec3_negate(stretched), 2.0f * vec3_dot(stretched, m), m); /* the point of the cap */
+    float turn = float_atan2(c.y, c.x) * (0.5f * INV_PI);
+    float t = c.z > 0.0f ? (c.x * c.x + c.y * c.y) / (1.0f + c.z) : 1.0f - c.z; /* 1 - c.z */
+    return vec2(turn < 0.0f ? turn + 1.0f : turn, t / (1.0f + stretched.z));
+}
+
 #endif

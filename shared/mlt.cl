@@ -9,7 +9,7 @@
 #include "bd_connect.h"
 #include "bd_start.h"
 #include "bd_weight.h"
-#include "chain.h"
+#include "chain_light.h"
 #include "mutation.h"
 
 /* Field of item t in BUFFER_PASS, which has a stride of its own. */
@@ -91,6 +91,7 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
     from = chain_vertex_base(SIDE_CAMERA, camera);
     for (uint i = 0u; i < VERTEX_WORDS; ++i)
         state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
+    shift_density_set(vertices, stride, light, t, shift_density(vertices, stride, camera, t));
     chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? HALF_BOTH : 0u);
 }
 
@@ -103,7 +104,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    chain_propose(frame, paths, t);
+    chain_propose(frame, paths, vertices, t);
     if (chain_move(paths, stride, t, MOVE_MUTATION) == MUTATION_LARGE)
         chain_banks_join(frame, paths, vertices, densities, t);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
@@ -125,7 +126,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
 __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                                __global const uint *restrict tables, __global const uint *restrict texels,
                                __global uint *restrict paths, __global uint *restrict rays,
-                               __global uint *restrict diagnostics)
+                               __global uint *restrict vertices, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -134,6 +135,7 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     walk_end(paths, rays, stride, t);
     if (reached != HALF_LIGHT)
         return;
+    shift_density_set(vertices, stride, chain_bank(paths, stride, t, SIDE_CAMERA), t, 0.0f);
     if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
         chain_move_set(paths, stride, t, MOVE_REACHED, HALF_BOTH);
         return;
@@ -155,89 +157,27 @@ SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride
     chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
 }
 
-/* Where the film sees the proposal, and what path tracing shows of it. */
-SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec2 film,
-                                 Vec3 color, float plain)
-{
-    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, plain));
-}
-
-/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing shows of
- * it: of several one stands for all, drawn with u in proportion to what they send. It has the luminance of all, so that the
- * chain goes after all of them, and their color on average. *plain: StrategyWeights.plain. */
-SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
-                                       float u, float *plain)
-{
-    Vec3 one = vec3_splat(0.0f);
-    float all = 0.0f, luminance = 1.0f;
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
-        StrategyEnds ends = {0};
-        Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
-        if (vec3_is_zero(color))
-            continue;
-        StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
-        color = vec3_scale(color, weights.own);
-        float own = rgb_luminance(color), before = all, place;
-        all += own;
-        place = u * all;
-        bool take = place < own;
-        u = take ? place / own : (place - own) / before;
-        if (take) {
-            one = color;
-            luminance = own;
-            *plain = weights.plain;
-        }
-    }
-    return vec3_scale(one, all > 0.0f ? all / luminance : 1.0f);
-}
-
-/* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
-SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *restrict paths,
-                                      __global const uint *restrict densities, uint t, uint d,
-                                      const WalkMeeting *meeting)
-{
-    __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    state_store(paths, stride, chain_half(SIDE_CAMERA, bank) + CHAIN_HALF_DELTA, t,
-                state_load(paths, stride, BD_CAMERA_DELTA, t));
-    DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
-    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
-    float plain = 0.0f;
-    if (meeting->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-        float u = random_float(chain_select(frame, paths, t).x[0]);
-        color = chain_environment(scene, beta, view, meeting->ray.d, meeting->from_ng, d, u, &plain);
-    } else if (!meeting->missed && meeting->light != NONE) {
-        StrategyEnds ends = {0};
-        color = vec3_mul(beta, emission_met(scene, meeting, &ends));
-        if (!vec3_is_zero(color)) {
-            StrategyWeights weights = bd_weights(frame, 0u, d + 1u, &view, &ends);
-            color = vec3_scale(color, weights.own);
-            plain = weights.plain;
-        }
-    }
-    if (vec3_is_zero(color))
-        return;
-    Random4 film = chain_camera(frame, paths, t);
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
-    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, plain);
-}
-
 /* Where the walk goes on from a vertex that is not its last. Nobody asks for that vertex any more but for its place. */
 SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
                                    __global uint *restrict vertices, __global uint *restrict densities,
-                                   __global uint *restrict diagnostics, uint t, uint side, uint depth, uint s, uint bank,
-                                   Random4 numbers, Vertex *vertex)
+                                   __global uint *restrict diagnostics, uint t, uint side, uint depth, uint d, uint s,
+                                   uint bank, Random4 numbers, Vertex *vertex)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
+    bool shifts = frame->shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
     WalkStep step = {0};
     vertex_place_store(vertices, stride, chain_vertex_base(side, bank), t, vertex);
     vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as the pool, which has stored it */
+    if (shifts && (chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
+        !shift_aim(scene, paths, vertices, t, d, depth, vertex, &numbers)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
     if (!walk_leave_vertex(scene, paths, rays, diagnostics, t, vertex, numbers, &step))
         return;
+    if (shifts)
+        shift_drawn(scene, paths, t, vertex, numbers, step.ray.d);
     walk_mark(paths, stride, t, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u) {
         uint before = chain_density(frame, side, bank, s, depth - 1u);
@@ -268,6 +208,11 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     WalkMeeting meeting = {0};
     walk_meet(scene, paths, rays, hits, vertices, t, base, &meeting);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, meeting.own);
+    if (frame->shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
+        !shift_meet(frame, paths, vertices, t, depth, &meeting)) {
+        walk_end(paths, rays, stride, t);
+        return;
+    }
     if (s == 0u && depth == d)
         chain_meet_light(scene, paths, densities, t, d, &meeting);
     if (meeting.missed || (s == 0u && depth == d)) {
@@ -282,7 +227,8 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &meeting, &vertex))
         return;
     if (depth < last) {
-        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, t, side, depth, s, bank, numbers, &vertex);
+        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, t, side, depth, d, s, bank, numbers,
+                      &vertex);
         return;
     }
     vertex_store(scene, vertices, stride, base, t, &vertex);
@@ -346,7 +292,8 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
 /* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
 __kernel void mlt_accept(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                          __global const uint *restrict tables, __global const uint *restrict texels,
-                         __global uint *restrict paths, __global uint *restrict shadows, __global uint *restrict splats,
+                         __global uint *restrict paths, __global uint *restrict shadows,
+                         __global const uint *restrict vertices, __global uint *restrict splats,
                          __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
@@ -358,7 +305,7 @@ __kernel void mlt_accept(__global const FrameParams *restrict frame, __global co
     if (cast && !visible)
         color = vec3_splat(0.0f);
     KERNEL_SCENE(frame, geometry, tables, texels);
-    chain_decide(scene, paths, splats, diagnostics, t, color);
+    chain_decide(scene, paths, splats, diagnostics, t, color, shift_ratio(paths, vertices, stride, t));
 }
 
 /* From: the chains. To: what the film has not got of them, and where they ended. */

@@ -4,7 +4,8 @@
 #define TWINLIGHT_MUTATION_H
 
 #include "bd_connect.h"
-#include "chain.h"
+#include "chain_numbers.h"
+#include "shift.h"
 
 /* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a half
  * that does not change have nothing to do. */
@@ -50,16 +51,20 @@ SHARED_FUNCTION uint mutation_halves(uint mutation, uint d, uint s)
 }
 
 /* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
-SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths, uint t)
+SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
+                                   __global const uint *restrict vertices, uint t)
 {
     uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
     uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = HALF_BOTH, scale = 0u;
+    uint shift = 0u;
     if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
         state_store(paths, stride, CHAIN_STEP, t, ++step);
         Random4 random = mutation_random(frame, t, step);
         mutation = mutation_choose(frame, random);
         scale = mutation_scale(random);
         changed = mutation_halves(mutation, d, chain_key_s(key));
+        if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
+            shift = shift_kind(paths, vertices, stride, t);
     }
     if (mutation == MUTATION_LARGE) {
         uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
@@ -69,7 +74,7 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
     uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
     state_store(paths, stride, CHAIN_MOVE, t,
                 banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
-                    scale << MOVE_SCALE);
+                    scale << MOVE_SCALE | shift << MOVE_SHIFT);
     state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
     if (mutation != MUTATION_REPLAY)
         chain_move_numbers(frame, paths, t, false);
@@ -164,11 +169,12 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
     return f;
 }
 
-/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f). What the film gets is
+/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is that of
+ * volumes of a mutation that is no step (shift_ratio). What the film gets is
  * expected: a of the proposal, 1 - a of the current path, the latter kept until the chain leaves it. So there is one
  * splat a step: of what the chain leaves, or of what it does not take. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
-                                  __global uint *restrict diagnostics, uint t, Vec3 color)
+                                  __global uint *restrict diagnostics, uint t, Vec3 color, float change)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
@@ -192,7 +198,7 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
             diagnostic_count(diagnostics, DIAGNOSTIC_LOST_CHAIN);
         return;
     }
-    float ratio = f / current, accept = float_min(ratio, 1.0f),
+    float ratio = f > 0.0f ? f / current * change : 0.0f, accept = float_min(ratio, 1.0f),
           pending = state_load_float(paths, stride, CHAIN_PENDING, t);
     Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
     bool taken = f > 0.0f && random_float(random.x[0]) < accept;

@@ -342,6 +342,7 @@ typedef struct FrameParams {
     uint unweighted; /* 1: weights are taken for 1 */
     uint mutations; /* bit MUTATION_*: small steps that chains make (chain.h) */
     uint group_mutations; /* 1: at a step all chains make the same kind */
+    float shifts; /* of the steps of the camera's half so many are shifts (shift.h) */
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
     float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */

@@ -19,11 +19,14 @@ SHARED_FILES = \
 	shared/bsdf_dielectric.h \
 	shared/bsdf_diffuse.h \
 	shared/bsdf_diffuse_transmission.h \
+	shared/bsdf_invert.h \
 	shared/bsdf_state.h \
 	shared/bsdf_thin_dielectric.h \
 	shared/bvh_traverse.h \
 	shared/camera.h \
 	shared/chain.h \
+	shared/chain_light.h \
+	shared/chain_numbers.h \
 	shared/coat.h \
 	shared/count.cl \
 	shared/diagnostics.h \
@@ -63,6 +66,7 @@ SHARED_FILES = \
 	shared/scaled.h \
 	shared/scene_types.h \
 	shared/scene_view.h \
+	shared/shift.h \
 	shared/sphere.h \
 	shared/state.h \
 	shared/strategy.h \

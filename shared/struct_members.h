@@ -170,6 +170,7 @@
     MEMBER(FrameParams, unweighted)                                                                                    \
     MEMBER(FrameParams, mutations)                                                                                     \
     MEMBER(FrameParams, group_mutations)                                                                               \
+    MEMBER(FrameParams, shifts)                                                                                        \
     MEMBER(FrameParams, keep_chains)                                                                                   \
     MEMBER(FrameParams, large_step)                                                                                    \
     MEMBER(FrameParams, limit)                                                                                         \

@@ -125,6 +125,7 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_energy.c \
 	tests/test_bsdf_formulas.c \
 	tests/test_bsdf_identities.c \
+	tests/test_bsdf_inverse.c \
 	tests/test_bsdf_sampling.c
 
 tests_test_bvh_SOURCES = tests/test_bvh.c \

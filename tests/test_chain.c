@@ -17,7 +17,7 @@
 typedef struct Toy {
     FrameParams frame;
     SceneView scene;
-    uint *paths, *splats, diagnostics[DIAGNOSTIC_COUNT];
+    uint *paths, *splats, *vertices, diagnostics[DIAGNOSTIC_COUNT];
 } Toy;
 
 static void toy_begin(Toy *toy, uint mutations, float large_step, bool grouped)
@@ -40,13 +40,15 @@ static void toy_begin(Toy *toy, uint mutations, float large_step, bool grouped)
     toy->scene.frame = &toy->frame;
     toy->paths = calloc((size_t)WORDS * STRIDE, sizeof(uint));
     toy->splats = calloc((size_t)SPLAT_WORDS * STRIDE, sizeof(uint));
-    ck_assert(toy->paths && toy->splats);
+    toy->vertices = calloc((size_t)CHAIN_VERTEX_WORDS * STRIDE, sizeof(uint));
+    ck_assert(toy->paths && toy->splats && toy->vertices);
 }
 
 static void toy_end(Toy *toy)
 {
     free(toy->paths);
     free(toy->splats);
+    free(toy->vertices);
 }
 
 /* The three coordinates that the target looks at: of the film, of a vertex of the light's half, of one of the camera's. */
@@ -65,6 +67,39 @@ static float target(const float x[3], uint s)
         return 0.0f;
     return s == 2u ? f : 0.5f * f;
 }
+
+/* ---- shifts ------------------------------------------------------------------------------------------------------ */
+
+/* Of the numbers u that draw a direction at z_1, z_2 has the places u^e, which depend on the film position x. */
+static float place_exponent(float x)
+{
+    return 1.0f + 2.0f * x;
+}
+
+/* The camera's half of a proposal: where z_2 is, or if it is to stay, by which numbers it does. Paths from a part of the film
+ * cannot be shifted. */
+static void walk(Toy *toy, uint t)
+{
+    uint number = shift_number(&toy->frame, DEPTH, 1, 0),
+         base = shift_base(chain_bank(toy->paths, STRIDE, t, SIDE_CAMERA));
+    uint current = shift_base(shift_bank(toy->paths, STRIDE, t));
+    bool keeps = (chain_move(toy->paths, STRIDE, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u;
+    float x = random_float(chain_camera(&toy->frame, toy->paths, t).x[0]), e = place_exponent(x), density = 1.0f;
+    if ((chain_move(toy->paths, STRIDE, t, MOVE_CHANGED) & HALF_CAMERA) == 0u)
+        return;
+    for (uint k = 0; k < 2; ++k) {
+        if (keeps) {
+            float kept = state_load_float(toy->vertices, STRIDE, current + SHIFT_POINTS + k, t);
+            state_store(toy->paths, STRIDE, number + k, t, aim_bits(powf(kept, 1.0f / e)));
+        }
+        float u = random_float(state_load(toy->paths, STRIDE, number + k, t));
+        state_store_float(toy->vertices, STRIDE, base + SHIFT_POINTS + k, t, powf(u, e));
+        density *= powf(u, 1.0f - e) / e; /* du / d(u^e) */
+    }
+    state_store_float(toy->vertices, STRIDE, base + SHIFT_DENSITY, t, x < 0.75f ? density : 0.0f);
+}
+
+/* ---- chains ------------------------------------------------------------------------------------------------------ */
 
 /* Draws the state of chain t exactly from the target by rejection: uniform coordinates, taken with probability f / 8. */
 static void draw(Toy *toy, uint t, bool any_s)
@@ -87,6 +122,9 @@ static void draw(Toy *toy, uint t, bool any_s)
             state_store_vec3(toy->paths, STRIDE, CHAIN_COLOR, t, vec3_splat(1.0f));
             state_store_float(toy->paths, STRIDE, CHAIN_FILM, t, 1.0f);
             state_store_float(toy->paths, STRIDE, CHAIN_FILM + 1u, t, 1.0f);
+            state_store(toy->paths, STRIDE, CHAIN_MOVE, t, HALF_BOTH << MOVE_CHANGED | HALF_BOTH << MOVE_BANKS);
+            walk(toy, t); /* to bank 0 */
+            state_store(toy->paths, STRIDE, CHAIN_MOVE, t, 0u);
             return;
         }
     }
@@ -96,13 +134,15 @@ static void draw(Toy *toy, uint t, bool any_s)
 static double step(Toy *toy, uint t)
 {
     float x[3];
-    chain_propose(&toy->frame, toy->paths, t);
+    chain_propose(&toy->frame, toy->paths, toy->vertices, t);
+    walk(toy, t);
     coordinates(toy, t, x);
     uint s = chain_key_s(state_load(toy->paths, STRIDE, CHAIN_PROPOSED_KEY, t));
     bool on = s == 2u || s == 3u;
     state_store_float(toy->paths, STRIDE, CHAIN_PROPOSED_FILM, t, 1.0f);
     state_store_float(toy->paths, STRIDE, CHAIN_PROPOSED_FILM + 1u, t, 1.0f);
-    chain_decide(&toy->scene, toy->paths, toy->splats, toy->diagnostics, t, vec3_splat(on ? target(x, s) : 0.0f));
+    chain_decide(&toy->scene, toy->paths, toy->splats, toy->diagnostics, t, vec3_splat(on ? target(x, s) : 0.0f),
+                 shift_ratio(toy->paths, toy->vertices, STRIDE, t));
     if (state_load(toy->splats, STRIDE, SPLAT_PIXEL, t) == NONE)
         return 0.0;
     return (double)rgb_luminance(state_load_vec3(toy->splats, STRIDE, SPLAT_COLOR, t));
@@ -128,13 +168,16 @@ static const struct {
     uint mutations;
     float large;
     bool grouped;
-} KERNELS[] = {{"all", 1u << MUTATION_ALL, 0.0f, false},
-               {"light", 1u << MUTATION_LIGHT, 0.0f, false},
-               {"camera", 1u << MUTATION_CAMERA, 0.0f, false},
-               {"large", 7u, 1.0f, false},
-               {"together", 7u, 0.0f, false},
-               {"grouped", 7u, 0.0f, true},
-               {"with large ones", 7u, 0.3f, true}};
+    float shifts;
+} KERNELS[] = {{"all", 1u << MUTATION_ALL, 0.0f, false, 0.0f},
+               {"light", 1u << MUTATION_LIGHT, 0.0f, false, 0.0f},
+               {"camera", 1u << MUTATION_CAMERA, 0.0f, false, 0.0f},
+               {"large", 7u, 1.0f, false, 0.0f},
+               {"together", 7u, 0.0f, false, 0.0f},
+               {"grouped", 7u, 0.0f, true, 0.0f},
+               {"with large ones", 7u, 0.3f, true, 0.0f},
+               {"shifts", 1u << MUTATION_CAMERA, 0.0f, false, 1.0f},
+               {"with shifts", 7u, 0.0f, true, 0.5f}};
 
 START_TEST(test_stationary)
 {
@@ -143,6 +186,7 @@ START_TEST(test_stationary)
     bool any_s = KERNELS[_i].large > 0.0f;
     memset(counts, 0, sizeof counts);
     toy_begin(&toy, KERNELS[_i].mutations, KERNELS[_i].large, KERNELS[_i].grouped);
+    toy.frame.shifts = KERNELS[_i].shifts;
     double visits = 0.0;
     for (uint t = 0; t < CHAINS; ++t) {
         draw(&toy, t, any_s);
@@ -262,8 +306,8 @@ START_TEST(test_null_mutations)
     for (uint i = 0; i < WORDS; ++i)
         before[i] = state_load(toy.paths, STRIDE, i, 0);
     for (int k = 0; k < 1000000; ++k) {
-        chain_propose(&toy.frame, toy.paths, 0);
-        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(1.0f));
+        chain_propose(&toy.frame, toy.paths, toy.vertices, 0);
+        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(1.0f), 1.0f);
     }
     for (uint i = 0; i < WORDS - CHAIN_NUMBERS; ++i) {
         bool light =
@@ -288,9 +332,9 @@ START_TEST(test_zero_never_accepted)
         before[i] = state_load(toy.paths, STRIDE, i, 0);
     float f = state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0);
     for (int k = 0; k < 1000; ++k) {
-        chain_propose(&toy.frame, toy.paths, 0);
+        chain_propose(&toy.frame, toy.paths, toy.vertices, 0);
         float color = k % 3 == 0 ? 0.0f : k % 3 == 1 ? FLOAT_NAN : FLOAT_INFINITY;
-        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(color));
+        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(color), 1.0f);
         TEST_TRUE(state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0) == f);
         for (uint i = CHAIN_NUMBERS; i < WORDS; ++i)
             TEST_TRUE(state_load(toy.paths, STRIDE, i, 0) == before[i]);
@@ -313,8 +357,8 @@ START_TEST(test_stuck)
         step(&toy, 0);
         ck_assert_uint_eq(state_load(toy.paths, STRIDE, CHAIN_RUN, 0), k | k << 16);
     }
-    chain_propose(&toy.frame, toy.paths, 0);
-    chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(9e9f));
+    chain_propose(&toy.frame, toy.paths, toy.vertices, 0);
+    chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(9e9f), 1.0f);
     ck_assert_uint_eq(state_load(toy.paths, STRIDE, CHAIN_RUN, 0), 1000u << 16);
     for (uint k = 0; k < 70000; ++k)
         step(&toy, 0);

@@ -2,7 +2,7 @@
 #include "chain_groups.h"
 #include "chain_statistics.h"
 
-#include "chain.h"
+#include "chain_numbers.h"
 
 #include "test_util.h"
 
