@@ -299,15 +299,18 @@ END_TEST
 START_TEST(test_null_mutations)
 {
     Toy toy;
-    uint kind = _i == 0 ? MUTATION_CAMERA : MUTATION_LIGHT, before[WORDS], moved = 0;
+    uint kind = _i == 1 ? MUTATION_LIGHT : MUTATION_CAMERA, before[WORDS], moved = 0;
     toy_begin(&toy, 1u << kind, 0.0f, false);
+    toy.frame.shifts = _i == 2 ? 0.5f : 0.0f;
     draw(&toy, 0, false);
     state_store_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0, 1.0f);
     for (uint i = 0; i < WORDS; ++i)
         before[i] = state_load(toy.paths, STRIDE, i, 0);
     for (int k = 0; k < 1000000; ++k) {
         chain_propose(&toy.frame, toy.paths, toy.vertices, 0);
-        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(1.0f), 1.0f);
+        walk(&toy, 0);
+        chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(1.0f),
+                     shift_ratio(toy.paths, toy.vertices, STRIDE, 0));
     }
     for (uint i = 0; i < WORDS - CHAIN_NUMBERS; ++i) {
         bool light =
@@ -326,13 +329,15 @@ START_TEST(test_zero_never_accepted)
 {
     Toy toy;
     uint before[WORDS];
-    toy_begin(&toy, 7u, _i == 0 ? 0.0f : 0.5f, true);
+    toy_begin(&toy, 7u, _i == 1 ? 0.5f : 0.0f, true);
+    toy.frame.shifts = _i == 2 ? 0.5f : 0.0f;
     draw(&toy, 0, false);
     for (uint i = CHAIN_NUMBERS; i < WORDS; ++i)
         before[i] = state_load(toy.paths, STRIDE, i, 0);
     float f = state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0);
     for (int k = 0; k < 1000; ++k) {
         chain_propose(&toy.frame, toy.paths, toy.vertices, 0);
+        walk(&toy, 0);
         float color = k % 3 == 0 ? 0.0f : k % 3 == 1 ? FLOAT_NAN : FLOAT_INFINITY;
         chain_decide(&toy.scene, toy.paths, toy.splats, toy.diagnostics, 0, vec3_splat(color), 1.0f);
         TEST_TRUE(state_load_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0) == f);
@@ -390,8 +395,8 @@ int main(void)
     tcase_add_loop_test(tcase, test_offsets_symmetric, 0, 4);
     tcase_add_test(tcase, test_offsets_of_a_word);
     tcase_add_loop_test(tcase, test_kinds, 0, 8);
-    tcase_add_loop_test(tcase, test_null_mutations, 0, 2);
-    tcase_add_loop_test(tcase, test_zero_never_accepted, 0, 2);
+    tcase_add_loop_test(tcase, test_null_mutations, 0, 3);
+    tcase_add_loop_test(tcase, test_zero_never_accepted, 0, 3);
     tcase_add_test(tcase, test_stuck);
     tcase_add_test(tcase, test_memory);
     suite_add_tcase(suite, tcase);
