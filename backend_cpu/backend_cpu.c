@@ -1,21 +1,14 @@
 #include "backend_cpu.h"
 
-#include "chunk.h"
-#include "kernel_list.h"
-#include "kernel_scene.h"
-#include "kernels.h"
-#include "rays_embree.h"
-#include "state.h"
+#include "worker.h"
 
 #include <embree3/rtcore.h>
 
-#include <assert.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define CHUNK_ITEMS_MIN 32u
@@ -23,45 +16,18 @@
 
 #define THREADS_MAX 1024
 
-/* What has happened to rays since `live` was made. */
-typedef enum LiveList {
-    LIVE_ANY, /* anything */
-    LIVE_FEWER, /* only items of the list may have been touched */
-    LIVE_SAME
-} LiveList;
-
-/* What a thread owns. */
-typedef struct Worker {
+typedef struct Thread {
+    Worker worker;
     Backend *backend;
     pthread_t thread;
-    FrameParams frame; /* the pass's, with first_item, item_count and stride of the chunk */
-    void *kernel_frame; /* kernel_frame's storage */
-    uint *buffers[BUFFER_COUNT]; /* per-item buffers and counters */
-    size_t buffer_words[BUFFER_COUNT];
-    uint64_t diagnostics[DIAGNOSTIC_COUNT];
-    uint64_t closest_rays, shadow_rays, ray_nanoseconds;
-    uint live[CHUNK_ITEMS]; /* items with a ray when worker_find_live looked last */
-    uint live_count;
-    LiveList live_list;
-    char padding[64]; /* no two workers' counters on a cache line */
-} Worker;
-
-/* One call of run. */
-typedef struct Job {
-    const FrameParams *frame;
-    const StepList *list;
-    const SplatSink *sink; /* NULL: `inspect` is called */
-    StateSink inspect;
-    void *context;
-    const atomic_int *stop;
-} Job;
+} Thread;
 
 struct Backend {
     KernelScene *scene;
     RaysEmbree *rays;
     double build_seconds;
-    uint worker_count;
-    Worker *workers;
+    uint thread_count;
+    Thread *threads;
     /* Workers sleep until `generation` changes, then work on `job`; the caller of run sleeps until none is busy. */
     pthread_mutex_t mutex;
     pthread_cond_t begin, end;
@@ -74,133 +40,7 @@ struct Backend {
     atomic_bool out_of_memory;
 };
 
-static uint64_t nanoseconds_now(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
-/* ---- one chunk --------------------------------------------------------------------------------------------------- */
-
-static bool worker_reserve(Worker *worker, const StepList *list)
-{
-    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id) {
-        size_t words = id == BUFFER_DIAGNOSTICS ? DIAGNOSTIC_COUNT : (size_t)list->words_per_item[id] * CHUNK_STRIDE;
-        if (words <= worker->buffer_words[id])
-            continue;
-        free(worker->buffers[id]);
-        worker->buffer_words[id] = 0;
-        worker->buffers[id] = kernel_state_create(words);
-        if (!worker->buffers[id])
-            return false;
-        worker->buffer_words[id] = words;
-    }
-    return true;
-}
-
-/* What a kernel's BufferIds mean to this worker. */
-static void worker_arguments(Worker *worker, const StepList *list, void *arguments[BUFFER_COUNT])
-{
-    const BackendScene *scene = kernel_scene_view(worker->backend->scene);
-    for (int id = 0; id < BUFFER_COUNT; ++id)
-        arguments[id] = worker->buffers[id];
-    arguments[BUFFER_FRAME] = kernel_frame(worker->backend->scene, &worker->frame, worker->kernel_frame);
-    arguments[BUFFER_PASS] = list->pass_words;
-    /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
-    arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;
-    arguments[BUFFER_TABLES] = (void *)(uintptr_t)scene->tables;
-    arguments[BUFFER_TEXELS] = (void *)(uintptr_t)scene->texels;
-}
-
-static void worker_sum_diagnostics(Worker *worker)
-{
-    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
-        worker->diagnostics[i] += worker->buffers[BUFFER_DIAGNOSTICS][i];
-        worker->buffers[BUFFER_DIAGNOSTICS][i] = 0;
-    }
-}
-
-/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares rays and kernels the
- * others. */
-static void worker_find_live(Worker *worker, uint count)
-{
-    const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;
-    uint live = 0, before = worker->live_list == LIVE_ANY ? count : worker->live_count;
-    if (worker->live_list == LIVE_SAME)
-        return;
-    for (uint i = 0; i < before; ++i) {
-        uint t = worker->live_list == LIVE_ANY ? i : worker->live[i];
-        worker->live[live] = t;
-        live += bits_float(t_max[t]) > 0.0f;
-    }
-    worker->live_count = live;
-    worker->live_list = LIVE_SAME;
-}
-
-static void worker_trace(Worker *worker, StepKind kind, uint count)
-{
-    const RaysEmbree *rays = worker->backend->rays;
-    uint64_t begin = nanoseconds_now();
-    if (kind == STEP_TRACE_CLOSEST)
-        worker->closest_rays +=
-            rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], worker->live,
-                                      worker->live_count, CHUNK_STRIDE);
-    else
-        worker->shadow_rays += rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
-    worker->ray_nanoseconds += nanoseconds_now() - begin;
-}
-
-static void worker_run_kernel(Worker *worker, const Step *step, void *const *arguments, uint count)
-{
-    if (step->live_only)
-        kernel_run(step->kernel, arguments, worker->live, worker->live_count);
-    else
-        kernel_run(step->kernel, arguments, NULL, count);
-    worker->live_list = step->live_only && worker->live_list != LIVE_ANY ? LIVE_FEWER : LIVE_ANY;
-}
-
-/* Step i of the list; returns the next. */
-static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *const *arguments, uint count)
-{
-    const Step *step = &job->list->steps[i];
-    switch (step->kind) {
-    case STEP_KERNEL:
-        worker_run_kernel(worker, step, arguments, count);
-        break;
-    case STEP_TRACE_CLOSEST:
-        worker_find_live(worker, count);
-        worker_trace(worker, step->kind, count);
-        break;
-    case STEP_TRACE_SHADOW:
-        worker_trace(worker, step->kind, count);
-        break;
-    case STEP_SKIP_IF_IDLE:
-        worker_find_live(worker, count);
-        if (worker->live_count == 0)
-            return step->target;
-        break;
-    case STEP_SPLAT:
-        if (!job->inspect)
-            job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
-        break;
-    }
-    return i + 1;
-}
-
-static void worker_clear_state(Worker *worker, const StepList *list)
-{
-    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
-        if (id != BUFFER_DIAGNOSTICS && list->words_per_item[id] > 0)
-            memset(worker->buffers[id], 0, (size_t)list->words_per_item[id] * CHUNK_STRIDE * sizeof(uint));
-}
-
-static void worker_show_state(Worker *worker, const Job *job, uint first, uint count)
-{
-    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
-        if (id != BUFFER_DIAGNOSTICS && job->list->words_per_item[id] > 0)
-            job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
-}
+/* ---- the pool ---------------------------------------------------------------------------------------------------- */
 
 /* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. Not
  * where states are compared: a chunk of few items is idle, and leaves out what only clears, before a device's batch is. */
@@ -208,43 +48,15 @@ static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)
         return CHUNK_ITEMS;
-    uint part = job->frame->item_count / (CHUNKS_PER_THREAD * backend->worker_count);
+    uint part = job->frame->item_count / (CHUNKS_PER_THREAD * backend->thread_count);
     return part < CHUNK_ITEMS_MIN ? CHUNK_ITEMS_MIN : part < CHUNK_ITEMS ? part : CHUNK_ITEMS;
 }
 
-static void worker_run_chunk(Worker *worker, const Job *job, uint chunk)
+static void thread_run_job(Thread *thread, const Job *job)
 {
-    uint size = chunk_items(job, worker->backend), first = chunk * size, left = job->frame->item_count - first;
-    uint count = left < size ? left : size;
-    void *arguments[BUFFER_COUNT];
-    worker->frame = *job->frame;
-    worker->frame.first_item = job->frame->first_item + first;
-    worker->frame.item_count = count;
-    worker->frame.stride = CHUNK_STRIDE;
-    worker->frame.pass_first = 0;
-    worker->frame.pass_stride = job->list->pass_stride;
-    worker_arguments(worker, job->list, arguments);
-    worker->live_list = LIVE_ANY;
-    if (job->inspect)
-        worker_clear_state(worker, job->list);
-    for (size_t i = 0; i < job->list->count;)
-        i = worker_run_step(worker, job, i, arguments, count);
-    if (job->inspect)
-        worker_show_state(worker, job, first, count);
-    else if (job->list->words_per_item[BUFFER_SPLATS] > 0)
-        job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
-    worker_sum_diagnostics(worker);
-    atomic_fetch_add_explicit(&worker->backend->items_done, count, memory_order_relaxed);
-}
-
-/* ---- the pool ---------------------------------------------------------------------------------------------------- */
-
-static void worker_run_job(Worker *worker, const Job *job)
-{
-    Backend *backend = worker->backend;
-    uint size = chunk_items(job, backend),
-         chunks = job->frame->item_count / size + (job->frame->item_count % size != 0);
-    if (!worker_reserve(worker, job->list)) {
+    Backend *backend = thread->backend;
+    uint size = chunk_items(job, backend), items = job->frame->item_count, chunks = items / size + (items % size != 0);
+    if (!worker_reserve(&thread->worker, job->list)) {
         atomic_store(&backend->out_of_memory, true);
         return;
     }
@@ -252,15 +64,17 @@ static void worker_run_job(Worker *worker, const Job *job)
         uint chunk = atomic_fetch_add_explicit(&backend->next_chunk, 1, memory_order_relaxed);
         if (chunk >= chunks)
             return;
-        worker_run_chunk(worker, job, chunk);
+        uint first = chunk * size, count = items - first < size ? items - first : size;
+        worker_run_chunk(&thread->worker, job, first, count);
+        atomic_fetch_add_explicit(&backend->items_done, count, memory_order_relaxed);
     }
 }
 
 /* Denormals are kept: no thread sets flush-to-zero, although Embree's manual advises it. */
-static void *worker_main(void *argument)
+static void *thread_main(void *argument)
 {
-    Worker *worker = argument;
-    Backend *backend = worker->backend;
+    Thread *thread = argument;
+    Backend *backend = thread->backend;
     uint64_t seen = 0;
     pthread_mutex_lock(&backend->mutex);
     for (;;) {
@@ -271,7 +85,7 @@ static void *worker_main(void *argument)
         seen = backend->generation;
         Job job = backend->job;
         pthread_mutex_unlock(&backend->mutex);
-        worker_run_job(worker, &job);
+        thread_run_job(thread, &job);
         pthread_mutex_lock(&backend->mutex);
         if (--backend->busy == 0)
             pthread_cond_signal(&backend->end);
@@ -288,14 +102,14 @@ static bool job_run(Backend *backend, const Job *job, Error *error)
     atomic_store(&backend->next_chunk, 0);
     atomic_store(&backend->items_done, 0);
     atomic_store(&backend->out_of_memory, false);
-    backend->busy = backend->worker_count;
+    backend->busy = backend->thread_count;
     ++backend->generation;
     pthread_cond_broadcast(&backend->begin);
     while (backend->busy > 0)
         pthread_cond_wait(&backend->end, &backend->mutex);
     pthread_mutex_unlock(&backend->mutex);
     if (atomic_load(&backend->out_of_memory))
-        return error_set(error, "out of memory for the state of %u threads", backend->worker_count);
+        return error_set(error, "out of memory for the state of %u threads", backend->thread_count);
     return true;
 }
 
@@ -319,27 +133,24 @@ static bool backend_cpu_inspect(Backend *backend, const FrameParams *frame, cons
 
 /* ---- open and close ---------------------------------------------------------------------------------------------- */
 
-static void workers_stop(Backend *backend)
+static void threads_stop(Backend *backend)
 {
     pthread_mutex_lock(&backend->mutex);
     backend->quit = true;
     pthread_cond_broadcast(&backend->begin);
     pthread_mutex_unlock(&backend->mutex);
-    for (uint i = 0; i < backend->worker_count; ++i)
-        pthread_join(backend->workers[i].thread, NULL);
+    for (uint i = 0; i < backend->thread_count; ++i)
+        pthread_join(backend->threads[i].thread, NULL);
 }
 
 static void backend_cpu_close(Backend *backend)
 {
     if (!backend)
         return;
-    workers_stop(backend);
-    for (uint i = 0; i < backend->worker_count; ++i)
-        for (int id = 0; id < BUFFER_COUNT; ++id)
-            free(backend->workers[i].buffers[id]);
-    for (uint i = 0; i < backend->worker_count; ++i)
-        free(backend->workers[i].kernel_frame);
-    free(backend->workers);
+    threads_stop(backend);
+    for (uint i = 0; i < backend->thread_count; ++i)
+        worker_destroy(&backend->threads[i].worker);
+    free(backend->threads);
     rays_embree_destroy(backend->rays);
     kernel_scene_destroy(backend->scene);
     pthread_cond_destroy(&backend->begin);
@@ -348,29 +159,31 @@ static void backend_cpu_close(Backend *backend)
     free(backend);
 }
 
-static uint thread_count(const BackendOptions *options)
+static uint thread_count_of(const BackendOptions *options)
 {
     long count = options && options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
     return count < 1 ? 1u : count > THREADS_MAX ? THREADS_MAX : (uint)count;
 }
 
-/* worker_count counts those that were started, so that close stops no other. */
-static bool workers_start(Backend *backend, uint count, Error *error)
+/* backend->thread_count counts those that were started, so that close stops no other. */
+static bool threads_start(Backend *backend, uint count, Error *error)
 {
-    backend->workers = calloc(count, sizeof *backend->workers);
-    if (!backend->workers)
-        return error_memory(error, count * sizeof *backend->workers, "threads");
+    backend->threads = calloc(count, sizeof *backend->threads);
+    if (!backend->threads)
+        return error_memory(error, count * sizeof *backend->threads, "threads");
     for (uint i = 0; i < count; ++i) {
-        backend->workers[i].backend = backend;
-        backend->workers[i].kernel_frame = malloc(kernel_frame_bytes() + 1);
-        if (!backend->workers[i].kernel_frame)
-            return error_memory(error, kernel_frame_bytes(), "threads");
-        if (pthread_create(&backend->workers[i].thread, NULL, worker_main, &backend->workers[i]) != 0) {
-            free(backend->workers[i].kernel_frame);
+        Thread *thread = &backend->threads[i];
+        thread->backend = backend;
+        bool ready = worker_init(&thread->worker, backend->scene, backend->rays, error);
+        if (ready && pthread_create(&thread->thread, NULL, thread_main, thread) != 0) {
             error_set(error, "thread %u of %u cannot be started", i + 1, count);
-            return error_fix(error, "ask for fewer with --threads");
+            ready = error_fix(error, "ask for fewer with --threads");
         }
-        ++backend->worker_count;
+        if (!ready) {
+            worker_destroy(&thread->worker);
+            return false;
+        }
+        ++backend->thread_count;
     }
     return true;
 }
@@ -385,13 +198,13 @@ static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions
     pthread_mutex_init(&backend->mutex, NULL);
     pthread_cond_init(&backend->begin, NULL);
     pthread_cond_init(&backend->end, NULL);
-    uint threads = thread_count(options);
+    uint threads = thread_count_of(options);
     uint64_t begin = nanoseconds_now();
     backend->scene = kernel_scene_create(scene, error);
     if (backend->scene)
         backend->rays = rays_embree_create(kernel_scene_view(backend->scene), (int)threads, error);
     backend->build_seconds = 1e-9 * (double)(nanoseconds_now() - begin);
-    if (!backend->rays || !workers_start(backend, threads, error)) {
+    if (!backend->rays || !threads_start(backend, threads, error)) {
         backend_cpu_close(backend);
         return NULL;
     }
@@ -403,9 +216,9 @@ static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions
 static void backend_cpu_diagnostics(Backend *backend, uint64_t *counters)
 {
     memset(counters, 0, DIAGNOSTIC_COUNT * sizeof *counters);
-    for (uint i = 0; i < backend->worker_count; ++i)
+    for (uint i = 0; i < backend->thread_count; ++i)
         for (int k = 0; k < DIAGNOSTIC_COUNT; ++k)
-            counters[k] += backend->workers[i].diagnostics[k];
+            counters[k] += backend->threads[i].worker.diagnostics[k];
 }
 
 static void cpu_name(char *name, size_t size)
@@ -429,8 +242,8 @@ static void backend_cpu_statistics(Backend *backend, BackendStatistics *statisti
 {
     memset(statistics, 0, sizeof *statistics);
     statistics->bytes = rays_embree_bytes(backend->rays);
-    for (uint i = 0; i < backend->worker_count; ++i) {
-        const Worker *worker = &backend->workers[i];
+    for (uint i = 0; i < backend->thread_count; ++i) {
+        const Worker *worker = &backend->threads[i].worker;
         statistics->closest_rays += worker->closest_rays;
         statistics->shadow_rays += worker->shadow_rays;
         statistics->ray_seconds += 1e-9 * (double)worker->ray_nanoseconds;
@@ -438,7 +251,7 @@ static void backend_cpu_statistics(Backend *backend, BackendStatistics *statisti
             statistics->bytes += worker->buffer_words[id] * sizeof(uint);
     }
     statistics->build_seconds = backend->build_seconds;
-    statistics->threads = (int)backend->worker_count;
+    statistics->threads = (int)backend->thread_count;
     cpu_name(statistics->device, sizeof statistics->device);
 }
 

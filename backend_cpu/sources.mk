@@ -3,7 +3,8 @@
 noinst_LTLIBRARIES += libtwinlight_cpu.la libtwinlight_kernels.la
 libtwinlight_cpu_la_SOURCES = \
 	backend_cpu/backend_cpu.c backend_cpu/backend_cpu.h \
-	backend_cpu/chunk.h
+	backend_cpu/chunk.h \
+	backend_cpu/worker.c backend_cpu/worker.h
 libtwinlight_cpu_la_LIBADD = libtwinlight_kernels.la $(EMBREE_LIBS)
 libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernel_loop.h \
