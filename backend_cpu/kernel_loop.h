@@ -14,7 +14,7 @@
 #define STATE_STRIDE CHUNK_STRIDE
 #define STRIDE_IS_KNOWN(frame) ((frame)->stride == CHUNK_STRIDE)
 #else
-#define STRIDE_IS_KNOWN(frame) true
+#define STRIDE_IS_KNOWN(frame) ((frame) != NULL)
 #endif
 
 #include "backend.h"
