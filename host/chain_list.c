@@ -37,25 +37,13 @@ uint chain_pass_fields(const FrameParams *frame)
     return CHAIN_PASS_NUMBERS + (frame->keep_chains ? number_count(frame) : 0);
 }
 
-/* Up to `segments` segments of a walk. */
-static void record_walk(Recorder *recorder, uint segments)
-{
-    size_t end = recorder->count + (size_t)segments * 3 - 1;
-    for (uint i = 1; i <= segments; ++i) {
-        recorder_step(recorder, STEP_TRACE_CLOSEST);
-        recorder_kernel(recorder, KERNEL_mlt_walk, true);
-        if (i < segments)
-            recorder_skip(recorder, end);
-    }
-}
-
 /* One proposal. The light's walk has up to max_depth - 1 segments (s = d), the camera's one more (s = 0). */
 static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
 {
     recorder_kernel(recorder, KERNEL_mlt_propose, false);
-    record_walk(recorder, max_depth - 1);
+    recorder_walk(recorder, max_depth - 1, KERNEL_mlt_walk, KERNEL_COUNT);
     recorder_kernel(recorder, KERNEL_mlt_start_camera, false);
-    record_walk(recorder, max_depth);
+    recorder_walk(recorder, max_depth, KERNEL_mlt_walk, KERNEL_COUNT);
     recorder_kernel(recorder, KERNEL_mlt_connect, false);
     recorder_step(recorder, STEP_TRACE_SHADOW);
     recorder_kernel(recorder, KERNEL_mlt_accept, false);

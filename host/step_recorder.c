@@ -1,5 +1,7 @@
 #include "step_recorder.h"
 
+#include "kernel_list.h"
+
 #include "state.h"
 
 #include <assert.h>
@@ -34,13 +36,14 @@ void recorder_skip(Recorder *recorder, size_t target)
 
 void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned extend)
 {
-    size_t end = recorder->count + (size_t)segments * 4 - 2;
+    size_t each = extend == KERNEL_COUNT ? 3 : 4, end = recorder->count + (segments - (size_t)1) * each + 2;
     for (uint i = 1; i <= segments; ++i) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
         recorder_kernel(recorder, shade, true);
         if (i == segments)
             break;
-        recorder_kernel(recorder, extend, true);
+        if (extend != KERNEL_COUNT)
+            recorder_kernel(recorder, extend, true);
         recorder_skip(recorder, end);
     }
     assert(recorder->count == end);

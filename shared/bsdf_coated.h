@@ -99,7 +99,7 @@ SHARED_FUNCTION BsdfValue coated_eval(const SceneView *scene, const Bsdf *bsdf, 
     return coated_eval_above(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip));
 }
 
-/* The same of direction o, o.z > 0, and in *t_o its T. */
+/* coated_specular_probability of direction o, o.z > 0, and in *t_o its T. */
 SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, Vec3 o, float *t_o)
 {
     float escape;

@@ -4,11 +4,11 @@
 
 #include "bsdf.h"
 
-/* By which numbers a lobe draws a direction, and how densely. */
+/* By which numbers a lobe draws a direction, and how densely, once the number that chooses the lobe is given: pdf_w is of that
+ * lobe alone, without the probability of its choice. */
 typedef struct BsdfInverse {
     Vec2 u; /* or u_base, where `base` */
-    float
-        pdf_w; /* of the direction where the number that chooses the lobe is given: of that lobe alone, but for its choice */
+    float pdf_w;
     bool base;
 } BsdfInverse;
 

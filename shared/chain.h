@@ -33,8 +33,8 @@
 #define MOVE_CHANGED 4u /* halves that the proposal has of its own: HALF_* */
 #define MOVE_REACHED 8u /* halves of the proposal whose last vertex is there */
 #define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
-#define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS: the proposal is a shift (shift.h) */
 #define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
+#define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS: the proposal is a shift (shift.h) */
 
 SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint t, uint place)
 {
@@ -53,9 +53,11 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
 #define CHAIN_LIGHT_HALF_WORDS 3u
 #define CHAIN_CAMERA_HALF_WORDS 1u /* without the last two */
 
+/* Of MOVE_SHIFT. */
 #define SHIFT_STEP 0x1u
 #define SHIFT_KEEPS 0x2u /* and the current path can be shifted: z_2 and z_3 stay where they are */
 
+/* What BUFFER_VERTICES keeps of the camera's half for shifts. */
 #define SHIFT_VERTICES 2u /* z_1 and z_2 may have new directions */
 #define SHIFT_POINTS 0u /* z_2, z_3: 3 each */
 #define SHIFT_DENSITY 6u /* of both, per area; 0: the path cannot be shifted */

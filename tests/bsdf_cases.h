@@ -123,4 +123,19 @@ static inline Vec3 test_wo(int index)
 }
 #define TEST_WO_COUNT 6
 
+/* Every material with a lobe that is no delta. */
+static const struct TestMaterial {
+    const char *name;
+    uint kind;
+    float eta, color0, color1;
+    int alphas; /* how many of TEST_ALPHAS, from the second on; 1: no roughness, or the delta one */
+} TEST_MATERIALS[] = {{"diffuse", MATERIAL_DIFFUSE, 1.0f, 0.5f, 0.0f, 1},
+                      {"diffuse transmission", MATERIAL_DIFFUSE_TRANSMISSION, 1.0f, 0.3f, 0.6f, 1},
+                      {"smooth coat", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, 1},
+                      {"conductor", MATERIAL_CONDUCTOR, 1.0f, 0.2f, 3.9f, TEST_ALPHA_COUNT},
+                      {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
+                      {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
+                      {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
+#define TEST_MATERIAL_COUNT 7
+
 #endif

@@ -132,19 +132,6 @@ static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral
     return test_chi_square(observed, expected, 2 * CELLS * CELLS + 1);
 }
 
-static const struct SamplingKind {
-    const char *name;
-    uint kind;
-    float eta, color0, color1;
-    int alphas; /* how many of TEST_ALPHAS, from the second on; 1: no roughness, or the delta one */
-} KINDS[] = {{"diffuse", MATERIAL_DIFFUSE, 1.0f, 0.5f, 0.0f, 1},
-             {"diffuse transmission", MATERIAL_DIFFUSE_TRANSMISSION, 1.0f, 0.3f, 0.6f, 1},
-             {"smooth coat", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, 1},
-             {"conductor", MATERIAL_CONDUCTOR, 1.0f, 0.2f, 3.9f, TEST_ALPHA_COUNT},
-             {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
-             {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
-             {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
-#define KIND_COUNT 7
 #define TOTAL_CASES ((3 + 4 * (TEST_ALPHA_COUNT - 1)) * TEST_WO_COUNT)
 
 /* Samples follow pdf_w for every BSDF, roughness and direction: p > 1e-3 for all cases together (Sidak). The density
@@ -155,7 +142,7 @@ START_TEST(test_samples_follow_density)
     test_scene_init(&scene);
     int cases = 0;
     double least = 1.0;
-    const struct SamplingKind *kind = &KINDS[_i];
+    const struct TestMaterial *kind = &TEST_MATERIALS[_i];
     for (int a = kind->alphas > 1; a < kind->alphas; ++a) {
         Bsdf bsdf =
             test_bsdf(&scene, kind->kind, TEST_ALPHAS[a].x, TEST_ALPHAS[a].y, kind->eta, kind->color0, kind->color1);
@@ -215,7 +202,7 @@ TCase *bsdf_sampling_tests(void)
 {
     TCase *tcase = tcase_create("sampling");
     tcase_set_timeout(tcase, 120);
-    tcase_add_loop_test(tcase, test_samples_follow_density, 0, KIND_COUNT);
+    tcase_add_loop_test(tcase, test_samples_follow_density, 0, TEST_MATERIAL_COUNT);
     tcase_add_test(tcase, test_delta_lobes_follow_probability);
     return tcase;
 }
