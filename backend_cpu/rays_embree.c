@@ -2,7 +2,7 @@
 
 #include "rays_embree.h"
 
-#include "box.h"
+#include "instance_bounds.h"
 #include "primitive.h"
 #include "state.h"
 #include "triangle_cluster.h"
@@ -20,7 +20,7 @@ typedef struct ObjectRays {
     uint cluster_count;
     uint *others; /* primitives of other kinds */
     uint other_count;
-    float margin;
+    float reach; /* of the origins of rays, in the space of the object */
     Box box; /* without margin */
 } ObjectRays;
 
@@ -76,7 +76,7 @@ static void cluster_bounds_callback(const struct RTCBoundsFunctionArguments *arg
 {
     const ObjectRays *object = args->geometryUserPtr;
     Box box = triangle_cluster_box(&object->clusters[args->primID]);
-    *args->bounds_o = embree_bounds(box_inflate(box, object->margin));
+    *args->bounds_o = embree_bounds(box_inflate(box, box_margin(&box, object->reach)));
 }
 
 static void cluster_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
@@ -100,7 +100,7 @@ static void other_bounds_callback(const struct RTCBoundsFunctionArguments *args)
 {
     const ObjectRays *object = args->geometryUserPtr;
     Box box = primitive_box(&object->rays->view, object->others[args->primID]);
-    *args->bounds_o = embree_bounds(box_inflate(box, object->margin));
+    *args->bounds_o = embree_bounds(box_inflate(box, box_margin(&box, object->reach)));
 }
 
 static void other_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
@@ -143,8 +143,10 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
     const Instance *instance = &rays->view.instances[args->primID];
     const ObjectRays *object = &rays->objects[instance->object];
     Box box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    if (object->scene)
-        box = instance_box(instance, object->box, object->margin, rays->objects[0].margin);
+    if (object->scene) {
+        InstanceBounds bounds = instance_bounds(instance, &object->box);
+        box = box_inflate(bounds.box, instance_margin(&bounds, rays->objects[0].reach));
+    }
     *args->bounds_o = embree_bounds(box);
 }
 
@@ -224,15 +226,15 @@ static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *
     rtcReleaseGeometry(geometry);
 }
 
-static void margins_set(RaysEmbree *rays)
+static void reaches_set(RaysEmbree *rays)
 {
-    float world = rays->view.frame->ray_epsilon_scale;
+    float world = rays->view.frame->ray_reach;
     for (size_t i = 0; i < rays->object_count; ++i)
-        rays->objects[i].margin = box_margin(world);
+        rays->objects[i].reach = i == 0 ? world : 0.0f;
     for (size_t i = 0; i < rays->instance_count; ++i) {
         const Instance *instance = &rays->view.instances[i];
-        float *margin = &rays->objects[instance->object].margin;
-        *margin = float_max(*margin, box_margin(instance_reach(instance, world)));
+        float *reach = &rays->objects[instance->object].reach;
+        *reach = float_max(*reach, instance_reach(instance, world));
     }
 }
 
@@ -299,7 +301,7 @@ static bool rays_build(RaysEmbree *rays, int threads, Error *error)
     rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);
     if (!rays->objects)
         return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
-    margins_set(rays);
+    reaches_set(rays);
     /* The world last: its instances need their objects' bounds. */
     for (size_t i = rays->object_count; i-- > 0;)
         if (!object_build(rays, i, error))

@@ -163,6 +163,16 @@ static inline Lanes lanes_max(Lanes a, Lanes b)
     return (Lanes)(((LaneMask)a & more) | ((LaneMask)b & ~more));
 }
 
+/* a < b ? a : b */
+static inline Lanes lanes_min(Lanes a, Lanes b)
+{
+#if defined(__SSE__) && CLUSTER_LANES == 4 && !defined(PLATFORM_DOUBLE)
+    return __builtin_ia32_minps(a, b);
+#endif
+    LaneMask less = a < b;
+    return (Lanes)(((LaneMask)a & less) | ((LaneMask)b & ~less));
+}
+
 static inline Lanes lanes_abs(Lanes a)
 {
 #ifdef PLATFORM_DOUBLE
@@ -202,9 +212,30 @@ static inline Lanes lanes_t_error(const ShearedLanes corner[3], const RayQuery *
     return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
 }
 
+/* Where box_admits_hit of the triangles' boxes leaves t as it is. */
+static inline LaneMask lanes_in_box(const TriangleCluster *cluster, const RayQuery *query, Lanes t)
+{
+    const float o[3] = {query->o.x, query->o.y, query->o.z}, d[3] = {query->d.x, query->d.y, query->d.z};
+    Lanes low[3], high[3], largest = {0.0f};
+    for (int i = 0; i < 3; ++i) {
+        Lanes a = cluster->corner[0][i], b = cluster->corner[1][i], c = cluster->corner[2][i];
+        low[i] = lanes_min(a, lanes_min(b, c));
+        high[i] = lanes_max(a, lanes_max(b, c));
+        largest = lanes_max(largest, lanes_max(lanes_abs(low[i]), lanes_abs(high[i])));
+    }
+    Lanes margin = HIT_ULPS * FLOAT_EPSILON * (largest + vec3_max_abs(query->o));
+    LaneMask inside = ~(LaneMask){0};
+    for (int i = 0; i < 3; ++i) {
+        Lanes along = t * d[i];
+        inside = inside & (along >= (low[i] - o[i]) - margin) & (along <= (high[i] - o[i]) + margin);
+    }
+    return inside;
+}
+
 /* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie ahead of
- * the origin and not beyond t_best. The triangle that a ray starts on is nearly always turned away here. Of the others nearly
- * all are hits far from the ray's ends, which is all that triangle_finish has to find out. */
+ * the origin and, where box_admits_hit will not move it, not beyond t_best. The triangle that a ray starts on is nearly
+ * always turned away here. Of the others nearly all are hits inside their boxes and far from the ray's ends, which is all
+ * that is left to find out. */
 static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
                                           ClusterTest *test)
 {
@@ -215,17 +246,20 @@ static inline unsigned cluster_candidates(const TriangleCluster *cluster, const 
     Lanes a = lanes_edge(&corner[1], &corner[2]), b = lanes_edge(&corner[2], &corner[0]),
           c = lanes_edge(&corner[0], &corner[1]), area = a + b + c;
     LaneMask negative = (a < zero) | (b < zero) | (c < zero), positive = (a > zero) | (b > zero) | (c > zero);
-    LaneMask inside = ~(negative & positive) & ((area > zero) | (area < zero)) & cluster->solid;
-    if (lanes_bits(inside) == 0)
+    LaneMask met = ~(negative & positive) & ((area > zero) | (area < zero)) & cluster->solid;
+    if (lanes_bits(met) == 0)
         return 0;
     Lanes volume = a * corner[0].z + b * corner[1].z + c * corner[2].z, t = volume / area;
-    inside = inside & (t > zero) & (t <= zero + t_best);
-    unsigned candidates = lanes_bits(inside);
+    met = met & (t > zero);
+    if (lanes_bits(met) == 0)
+        return 0;
+    LaneMask in_box = lanes_in_box(cluster, query, t);
+    unsigned candidates = lanes_bits(met & ((t <= zero + t_best) | ~in_box));
     if (candidates == 0)
         return 0;
     Lanes error = lanes_t_error(corner, query), t_max = zero + query->t_max;
     LaneMask ends = (lanes_abs(volume) <= error) | ((t_max - t) * lanes_abs(area) <= error);
-    *test = (ClusterTest){b, c, area, t, lanes_bits(~ends & (t < t_max)) & candidates};
+    *test = (ClusterTest){b, c, area, t, lanes_bits(~ends & (t < t_max) & in_box) & candidates};
     return candidates;
 }
 

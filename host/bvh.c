@@ -2,6 +2,7 @@
 
 #include "bvh_traverse.h"
 #include "bvh_tree.h"
+#include "instance_bounds.h"
 #include "timing.h"
 
 #include <assert.h>
@@ -23,7 +24,6 @@
 
 typedef struct BuiltObject {
     Box box; /* without margin */
-    float margin;
     uint root; /* BVH_EMPTY when there is nothing in it */
     BvhTreeSize size;
 } BuiltObject;
@@ -34,6 +34,7 @@ typedef struct Builder {
     size_t object_count, instance_count;
     BuiltObject *objects;
     uint stack; /* the traversal's */
+    float origin_ulps; /* for the header */
     Bvh *bvh;
     size_t capacity; /* words */
     char failure[256]; /* Embree's last complaint */
@@ -211,18 +212,6 @@ static bool object_tree(Builder *builder, size_t index, RTCBVH bvh, BvhBoxes *bo
     return tree_flatten(builder, object, tree, error);
 }
 
-static void margins_set(Builder *builder)
-{
-    float world = builder->view.frame->ray_epsilon_scale;
-    for (size_t i = 0; i < builder->object_count; ++i)
-        builder->objects[i].margin = box_margin(world);
-    for (size_t i = 0; i < builder->instance_count; ++i) {
-        const Instance *instance = &builder->view.instances[i];
-        float *margin = &builder->objects[instance->object].margin;
-        *margin = float_max(*margin, box_margin(instance_reach(instance, world)));
-    }
-}
-
 static void object_boxes(const Builder *builder, BuiltObject *object, Object record, BvhBoxes *boxes)
 {
     object->box = box_empty();
@@ -230,19 +219,21 @@ static void object_boxes(const Builder *builder, BuiltObject *object, Object rec
         uint id = record.first_primitive + i;
         Box box = primitive_box(&builder->view, id);
         box_join(&object->box, &box);
-        bvh_boxes_add(boxes, box_inflate(box, object->margin), (BvhItem){.instance = 0, .id = id});
+        bvh_boxes_add(boxes, box_inflate(box, box_margin(&box, 0.0f)), (BvhItem){.instance = 0, .id = id});
     }
 }
 
-static void instance_boxes(const Builder *builder, BvhBoxes *boxes)
+/* Raises *origin_ulps to what the rays of the world have to add for the worst of the instances. */
+static void instance_boxes(const Builder *builder, BvhBoxes *boxes, float *origin_ulps)
 {
     for (uint i = 0; i < builder->instance_count; ++i) {
         const Instance *instance = &builder->view.instances[i];
         const BuiltObject *object = &builder->objects[instance->object];
         if (object->root == BVH_EMPTY)
             continue;
-        Box box = instance_box(instance, object->box, object->margin, builder->objects[0].margin);
-        bvh_boxes_add(boxes, box, (BvhItem){.instance = 1, .id = i});
+        InstanceBounds bounds = instance_bounds(instance, &object->box);
+        *origin_ulps = float_max(*origin_ulps, bounds.origin_ulps);
+        bvh_boxes_add(boxes, bounds.box, (BvhItem){.instance = 1, .id = i});
     }
 }
 
@@ -257,7 +248,7 @@ static bool object_build(Builder *builder, size_t index, Error *error)
         return false;
     object_boxes(builder, object, record, &boxes);
     if (instances > 0)
-        instance_boxes(builder, &boxes);
+        instance_boxes(builder, &boxes, &builder->origin_ulps);
     bool built = true;
     if (boxes.count > 0) {
         RTCBVH bvh = rtcNewBVH(builder->device);
@@ -304,11 +295,11 @@ static bool builder_run(Builder *builder, Error *error)
         return false;
     memset(builder->bvh->words, 0, NODE_WORDS * sizeof *builder->bvh->words);
     builder->bvh->word_count = NODE_WORDS;
-    margins_set(builder);
     /* The world last: its instances need their objects' boxes and roots. */
     for (size_t i = builder->object_count; i-- > 0;)
         if (!object_build(builder, i, error))
             return false;
+    builder->bvh->words[BVH_ORIGIN_ULPS] = float_bits(builder->origin_ulps);
     builder->bvh->words[BVH_ROOT] = builder->object_count > 0 ? builder->objects[0].root : BVH_EMPTY;
     builder_measure(builder);
     return true;
@@ -321,6 +312,7 @@ bool bvh_build_bounded(const BackendScene *scene, uint stack, Bvh *bvh, Error *e
                        .object_count = scene->object_count,
                        .instance_count = scene->instance_count,
                        .stack = stack,
+                       .origin_ulps = BOX_ULPS,
                        .bvh = bvh};
     memset(bvh, 0, sizeof *bvh);
     bool built = builder_run(&builder, error);

@@ -80,6 +80,8 @@ typedef struct Scene {
 
     /* made by scene_finish */
     float bounds_min[3], bounds_max[3]; /* world space of the file, everything; see scene_center.h */
+    float
+        ray_reach; /* largest coordinate of where rays start on surfaces and at lights; frame.ray_reach: and the camera */
     uint features;
     size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */

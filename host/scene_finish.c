@@ -97,14 +97,6 @@ static Box object_box(const Scene *scene, const Object *object)
     return box;
 }
 
-static float box_largest(const Box *box)
-{
-    float largest = 0.0f;
-    for (int i = 0; i < 3 && !box_is_empty(box); ++i)
-        largest = fmaxf(largest, fmaxf(fabsf(box->low[i]), fabsf(box->high[i])));
-    return largest;
-}
-
 /* The box of everything in world space; *largest is raised to the largest coordinate in the space of any object. */
 static bool world_box(const Scene *scene, Box *world, float *largest, Error *error)
 {
@@ -162,8 +154,29 @@ static bool scene_bounds(Scene *scene, Error *error)
         return error_fix(error, "scale the scene down, or remove the stray vertices");
     }
     world_sphere_set(&scene->frame, &world);
-    scene->frame.ray_epsilon_scale = largest;
+    scene->ray_reach = box_largest(&world);
     return true;
+}
+
+/* No ray of the camera starts further out along any axis. */
+static float camera_reach(const Camera *camera)
+{
+    float x = camera->lens_radius, y = camera->lens_radius;
+    if (camera->kind == CAMERA_ORTHOGRAPHIC) {
+        x += fmaxf(fabsf(camera->screen[0]), fabsf(camera->screen[1]));
+        y += fmaxf(fabsf(camera->screen[2]), fabsf(camera->screen[3]));
+    }
+    return vec3_max_abs(affine_magnitude(camera->world_from_camera, vec3(x, y, 0.0f)));
+}
+
+/* Nor any ray of the light: those from infinity start on a disc as large as the bounding sphere that touches it. */
+static float light_reach(const FrameParams *frame, const Light *light)
+{
+    if (light->kind == LIGHT_AREA)
+        return 0.0f;
+    if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+        return vec3_max_abs(light->position);
+    return vec3_max_abs(frame->world_center) + 1.5f * frame->world_radius;
 }
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
@@ -335,7 +348,12 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
     frame->crop_y0 = (uint)crop[1];
     frame->crop_x1 = (uint)crop[2];
     frame->crop_y1 = (uint)crop[3];
-    return camera_setup(&scene->camera_settings, width, height, &frame->camera, error);
+    if (!camera_setup(&scene->camera_settings, width, height, &frame->camera, error))
+        return false;
+    /* The factor is for ray_offset and other rounding. */
+    frame->ray_reach = (1.0f + 64.0f * FLOAT_EPSILON) * fmaxf(scene->ray_reach, camera_reach(&frame->camera));
+    frame->ray_reach = fminf(frame->ray_reach, RAY_COMPONENT_MAX);
+    return true;
 }
 
 bool scene_finish(Scene *scene, Error *error)
@@ -350,6 +368,8 @@ bool scene_finish(Scene *scene, Error *error)
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
         !light_setup(scene, error))
         return false;
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        scene->ray_reach = fmaxf(scene->ray_reach, light_reach(&scene->frame, &ARRAY_AT(&scene->lights, Light, i)));
     aim_setup(scene);
     scene->frame.light_count = (uint)scene->lights.count;
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;

@@ -62,6 +62,7 @@ libtwinlight_host_la_SOURCES = \
 	host/image_formats.h \
 	host/image_pfm.c \
 	host/image_stb.c \
+	host/instance_bounds.h \
 	host/integrator.c host/integrator.h \
 	host/bd_fields.c host/bd_fields.h \
 	host/integrator_bdpt.c \

@@ -15,8 +15,9 @@
  * A ray takes the axes in its own order (RayQuery), so it reads its quads in that order and permutes nothing.
  * An object's nodes lie together, children of a node side by side, and its items behind them.
  *
- * Boxes are widened by box_margin as backend_cpu's are, so whichever boxes a ray is found to meet, the answer is the
- * smallest (t, instance, primitive) of the shared primitive test, and the arithmetic of boxes decides no bit of it. */
+ * Boxes are widened by box_margin for their own coordinates, rays add what follows from their origins (bvh_ray), and hits
+ * lie in boxes (box_admits_hit). So whichever boxes a ray is found to meet, the answer is the smallest (t, instance,
+ * primitive) of the shared primitive test, and the arithmetic of boxes decides no bit of it. */
 #ifndef TWINLIGHT_BVH_TRAVERSE_H
 #define TWINLIGHT_BVH_TRAVERSE_H
 
@@ -29,8 +30,10 @@
 #define BVH_ITEM_QUADS 4u
 #define BVH_ITEM_TAG 3u /* quad of an item */
 
-/* The word of the header that holds the world's root. */
+/* Words of the header: the world's root, and the bits of origin_ulps of bvh_ray in world space. In the space of an object
+ * it is BOX_ULPS. */
 #define BVH_ROOT 0u
+#define BVH_ORIGIN_ULPS 1u
 
 /* Children. */
 #define BVH_LEAF 0x80000000u
@@ -51,13 +54,15 @@
  * neither overflow nor lose what is left of a very short one. */
 typedef struct BvhRay {
     float ix, iy, iz; /* 1 / d */
-    float ox, oy, oz; /* -o / d: a plane at p is met at p i + o, one instruction on a device */
+    /* -o / d, less and more what the origin's rounding may amount to: a plane at p is met first at p i + n, one
+     * instruction on a device, and left at p i + f. */
+    float n_x, n_y, n_z, f_x, f_y, f_z;
     uint nx, ny, nz; /* the quad of a node with the planes that the ray meets first; the others are in quad n ^ 1 */
     float scale; /* t of boxes over t of the ray */
 } BvhRay;
 
-/* A component this small, beside one of 1 or more, is taken for its size: within the scene that moves no point of the
- * ray by anything near the margin of boxes. */
+/* A component this small, beside one of 1 or more, is taken for its size: that moves no point of the ray by more than
+ * 2^-60 of its distance from the origin, far below the margin of boxes. */
 #define BVH_SMALL 8.6736173798840355e-19f /* 2^-60 */
 
 SHARED_FUNCTION float bvh_reciprocal(float d)
@@ -66,8 +71,9 @@ SHARED_FUNCTION float bvh_reciprocal(float d)
     return 1.0f / (d < 0.0f ? -size : size);
 }
 
-/* o, d: traceable (ray_traceable). */
-SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d)
+/* o, d: traceable (ray_traceable). origin_ulps: by how many units of FLOAT_EPSILON times the origin's largest coordinate
+ * boxes have to be wider for this ray; what follows from their own coordinates they are widened by already. */
+SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d, float origin_ulps)
 {
     BvhRay ray;
     uint exponent = float_bits(vec3_max_abs(d)) & 0x7f800000u;
@@ -76,12 +82,17 @@ SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d)
     ray.ix = bvh_reciprocal(d.x * stretch);
     ray.iy = bvh_reciprocal(d.y * stretch);
     ray.iz = bvh_reciprocal(d.z * stretch);
-    ray.ox = -(o.x * ray.ix);
-    ray.oy = -(o.y * ray.iy);
-    ray.oz = -(o.z * ray.iz);
-    ray.nx = d.x < 0.0f ? 1u : 0u;
-    ray.ny = d.y < 0.0f ? 3u : 2u;
-    ray.nz = d.z < 0.0f ? 5u : 4u;
+    float error = origin_ulps * FLOAT_EPSILON * vec3_max_abs(o);
+    ray.n_x = -(o.x * ray.ix) - error * float_abs(ray.ix);
+    ray.n_y = -(o.y * ray.iy) - error * float_abs(ray.iy);
+    ray.n_z = -(o.z * ray.iz) - error * float_abs(ray.iz);
+    ray.f_x = -(o.x * ray.ix) + error * float_abs(ray.ix);
+    ray.f_y = -(o.y * ray.iy) + error * float_abs(ray.iy);
+    ray.f_z = -(o.z * ray.iz) + error * float_abs(ray.iz);
+    /* By the signs of the reciprocals: a component of d that is denormal may have lost its own by the stretch. */
+    ray.nx = ray.ix < 0.0f ? 1u : 0u;
+    ray.ny = ray.iy < 0.0f ? 3u : 2u;
+    ray.nz = ray.iz < 0.0f ? 5u : 4u;
     return ray;
 }
 
@@ -89,12 +100,12 @@ SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d)
  * two; BVH_MISS where it does not enter it before `limit`. */
 SHARED_FUNCTION Uint4 bvh_node_keys(__global const Float4 *node, const BvhRay *ray, float limit)
 {
-    Float4 near_x = float4_mad(node[ray->nx], ray->ix, ray->ox);
-    Float4 far_x = float4_mad(node[ray->nx ^ 1u], ray->ix, ray->ox);
-    Float4 near_y = float4_mad(node[ray->ny], ray->iy, ray->oy);
-    Float4 far_y = float4_mad(node[ray->ny ^ 1u], ray->iy, ray->oy);
-    Float4 near_z = float4_mad(node[ray->nz], ray->iz, ray->oz);
-    Float4 far_z = float4_mad(node[ray->nz ^ 1u], ray->iz, ray->oz);
+    Float4 near_x = float4_mad(node[ray->nx], ray->ix, ray->n_x);
+    Float4 far_x = float4_mad(node[ray->nx ^ 1u], ray->ix, ray->f_x);
+    Float4 near_y = float4_mad(node[ray->ny], ray->iy, ray->n_y);
+    Float4 far_y = float4_mad(node[ray->ny ^ 1u], ray->iy, ray->f_y);
+    Float4 near_z = float4_mad(node[ray->nz], ray->iz, ray->n_z);
+    Float4 far_z = float4_mad(node[ray->nz ^ 1u], ray->iz, ray->f_z);
     Float4 enter = float4_max(float4_max(near_x, near_y), float4_max(near_z, float4_splat(0.0f)));
     Float4 leave = float4_min(float4_min(far_x, far_y), float4_min(far_z, float4_splat(limit)));
     Uint4 key = (float4_bits(enter) & 0x7ffffffcu) | uint4_make(0u, 1u, 2u, 3u);
@@ -169,11 +180,11 @@ SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, BvhWalk 
     return children[first & 3u];
 }
 
-SHARED_FUNCTION void bvh_walk_space(BvhWalk *walk, RayQuery query, uint instance)
+SHARED_FUNCTION void bvh_walk_space(BvhWalk *walk, RayQuery query, uint instance, float origin_ulps)
 {
     walk->query = query;
     walk->instance = instance;
-    walk->boxes = bvh_ray(query.o, query.d);
+    walk->boxes = bvh_ray(query.o, query.d, origin_ulps);
     walk->limit = walk->best.t * walk->boxes.scale;
 }
 
@@ -186,43 +197,44 @@ SHARED_FUNCTION ShearedCorner bvh_corner(Float4 x, Float4 y, Float4 z, uint k)
     return corner;
 }
 
-/* triangle_query on an item, a corner a lane: the same numbers from the same operands. Two cheap reasons to give up
- * come first that it would find later, or that a hit is not closer than t_best: all corners behind the origin, or all
- * beyond t_best by more than rounding. */
-SHARED_FUNCTION bool bvh_triangle_query(__global const Float4 *quads, const RayQuery *query, float t_best, Hit *hit)
+/* triangle_query on an item, a corner a lane: the same numbers from the same operands, and whether the hit counts. One
+ * cheap reason to give up comes first that it would find later: all corners behind the origin. */
+SHARED_FUNCTION bool bvh_triangle_query(const SceneView *scene, __global const Float4 *quads, const RayQuery *query,
+                                        uint id, Hit *hit)
 {
     Float4 sx = float4_splat(query->sx), sy = float4_splat(query->sy), sz = float4_splat(query->sz);
     Float4 z = quads[query->kz] - float4_splat(query->oz);
     Float4 x = (quads[query->kx] - float4_splat(query->ox)) - sx * z;
     Float4 y = (quads[query->ky] - float4_splat(query->oy)) - sy * z;
     z = sz * z;
-    ShearedCorner a = bvh_corner(x, y, z, 0u), b = bvh_corner(x, y, z, 1u), c = bvh_corner(x, y, z, 2u);
-    TriangleEdges edges = triangle_edges(a, b, c);
+    ShearedCorner sheared_a = bvh_corner(x, y, z, 0u), sheared_b = bvh_corner(x, y, z, 1u),
+                  sheared_c = bvh_corner(x, y, z, 2u);
+    TriangleEdges edges = triangle_edges(sheared_a, sheared_b, sheared_c);
     float area = edges.a + edges.b + edges.c;
     if (!triangle_contains(edges) || !(area > 0.0f || area < 0.0f))
         return false;
-    if (!(float_max(float_max(a.z, b.z), c.z) > 0.0f) ||
-        float_min(float_min(a.z, b.z), c.z) > t_best * (1.0f + 16.0f * FLOAT_EPSILON))
+    if (!(float_max(float_max(sheared_a.z, sheared_b.z), sheared_c.z) > 0.0f))
         return false;
     x = quads[0];
     y = quads[1];
     z = quads[2];
-    return triangle_finish(
-        vec3(lane_of(x, 0), lane_of(y, 0), lane_of(z, 0)), vec3(lane_of(x, 1), lane_of(y, 1), lane_of(z, 1)),
-        vec3(lane_of(x, 2), lane_of(y, 2), lane_of(z, 2)), a, b, c, edges, query, &hit->t, &hit->u, &hit->v);
+    Vec3 a = vec3(lane_of(x, 0), lane_of(y, 0), lane_of(z, 0)), b = vec3(lane_of(x, 1), lane_of(y, 1), lane_of(z, 1)),
+         c = vec3(lane_of(x, 2), lane_of(y, 2), lane_of(z, 2));
+    return triangle_finish(a, b, c, sheared_a, sheared_b, sheared_c, edges, query, &hit->t, &hit->u, &hit->v) &&
+           primitive_triangle_counts(scene, id, a, b, c, query, hit);
 }
 
 #define BVH_FEATURES_CURVED (FEATURE_BILINEAR | FEATURE_SPHERE | FEATURE_DISK)
 
 /* The hit of a primitive's item; *id is which. */
 SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float4 *quads, const RayQuery *query,
-                                    float t_best, Hit *hit, uint *id)
+                                    Hit *hit, uint *id)
 {
     __global const uint *tag = (__global const uint *)(quads + BVH_ITEM_TAG);
     *id = tag[0];
     if (SCENE_HAS(scene, BVH_FEATURES_CURVED) && tag[1] >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
         return primitive_query_curved(scene, tag[0], query, hit);
-    return bvh_triangle_query(quads, query, t_best, hit) && primitive_keeps(scene, query, tag[0], hit);
+    return bvh_triangle_query(scene, quads, query, tag[0], hit);
 }
 
 /* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done after
@@ -235,7 +247,7 @@ SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, B
     if (rest != BVH_EMPTY)
         bvh_push(walk, stack, rest, 0.0f);
     bvh_push(walk, stack, BVH_RETURN, 0.0f);
-    bvh_walk_space(walk, query, id);
+    bvh_walk_space(walk, query, id, BOX_ULPS);
     return true;
 }
 
@@ -256,7 +268,7 @@ SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh
         }
         Hit hit = hit_none(walk->query.t_max);
         uint id;
-        if (!bvh_item_query(scene, quads, &walk->query, walk->best.t, &hit, &id))
+        if (!bvh_item_query(scene, quads, &walk->query, &hit, &id))
             continue;
         if (any) {
             walk->best.primitive = id;
@@ -279,13 +291,13 @@ SHARED_FUNCTION Hit bvh_walk(const SceneView *scene, __global const uint *words,
         return walk.best;
     walk.waiting = 0u;
     bvh_push(&walk, stack, BVH_EMPTY, 0.0f);
-    bvh_walk_space(&walk, ray_query(ray), NONE);
+    bvh_walk_space(&walk, ray_query(ray), NONE, bits_float(words[BVH_ORIGIN_ULPS]));
     uint word = words[BVH_ROOT];
     while (word != BVH_EMPTY) {
         while ((word & BVH_LEAF) == 0u)
             word = bvh_descend(bvh, word, &walk, stack);
         if (SCENE_HAS(scene, FEATURE_INSTANCE) && word == BVH_RETURN) {
-            bvh_walk_space(&walk, ray_query(ray), NONE);
+            bvh_walk_space(&walk, ray_query(ray), NONE, bits_float(words[BVH_ORIGIN_ULPS]));
             word = bvh_pop(&walk, stack);
         } else if (word != BVH_EMPTY)
             word = bvh_leaf(scene, bvh, word, any, &walk, stack);

@@ -4,6 +4,7 @@
 #define TWINLIGHT_PRIMITIVE_H
 
 #include "bilinear.h"
+#include "box.h"
 #include "disk.h"
 #include "scene_view.h"
 #include "sphere.h"
@@ -142,6 +143,18 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
                                     : disk_query(quadric, query, &hit->t);
 }
 
+/* Whether a hit at hit->t counts: it lies in the primitive's box (to which hit->t may be moved), and an alpha texture
+ * does not say otherwise. `asked`: the number that the hash of a partly transparent one takes. */
+SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, uint asked, const Primitive *primitive,
+                                             const RayQuery *query, Hit *hit)
+{
+    Box box = primitive_box(scene, id);
+    if (!box_admits_hit(&box, query, &hit->t))
+        return false;
+    return !SCENE_HAS(scene, FEATURE_ALPHA) || !(primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
+           primitive_alpha_keeps(scene, query, asked, primitive, hit);
+}
+
 /* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it not,
  * rays from inside would get out where rays from outside find nothing. Both sides ask a hash of their own. */
 SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
@@ -149,12 +162,22 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
     Primitive primitive = scene->primitives[id];
     if (!primitive_curved_from(scene, &primitive, query, 0.0f, hit))
         return false;
-    if (primitive_keeps(scene, query, id, hit))
+    float first = hit->t;
+    if (primitive_curved_counts(scene, id, id, &primitive, query, hit))
         return true;
     return SCENE_HAS(scene, FEATURE_ALPHA) && SCENE_HAS(scene, FEATURE_SPHERE) &&
            primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE &&
-           primitive_curved_from(scene, &primitive, query, hit->t, hit) &&
-           primitive_alpha_keeps(scene, query, id ^ PRIMITIVE_FAR_SIDE, &primitive, hit);
+           primitive_curved_from(scene, &primitive, query, first, hit) &&
+           primitive_curved_counts(scene, id, id ^ PRIMITIVE_FAR_SIDE, &primitive, query, hit);
+}
+
+/* Whether a hit of a triangle with the corners a, b, c, as triangle_query finds it, counts: where its box and its alpha
+ * texture say so. */
+SHARED_FUNCTION bool primitive_triangle_counts(const SceneView *scene, uint id, Vec3 a, Vec3 b, Vec3 c,
+                                               const RayQuery *query, Hit *hit)
+{
+    Box box = triangle_box(a, b, c);
+    return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, hit);
 }
 
 /* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and but for quadrics u, v.
@@ -164,9 +187,9 @@ SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQ
     Primitive primitive = scene->primitives[id];
     if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
         return primitive_query_curved(scene, id, query, hit);
-    return triangle_query(scene->positions[primitive.a], scene->positions[primitive.b], scene->positions[primitive.c],
-                          query, &hit->t, &hit->u, &hit->v) &&
-           primitive_keeps(scene, query, id, hit);
+    Vec3 a = scene->positions[primitive.a], b = scene->positions[primitive.b], c = scene->positions[primitive.c];
+    return triangle_query(a, b, c, query, &hit->t, &hit->u, &hit->v) &&
+           primitive_triangle_counts(scene, id, a, b, c, query, hit);
 }
 
 /* Whether a comes before b in the order that makes the closest hit unique: t, instance, primitive. */

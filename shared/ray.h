@@ -15,9 +15,7 @@
 #define FLOAT_EPSILON 1.1920928955078125e-7f
 
 /* Offset of a ray's origin, in units of FLOAT_EPSILON times its largest coordinate. The interpolation of a point on a
- * triangle can leave it 3 units off the plane (0.7 at most in 10^7 tries), an instance's transform twice that. From 8
- * on, a ray that leaves a wall parallel to an axis is at once outside the box of the wall, which box_margin widens by
- * half as much; in a room that saves a quarter of a shadow ray's time. */
+ * triangle can leave it 3 units off the plane (0.7 at most in 10^7 tries), an instance's transform twice that. */
 #define RAY_OFFSET_ULPS 8.0f
 
 SHARED_FUNCTION Vec3 vec3_abs(Vec3 a)

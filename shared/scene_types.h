@@ -365,7 +365,7 @@ typedef struct FrameParams {
     int film_exponent; /* one unit of the film's sums is 2^film_exponent (film_sum.h) */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;
-    float ray_epsilon_scale; /* largest coordinate, for the inflation of primitive bounds */
+    float ray_reach; /* no coordinate of the origin of a ray is larger: boxes are widened for it (box.h) */
 } FrameParams;
 
 #endif

@@ -194,6 +194,6 @@
     MEMBER(FrameParams, film_exponent)                                                                                 \
     MEMBER(FrameParams, world_center)                                                                                  \
     MEMBER(FrameParams, world_radius)                                                                                  \
-    MEMBER(FrameParams, ray_epsilon_scale)
+    MEMBER(FrameParams, ray_reach)
 
 #endif

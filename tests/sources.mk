@@ -43,7 +43,7 @@ endif
 
 # The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
 EFFORT = 8
-LONG_TESTS = tests/test_bidirectional tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
@@ -129,6 +129,7 @@ tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_sampling.c
 
 tests_test_bvh_SOURCES = tests/test_bvh.c \
+	tests/test_bvh_adversary.c \
 	tests/test_bvh_build.c \
 	tests/test_bvh_opencl.c \
 	tests/bvh_scenes.c

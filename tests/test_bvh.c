@@ -183,6 +183,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_same_hits_as_embree, 0, (int)BVH_CASE_COUNT);
     tcase_add_test(tcase, test_enough_walks);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, bvh_adversary_tcase());
     suite_add_tcase(suite, bvh_build_tcase());
     suite_add_tcase(suite, bvh_opencl_tcase());
     return test_run(suite);

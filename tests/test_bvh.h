@@ -4,6 +4,7 @@
 
 #include <check.h>
 
+TCase *bvh_adversary_tcase(void);
 TCase *bvh_build_tcase(void);
 TCase *bvh_opencl_tcase(void);
 
