@@ -100,7 +100,7 @@ static void record_fill(const BenchWorkshop *shop, const Counters *before, const
         .closest_rays = after.statistics.closest_rays - before->statistics.closest_rays,
         .shadow_rays = after.statistics.shadow_rays - before->statistics.shadow_rays,
         .threads = (uint64_t)after.statistics.threads,
-        .saturated = film->saturated,
+        .saturated = film->saturated + film_full_pixels(film),
         .not_finite = film->not_finite,
         .diagnostics = after.diagnostics - before->diagnostics,
         .chains = result->chains,

@@ -160,13 +160,13 @@ static void sums_join(const Blend *blend, const StreamSums *sums, const double s
     size_t values = 3 * (size_t)blend->size[0] * (size_t)blend->size[1];
     for (size_t i = 0; i < values; ++i) {
         const BlendTile *tile = &blend->known[blend_tile_of(blend, i / 3)];
-        double sum = ((1.0 - tile->share[BLEND_PATHS]) * (double)sums->excess[i] +
-                      tile->share[BLEND_PATHS] * (double)sums->rare[i]) /
+        double sum = ((1.0 - tile->share[BLEND_PATHS]) * (double)film_sum_shown(sums->excess[i]) +
+                      tile->share[BLEND_PATHS] * (double)film_sum_shown(sums->rare[i])) /
                      samples[BLEND_CHAINS];
         for (int s = 0; s < BLEND_STREAMS; ++s)
             if (samples[s] > 0.0)
-                sum += tile->share[s] * (double)sums->light[s][i] / samples[s];
-        sums->light[BLEND_CHAINS][i] = llrint(sum * work);
+                sum += tile->share[s] * (double)film_sum_shown(sums->light[s][i]) / samples[s];
+        sums->light[BLEND_CHAINS][i] = film_sum_rounded(sum * work);
     }
 }
 
@@ -181,6 +181,10 @@ static void films_join(Blend *blend, Film *const films[])
         samples[s] = (double)films[s]->light_samples;
     bool known = blend_known(blend, samples);
     double work = fmax(1.0, rint(blend_work(samples)));
+    /* What is full in a stream need not be so in the blend. */
+    uint64_t full = 0;
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        full += film_full_pixels(films[s]);
     memset(blend->share, 0, sizeof blend->share);
     for (size_t i = 0; i < blend_tile_count(blend); ++i)
         shares_set(blend, &blend->known[i], samples, known);
@@ -195,8 +199,10 @@ static void films_join(Blend *blend, Film *const films[])
     memcpy(into->counts, films[BLEND_PATHS]->counts, pixels * sizeof *into->counts);
     for (int s = BLEND_CHAINS + 1; s < BLEND_STREAMS; ++s) {
         into->saturated += films[s]->saturated;
+        into->vanished += films[s]->vanished;
         into->not_finite += films[s]->not_finite;
     }
+    into->saturated += full;
 }
 
 bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error)

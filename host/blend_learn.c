@@ -48,8 +48,10 @@ size_t blend_tile_of(const Blend *blend, size_t pixel)
 
 static float luminance_of(const int64_t *sums, double scale)
 {
-    return rgb_luminance(
-        vec3((float)(scale * (double)sums[0]), (float)(scale * (double)sums[1]), (float)(scale * (double)sums[2])));
+    float rgb[3];
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = (float)(scale * (double)film_sum_shown(sums[c]));
+    return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
 /* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */

@@ -30,6 +30,9 @@ static const RenderOptionSet OPTIONS = {
     .depth_high = 65535,
 };
 
+/* The part of all samples that may be too faint for the film without a warning. */
+#define VANISHED_PART 0.01
+
 /* One rendering from command line to files. */
 typedef struct RenderJob {
     const RenderCommand *command;
@@ -144,6 +147,28 @@ static bool film_render(RenderJob *job, Error *error)
 
 /* ---- after rendering -------------------------------------------------------------------------------------------- */
 
+/* Contributions by number and as a part of all samples. */
+static void contributions_report(const RenderJob *job, uint64_t count, const char *fate)
+{
+    double part = (double)count / (double)(job->result.samples > 0 ? job->result.samples : 1);
+    log_message(LOG_WARNING, "%llu contributions (%.2g for every 100 samples) %s", (unsigned long long)count,
+                100.0 * part, fate);
+}
+
+/* What the film's range has cost. */
+static void film_report(const RenderJob *job)
+{
+    const Film *film = &job->film;
+    size_t full = film_full_pixels(film), pixels = film_pixels(film);
+    if (film->saturated > 0)
+        contributions_report(job, film->saturated, "were too bright for the film and were clamped");
+    if (full > 0)
+        log_message(LOG_WARNING, "%zu of %zu pixels (%.2g %%) have come to the film's largest sum and are too dark",
+                    full, pixels, 100.0 * (double)full / (double)pixels);
+    if ((double)film->vanished > VANISHED_PART * (double)job->result.samples)
+        contributions_report(job, film->vanished, "were too faint for the film and count as black");
+}
+
 /* What the picture may suffer from. */
 static void diagnostics_report(const RenderJob *job)
 {
@@ -152,9 +177,7 @@ static void diagnostics_report(const RenderJob *job)
         if (result->diagnostics[i] > 0)
             log_message(LOG_WARNING, "inside the kernels: %s, %llu times", result->diagnostic_names[i],
                         (unsigned long long)result->diagnostics[i]);
-    if (job->film.saturated > 0)
-        log_message(LOG_WARNING, "%llu contributions were too bright for the film and were clamped",
-                    (unsigned long long)job->film.saturated);
+    film_report(job);
     if (job->film.not_finite > 0)
         log_message(LOG_WARNING, "%llu contributions were not finite and count as black",
                     (unsigned long long)job->film.not_finite);

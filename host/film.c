@@ -6,7 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Octaves between the scene's mean radiance and one unit of a sum. */
+/* Octaves between the mean radiance of the picture and one unit of a sum. All light of T samples is T times the mean, and in
+ * the worst case one pixel or even one path has all of it; what is read of a sum is at most 2^62 units (film_sum.h). So nothing
+ * is too bright for a film of 2^(62 - 26) = 2^36 samples: 2^20 pixels of 65,536 samples, or two hours of 10^7 samples a second. At
+ * the other end a contribution vanishes below 2^-27 of the mean, and rounding changes one of 2^-20 by less than 1 %. Where the
+ * pilot has missed light, so that the true mean is 2^k times as bright, 2^(36 - k) samples are left to the brightest pixel that
+ * there could be. */
 #define QUANTUM_OCTAVES 26
 #define QUANTUM_EXPONENT_DEFAULT (-30)
 
@@ -122,6 +127,7 @@ static FilmView film_view(const Film *film)
                       .depth_last = film->depth_last,
                       .counts = film->counts,
                       .saturated = (ulong *)&film->saturated,
+                      .vanished = (ulong *)&film->vanished,
                       .not_finite = (ulong *)&film->not_finite};
 }
 
@@ -134,10 +140,11 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 
 /* ---- sums from elsewhere ----------------------------------------------------------------------------------------- */
 
-/* False when the sum is full. Most sums of a short pass are zero, and looking is faster than adding. */
-static bool word_add(ulong *sum, ulong units)
+/* Most sums of a short pass are zero, and looking is faster than adding. */
+static void word_add(ulong *sum, ulong units)
 {
-    return units == 0 || film_sum_add(sum, units);
+    if (units != 0)
+        film_sum_add(sum, units);
 }
 
 /* The sums of every depth, of the kinds that both have. */
@@ -154,25 +161,24 @@ static void depths_add(const FilmView *film, const FilmView *from, size_t pixels
         }
 }
 
-/* Adds pixels [0, pixels) of another film. A sum that is full is reported once a pixel. */
+/* Adds pixels [0, pixels) of another film. */
 static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
 {
     for (size_t i = 0; i < pixels; ++i) {
-        bool fits = true;
         for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
-            fits = word_add(film->sums + c, from->sums[c]) && fits;
-            fits =
-                (!film->light_sums || !from->light_sums || word_add(film->light_sums + c, from->light_sums[c])) && fits;
-            fits = (!film->rare_sums || !from->rare_sums || word_add(film->rare_sums + c, from->rare_sums[c])) && fits;
+            word_add(film->sums + c, from->sums[c]);
+            if (film->light_sums && from->light_sums)
+                word_add(film->light_sums + c, from->light_sums[c]);
+            if (film->rare_sums && from->rare_sums)
+                word_add(film->rare_sums + c, from->rare_sums[c]);
         }
         if (from->counts[i] > 0)
             atomic_count_add(film->counts + i, from->counts[i]);
-        if (!fits)
-            atomic_sum_add(film->saturated, 1u);
     }
     if (film->depth_sums && from->depth_sums)
         depths_add(film, from, pixels);
     atomic_sum_add(film->saturated, *from->saturated);
+    atomic_sum_add(film->vanished, *from->vanished);
     atomic_sum_add(film->not_finite, *from->not_finite);
 }
 
@@ -233,7 +239,41 @@ void film_clear(Film *film)
     if (film->depth_sums)
         memset(film->depth_sums, 0,
                film_depth_words((uint)pixels, film->depth_kinds, film->depth_last) * sizeof *film->depth_sums);
-    film->light_samples = film->saturated = film->not_finite = 0;
+    film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
+}
+
+/* ---- what is read ------------------------------------------------------------------------------------------------ */
+
+int64_t film_sum_shown(int64_t sum)
+{
+    const int64_t most = (int64_t)SUM_MAX;
+    return sum > most ? most : sum < -most ? -most : sum;
+}
+
+int64_t film_sum_rounded(double units)
+{
+    const double most = (double)SUM_MAX;
+    if (fabs(units) < most)
+        return llrint(units);
+    return units < 0.0 ? -(int64_t)SUM_FULL : (int64_t)SUM_FULL;
+}
+
+/* Whether one of the pixel's three sums is full; none of sums that are not there. */
+static bool pixel_full(const int64_t *sums, size_t pixel)
+{
+    for (size_t c = 3 * pixel; sums && c < 3 * pixel + 3; ++c)
+        if (sums[c] >= (int64_t)SUM_MAX || sums[c] <= -(int64_t)SUM_MAX)
+            return true;
+    return false;
+}
+
+size_t film_full_pixels(const Film *film)
+{
+    size_t full = 0;
+    for (size_t i = 0; i < film_pixels(film); ++i)
+        if (pixel_full(film->sums, i) || pixel_full(film->light_sums, i) || pixel_full(film->rare_sums, i))
+            ++full;
+    return full;
 }
 
 /* What a unit of the light's sums is worth. */
@@ -253,10 +293,10 @@ void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
     for (size_t i = 0; i < film_pixels(film); ++i) {
         uint32_t count = film->counts[i];
         for (size_t c = 0; c < 3; ++c) {
-            int64_t sum = film->sums[3 * i + c];
+            int64_t sum = film_sum_shown(film->sums[3 * i + c]);
             double value = count && part != FILM_LIGHT ? (double)sum * unit / count : 0.0;
             if (film->light_sums && part != FILM_OWN)
-                value += (double)film->light_sums[3 * i + c] * light_unit;
+                value += (double)film_sum_shown(film->light_sums[3 * i + c]) * light_unit;
             rgb[3 * i + c] = (float)value;
         }
     }
@@ -267,7 +307,7 @@ void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb
     const double unit = light_unit_of(film, ldexp((double)scale, film->quantum_exponent));
     const int64_t *sums = film_depth_sums(film, segments, FILM_KIND_LIGHT);
     for (size_t i = 0; i < 3 * film_pixels(film); ++i)
-        rgb[i] = (float)((double)sums[i] * unit);
+        rgb[i] = (float)((double)film_sum_shown(sums[i]) * unit);
 }
 
 void film_resolve(const Film *film, float scale, float *rgb)

@@ -1,5 +1,6 @@
 /* The film: every contribution is rounded to a 64-bit fixed-point number, and integer sums do not depend on order, so
- * the image is the same for any number of threads, devices or processes, after a resume, and after merging. */
+ * the image is the same for any number of threads, devices or processes, after a resume, and after merging. Sums that are
+ * full stay so (film_sum.h). */
 #ifndef TWINLIGHT_FILM_H
 #define TWINLIGHT_FILM_H
 
@@ -24,6 +25,7 @@ typedef struct Film {
     uint64_t light_samples; /* paths that they come from; 0: as many as samples of pixels */
     uint32_t *counts; /* samples of every pixel of the crop */
     uint64_t saturated; /* contributions that did not fit and were clamped */
+    uint64_t vanished; /* contributions that are not black, but less than half a unit in every channel */
     uint64_t not_finite; /* contributions that were NaN or infinite and were counted as zero */
 } Film;
 
@@ -53,7 +55,7 @@ int64_t *film_depth_sums(const Film *film, uint segments, uint kind);
 /* Pixels of the crop. */
 size_t film_pixels(const Film *film);
 
-/* Chooses the quantum as a power of two 26 octaves under `mean`, the scene's mean radiance (0 or not finite: 2^-30).
+/* Chooses the quantum as a power of two 26 octaves under `mean`, the picture's mean radiance (0 or not finite: 2^-30).
  * Only while the film is empty. */
 void film_quantum_set(Film *film, double mean);
 
@@ -71,6 +73,15 @@ bool film_merge(Film *film, const Film *from, Error *error);
 
 /* Empties the film; size and quantum stay. */
 void film_clear(Film *film);
+
+/* What is read of a sum: at most 2^62 units of either sign, for sums beyond that depend on the order of additions. */
+int64_t film_sum_shown(int64_t sum);
+
+/* The nearest sum, full from 2^62 on. */
+int64_t film_sum_rounded(double units);
+
+/* Pixels of which a sum has come to 2^62 units: they are darker than they should be. */
+size_t film_full_pixels(const Film *film);
 
 /* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;

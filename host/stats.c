@@ -132,6 +132,8 @@ static void stats_diagnostics(JsonWriter *json, const RenderStats *stats)
     const SceneCounts *counts = &stats->scene->counts;
     json_object_begin(json, "diagnostics");
     json_unsigned(json, "film_saturated", stats->film->saturated);
+    json_unsigned(json, "film_full_pixels", film_full_pixels(stats->film));
+    json_unsigned(json, "film_vanished", stats->film->vanished);
     json_unsigned(json, "film_not_finite", stats->film->not_finite);
     json_unsigned(json, "degenerate_triangles", counts->degenerate_triangles);
     json_unsigned(json, "zero_area_lights", counts->zero_area_lights);

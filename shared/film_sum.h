@@ -1,16 +1,32 @@
 /* What the film does with a splat, on the host and on devices: every contribution is rounded to a whole number of units
- * of 2^exponent and added to a 64-bit sum. Sums are numbers modulo 2^64 in two's complement, so neither the order of
- * additions nor who makes them matters. */
+ * of 2^exponent and added to a 64-bit sum in two's complement, so neither the order of additions nor who makes them matters.
+ *
+ * A sum that would leave 64 bits becomes +-SUM_FULL and stays that, and what is read of any sum is at most SUM_MAX
+ * (film_sum_shown). Let p be all that is positive in a sum and n all that is negative, without sign. With both below 2^63 no
+ * order fills the sum. With p above that and n at most SUM_MAX the sum is full in some orders and p - n, which is SUM_MAX or more,
+ * in others: what is read is SUM_MAX in all. Order could matter only with n above SUM_MAX, too, which takes more than 2^14
+ * negative contributions, as only filters with negative lobes and colours outside the gamut make them, each near
+ * NEGATIVE_MAX. */
 #ifndef TWINLIGHT_FILM_SUM_H
 #define TWINLIGHT_FILM_SUM_H
 
 #include "state.h"
 
-/* A contribution larger than this many units is clamped. Of the largest ones 2^14 fit into a sum. */
-#define CONTRIBUTION_MAX ((ulong)1 << 48)
-
-/* A sum beyond +-this is reported as saturated, long before it could wrap. */
+/* What is read of a sum at most: one at or beyond +-this is full. */
 #define SUM_MAX ((ulong)1 << 62)
+
+/* Where a sum stays. */
+#define SUM_FULL (((ulong)1 << 63) - 1u)
+
+/* A sum below SUM_FAR stays below SUM_MAX though 2^21 additions meet, each of less than UNITS_SMALL: such ones need not ask whether
+ * it is full. */
+#define SUM_FAR ((ulong)1 << 61)
+#define UNITS_SMALL ((ulong)1 << 40)
+
+/* A contribution of more units is clamped. One path may bring all that a sum can show; of the largest negative ones 2^14 come to
+ * as much. */
+#define CONTRIBUTION_MAX SUM_MAX
+#define NEGATIVE_MAX ((ulong)1 << 48)
 
 /* A film as functions see it; the pixels that are kept are x0 <= x < x1, y0 <= y < y1, row by row. */
 typedef struct FilmView {
@@ -24,7 +40,8 @@ typedef struct FilmView {
     uint depth_kinds; /* of them: 0 (names have no depth), 1: from the light, or 3: their own and rare ones, too */
     uint depth_last; /* from SPLAT_DEPTH_MIN on */
     __global uint *counts; /* samples of a pixel */
-    __global ulong *saturated; /* contributions that were clamped, or came to a sum that is full */
+    __global ulong *saturated; /* contributions that were clamped */
+    __global ulong *vanished; /* contributions that are not black, but less than half a unit in every channel */
     __global ulong *not_finite; /* contributions that counted as zero */
 } FilmView;
 
@@ -44,11 +61,11 @@ SHARED_FUNCTION size_t film_depth_words(uint pixels, uint kinds, uint depth_last
     return depth_last >= SPLAT_DEPTH_MIN ? film_depth_place(pixels, kinds, depth_last + 1u, 0u) : 0u;
 }
 
-/* The sums of a film in one buffer (BUFFER_FILM): sums, the two counters, the pixels' counts, two a word, as many of the
+/* The sums of a film in one buffer (BUFFER_FILM): sums, the three counters, the pixels' counts, two a word, as many of the
  * light's sums and the rare ones as there are (0, 1 or 2), and last those of depths. */
 SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
-    return (1u + more) * 3u * (ulong)pixels + 2u + ((ulong)pixels + 1u) / 2u;
+    return (1u + more) * 3u * (ulong)pixels + 3u + ((ulong)pixels + 1u) / 2u;
 }
 
 /* Points the view's sums into such a buffer; depth_kinds are known. */
@@ -56,8 +73,9 @@ SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint
 {
     film->sums = words;
     film->saturated = words + 3u * (size_t)pixels;
-    film->not_finite = film->saturated + 1;
-    film->counts = (__global uint *)(film->saturated + 2);
+    film->vanished = film->saturated + 1;
+    film->not_finite = film->saturated + 2;
+    film->counts = (__global uint *)(film->saturated + 3);
     film->light_sums = words + film_words(pixels, 0u);
     film->rare_sums = words + film_words(pixels, 1u);
     film->depth_sums = words + film_words(pixels, film->depth_kinds > FILM_KIND_RARE ? 2u : 1u);
@@ -71,8 +89,8 @@ SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
     return kept ? (y - film->y0) * (film->x1 - film->x0) + x - film->x0 : NONE;
 }
 
-/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX; whether it was more
- * goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power of two. */
+/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX or NEGATIVE_MAX; whether
+ * it was more goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power of two. */
 SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
 {
     uint bits = float_bits(value), field = bits >> 23 & 0xffu;
@@ -84,32 +102,73 @@ SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
         return (mantissa + ((ulong)1 << (down - 1u))) >> down;
     }
     uint up = shift < 63 ? (uint)shift : 63u;
-    *clamped = mantissa > CONTRIBUTION_MAX >> up;
-    return *clamped ? CONTRIBUTION_MAX : mantissa << up;
+    ulong most = value < 0.0f ? NEGATIVE_MAX : CONTRIBUTION_MAX;
+    *clamped = mantissa > most >> up;
+    return *clamped ? most : mantissa << up;
+}
+
+/* Whether a sum stays as it is. */
+SHARED_FUNCTION bool film_sum_full(ulong sum)
+{
+    return sum == SUM_FULL || sum == 0u - SUM_FULL;
+}
+
+/* A sum that is not full with so many units more, which may be another sum. */
+SHARED_FUNCTION ulong film_sum_of(ulong sum, ulong units)
+{
+    ulong after = sum + units;
+    bool wrapped = ((sum ^ after) & (units ^ after)) >> 63 != 0u || after == (ulong)1 << 63;
+    if (film_sum_full(units) || !wrapped)
+        return film_sum_full(units) ? units : after;
+    return units >> 63 != 0u ? 0u - SUM_FULL : SUM_FULL;
 }
 
 #ifdef atomic_sum_add
 
-/* Adds to one sum; false when that has left +-SUM_MAX. */
-SHARED_FUNCTION bool film_sum_add(__global ulong *sum, ulong units)
+/* Whether |number| < limit. */
+SHARED_FUNCTION bool film_sum_below(ulong number, ulong limit)
 {
-    ulong after = atomic_sum_add(sum, units) + units;
-    return after + (SUM_MAX - 1u) <= 2u * (SUM_MAX - 1u);
+    return number + (limit - 1u) <= 2u * (limit - 1u);
 }
 
-/* Adds a contribution to three sums; false when it was clamped or a sum is full. */
-SHARED_FUNCTION bool film_color_add(__global ulong *sums, Vec3 color, int exponent)
+/* Adds to one sum. */
+SHARED_FUNCTION void film_sum_add(__global ulong *sum, ulong units)
+{
+    ulong before = atomic_sum_load(sum);
+    if (film_sum_below(units, UNITS_SMALL) && film_sum_below(before, SUM_FAR)) {
+        atomic_sum_add(sum, units);
+        return;
+    }
+    while (!film_sum_full(before)) {
+        ulong seen = atomic_sum_exchange(sum, before, film_sum_of(before, units));
+        if (seen == before)
+            return;
+        before = seen;
+    }
+}
+
+/* What becomes of a contribution. */
+#define FILM_ADDED 0u
+#define FILM_CLAMPED 1u
+#define FILM_VANISHED 2u
+
+/* Adds a contribution to three sums. */
+SHARED_FUNCTION uint film_color_add(__global ulong *sums, Vec3 color, int exponent)
 {
     const float values[3] = {color.x, color.y, color.z};
-    bool fits = true;
+    bool any_clamped = false, black = true, none = true;
     for (uint c = 0; c < 3u; ++c) {
         bool clamped;
         ulong units = film_units(values[c], exponent, &clamped);
-        if (units != 0u && !film_sum_add(sums + c, values[c] < 0.0f ? 0u - units : units))
-            fits = false;
-        fits = fits && !clamped;
+        if (units != 0u)
+            film_sum_add(sums + c, values[c] < 0.0f ? 0u - units : units);
+        any_clamped = any_clamped || clamped;
+        black = black && values[c] == 0.0f;
+        none = none && units == 0u;
     }
-    return fits;
+    if (any_clamped)
+        return FILM_CLAMPED;
+    return none && !black ? FILM_VANISHED : FILM_ADDED;
 }
 
 /* Adds to the sums of the path's number of segments what has been added to those of all. */
@@ -145,8 +204,9 @@ SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *s
         atomic_sum_add(film->not_finite, 1u);
         return;
     }
-    if (!film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent))
-        atomic_sum_add(film->saturated, 1u);
+    uint what = film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent);
+    if (what != FILM_ADDED)
+        atomic_sum_add(what == FILM_CLAMPED ? film->saturated : film->vanished, 1u);
     if ((name & SPLAT_RARE) != 0u && film->rare_sums)
         film_color_add(film->rare_sums + 3u * (size_t)slot, color, film->exponent);
     if (film->depth_kinds != 0u)

@@ -21,11 +21,14 @@
 /* Items run at once and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 #define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
-/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. */
+/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. So does an exchange, which is made if that
+ * was `before`. */
 #define atomic_count_add(count, n) atomic_add((volatile __global uint *)(count), n)
 #ifdef cl_khr_int64_base_atomics
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
 #define atomic_sum_add(sum, n) atom_add((volatile __global ulong *)(sum), n)
+#define atomic_sum_load(sum) (*(volatile __global ulong *)(sum))
+#define atomic_sum_exchange(sum, before, after) atom_cmpxchg((volatile __global ulong *)(sum), before, after)
 #endif
 
 typedef float4 Float4;
@@ -135,6 +138,8 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 /* The film is everybody's. */
 #define atomic_count_add(count, n) __atomic_fetch_add(count, n, __ATOMIC_RELAXED)
 #define atomic_sum_add(sum, n) __atomic_fetch_add(sum, n, __ATOMIC_RELAXED)
+#define atomic_sum_load(sum) __atomic_load_n(sum, __ATOMIC_RELAXED)
+#define atomic_sum_exchange(sum, before, after) __sync_val_compare_and_swap(sum, before, after)
 
 #endif
 

@@ -47,7 +47,7 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
     else
         film_resolve(&film, settings->film_scale, rgb);
     render_layers_destroy(&layers);
-    *sound = *sound && film.saturated == 0 && film.not_finite == 0;
+    *sound = *sound && film.saturated == 0 && film_full_pixels(&film) == 0 && film.not_finite == 0;
     for (int i = 0; i < result.diagnostic_count; ++i)
         *sound = *sound && result.diagnostics[i] == 0;
     film_destroy(&film);

@@ -198,6 +198,18 @@ expect 0 '' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool
 ! grep -q 'is found by no integrator' err
 result 'rough glass is taken for smooth' $?
 
+# What is too faint beside the rest counts as black, and how much of the picture that is.
+printf '%s\n' 'LookAt 0 1 -6  0 0 0  0 1 0 Camera "perspective" WorldBegin' \
+    'LightSource "infinite" "rgb L" [ 1e-12 1e-12 1e-12 ]' 'LightSource "point" "point3 from" [ 0 2 0 ]' \
+    'Material "diffuse" Shape "bilinearmesh" "point3 P" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ]' >faint.pbrt
+expect 0 'too faint for the film' render --resolution=8x8 --samples=4 --integrator=bdpt --stats=faint.json \
+    -o faint.exr faint.pbrt
+! grep -q '"film_vanished": 0' faint.json
+result 'film_vanished is 0' $?
+expect 0 '' render --resolution=8x8 --samples=4 --integrator=bdpt -o one.tmp.exr "$scene"
+! grep -q 'too faint' err
+result 'a picture is said to be too faint' $?
+
 # ---- compare ------------------------------------------------------------------------------------------------------
 
 expect 0 '' compare one.exr three.exr
@@ -222,7 +234,7 @@ result '--stats: exit status' $?
 for key in format version scene file width height crop max_depth primitives instances materials lights bytes \
     integrator backend device seed threads samples_per_pixel samples samples_per_second stopped seconds load build \
     render write total rays closest shadow seconds_all_threads per_second peak_memory_bytes backend_bytes diagnostics \
-    film_saturated film_not_finite degenerate_triangles zero_area_lights substitutions warnings kernels image png; do
+    film_saturated film_full_pixels film_vanished film_not_finite degenerate_triangles zero_area_lights substitutions warnings kernels image png; do
     grep -q "\"$key\": " stats.json
     result "stats.json has no key $key" $?
 done

@@ -214,8 +214,8 @@ START_TEST(test_depths)
     ck_assert(film_depths_reserve(&other, 5, &error));
     ck_assert_uint_eq(film.depth_kinds, 3);
     ck_assert_uint_eq(other.depth_kinds, 1);
-    ck_assert_uint_eq(film_sum_words(&film), 116 + 3 * 3 * 36);
-    ck_assert_uint_eq(film_sum_words(&other), 80 + 3 * 36);
+    ck_assert_uint_eq(film_sum_words(&film), 117 + 3 * 3 * 36);
+    ck_assert_uint_eq(film_sum_words(&other), 81 + 3 * 36);
     film_add_one(&film, 5 | SPLAT_FROM_LIGHT | four, 1.0f, 1.0f, 1.0f);
     film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE | five, 2.0f, 3.0f, 4.0f);
     film_add_one(&film, 5 | SPLAT_RARE | five, 8.0f, 8.0f, 8.0f);
@@ -240,26 +240,27 @@ START_TEST(test_depths)
 }
 END_TEST
 
-/* What a device keeps: 12 pixels of three sums, two counters, counts by twos, and the light's and the rare ones when there are
+/* What a device keeps: 12 pixels of three sums, three counters, counts by twos, and the light's and the rare ones when there are
  * any. */
 START_TEST(test_sums_of_a_device)
 {
-    ulong words[3 * 12 + 2 + 6 + 2 * 3 * 12] = {0};
+    ulong words[3 * 12 + 3 + 6 + 2 * 3 * 12] = {0};
     Error error = {0};
     Film film = film_make(4, 3, CROP_WHOLE);
-    ck_assert_uint_eq(film_sum_words(&film), 44);
+    ck_assert_uint_eq(film_sum_words(&film), 45);
     ck_assert(film_light_reserve(&film, &error));
-    ck_assert_uint_eq(film_sum_words(&film), 80);
+    ck_assert_uint_eq(film_sum_words(&film), 81);
     ck_assert(film_rare_reserve(&film, &error));
-    ck_assert_uint_eq(film_sum_words(&film), 116);
+    ck_assert_uint_eq(film_sum_words(&film), 117);
     film_add_one(&film, 2, 1.0f, 2.0f, 3.0f);
     film_add_one(&film, 2 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
     words[3 * 2 + 1] = (ulong)-5;
     words[36] = 7;
-    words[37] = 9;
-    ((uint *)(words + 38))[2] = 4;
-    words[44 + 3 * 2 + 2] = 6;
-    words[80 + 3 * 2 + 1] = 8;
+    words[37] = 8;
+    words[38] = 9;
+    ((uint *)(words + 39))[2] = 4;
+    words[45 + 3 * 2 + 2] = 6;
+    words[81 + 3 * 2 + 1] = 8;
     film_add_sums(&film, words);
     ck_assert_int_eq(film.sums[6], 1 << 30);
     ck_assert_int_eq(film.sums[7], ((int64_t)2 << 30) - 5);
@@ -268,11 +269,15 @@ START_TEST(test_sums_of_a_device)
     ck_assert_uint_eq(film.counts[2], 5);
     ck_assert_uint_eq(film.saturated, 7);
     ck_assert_uint_eq(film.not_finite, 9);
+    ck_assert_uint_eq(film.vanished, 8);
     words[3 * 2 + 1] = (ulong)1 << 61;
     film_add_sums(&film, words);
-    ck_assert_uint_eq(film.saturated, 2 * 7);
-    film_add_sums(&film, words); /* the sum leaves 2^62, and its pixel is one more */
-    ck_assert_uint_eq(film.saturated, 3 * 7 + 1);
+    ck_assert_uint_eq(film_full_pixels(&film), 0);
+    film_add_sums(&film, words); /* the sum comes to 2^62 */
+    ck_assert_uint_eq(film_full_pixels(&film), 1);
+    for (int i = 0; i < 6; ++i) /* and would come to 2^63 twice */
+        film_add_sums(&film, words);
+    ck_assert_int_eq(film.sums[7], INT64_MAX);
     film_destroy(&film);
 }
 END_TEST
@@ -296,7 +301,7 @@ END_TEST
 static void units_compare(uint bits, int exponent)
 {
     float value = bits_float(bits);
-    double exact = ldexp(fabs((double)value), -exponent), most = 0x1p48;
+    double exact = ldexp(fabs((double)value), -exponent), most = value < 0.0f ? 0x1p48 : 0x1p62;
     bool clamped, more = exact > most;
     ulong units = film_units(value, exponent, &clamped);
     TEST_TRUE(clamped == more && units == (ulong)floor((more ? most : exact) + 0.5));
@@ -323,15 +328,113 @@ START_TEST(test_saturation)
     Film film = film_make(4, 3, CROP_WHOLE);
     film_add_one(&film, 0, 1e30f, 1.0f, -FLOAT_MAX);
     ck_assert_uint_eq(film.saturated, 1);
-    ck_assert_int_eq(film.sums[0], (int64_t)1 << 48);
+    ck_assert_int_eq(film.sums[0], (int64_t)1 << 62);
     ck_assert_int_eq(film.sums[1], 1 << 30);
     ck_assert_int_eq(film.sums[2], -((int64_t)1 << 48));
-    /* 2^18 is 2^48 units, the largest that is not clamped; 2^14 of them are too much for a sum. */
-    for (int i = 0; i < (1 << 14) - 1; ++i)
-        film_add_one(&film, 1, 0x1p18f, 0.0f, 0.0f);
+    film_add_one(&film, 1, 0x1p32f, 0.0f, 0.0f); /* 2^62 units, the largest that is not clamped */
     ck_assert_uint_eq(film.saturated, 1);
-    film_add_one(&film, 1, 0x1p18f, 0.0f, 0.0f);
-    ck_assert_uint_eq(film.saturated, 2);
+    film_destroy(&film);
+}
+END_TEST
+
+/* A sum that would leave 64 bits stays where it is, is read as 2^62 units, and its pixel counts as full. */
+START_TEST(test_full)
+{
+    Error error;
+    Film film = film_make(4, 3, CROP_WHOLE), other = film_make(4, 3, CROP_WHOLE);
+    float rgb[36];
+    for (int i = 0; i < 1 << 18; ++i)
+        film_add_one(&film, 1, 0x1p18f, -0x1p18f, 0x1p11f);
+    ck_assert_int_eq(film.sums[3], INT64_MAX);
+    ck_assert_int_eq(film.sums[4], -INT64_MAX);
+    ck_assert_int_eq(film.sums[5], (int64_t)1 << 59);
+    ck_assert_uint_eq(film_full_pixels(&film), 1);
+    film_add_one(&film, 1, -1.0f, 1.0f, 0.0f);
+    film_add_one(&other, 1, -1.0f, 1.0f, 0.0f);
+    ck_assert(film_merge(&film, &other, &error) && film_merge(&other, &film, &error));
+    for (int i = 0; i < 2; ++i) {
+        const Film *full = i == 0 ? &film : &other;
+        ck_assert_int_eq(full->sums[3], INT64_MAX);
+        ck_assert_int_eq(full->sums[4], -INT64_MAX);
+        film_resolve(full, 1.0f, rgb);
+        ck_assert_float_eq(rgb[3], (float)(0x1p32 / full->counts[1]));
+        ck_assert_float_eq(rgb[4], -rgb[3]);
+    }
+    ck_assert_int_eq(film_sum_shown(INT64_MIN), -((int64_t)1 << 62));
+    ck_assert_int_eq(film_sum_rounded(-0x1p61 - 512.0), -((int64_t)1 << 61) - 512);
+    ck_assert_int_eq(film_sum_rounded(-0x1p62), -INT64_MAX);
+    ck_assert_int_eq(film_sum_rounded(HUGE_VAL), INT64_MAX);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
+/* Pixel i is 2^-i as bright as the first, and one contribution in five is a small negative one. */
+static void splats_fill_bright(uint *splats)
+{
+    uint state = 1;
+    for (uint t = 0; t < SPLATS; ++t) {
+        state = state * 1664525u + 1013904223u;
+        float value = (float)(state >> 8) / 0x1p24f * (t % 5 == 0 ? -0x1p-12f : ldexpf(1.0f, -(int)(t % 12)));
+        splat_set(splats, SPLATS, t, t % 12, value, value, value);
+    }
+}
+
+/* Sums that are full, that come to more than is read of them, and that stay below are read alike whatever the order. */
+START_TEST(test_order_of_full_sums)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats), *shuffled = malloc(SPLATS * SPLAT_WORDS * 4);
+    Film films[4];
+    float rgb[4][36];
+    pthread_t threads[THREADS];
+    ThreadJob jobs[THREADS];
+    Error error;
+    splats_fill_bright(splats);
+    splats_shuffle(splats, shuffled);
+    for (int i = 0; i < 4; ++i) {
+        films[i] = film_make(4, 3, CROP_WHOLE);
+        films[i].quantum_exponent = -60;
+    }
+    film_add_splats(&films[0], splats, SPLATS, SPLATS);
+    film_add_splats(&films[1], shuffled, SPLATS, SPLATS);
+    for (uint i = 0; i < THREADS; ++i) {
+        jobs[i] = (ThreadJob){&films[2], shuffled + i * (SPLATS / THREADS), SPLATS / THREADS};
+        pthread_create(&threads[i], NULL, thread_add, &jobs[i]);
+    }
+    for (uint i = 0; i < THREADS; ++i)
+        pthread_join(threads[i], NULL);
+    for (uint first = 0; first < SPLATS; first += SPLATS / 8) {
+        Film part = film_make(4, 3, CROP_WHOLE);
+        part.quantum_exponent = -60;
+        film_add_splats(&part, splats + first, SPLATS / 8, SPLATS);
+        ck_assert(film_merge(&films[3], &part, &error));
+        film_destroy(&part);
+    }
+    for (int i = 0; i < 4; ++i) {
+        film_resolve(&films[i], 1.0f, rgb[i]);
+        ck_assert_mem_eq(rgb[0], rgb[i], sizeof rgb[0]);
+        ck_assert_uint_eq(film_full_pixels(&films[i]), 9);
+        ck_assert_float_ge(rgb[i][24], 0x1.fffp1f / (float)films[i].counts[8]);
+        film_destroy(&films[i]);
+    }
+    free(splats);
+    free(shuffled);
+}
+END_TEST
+
+/* What is less than half a unit in every channel is counted, and nothing that shows or is black. */
+START_TEST(test_vanished)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    film_add_one(&film, 1, 0x1p-32f, 0.0f, -1e-45f);
+    ck_assert_uint_eq(film.vanished, 1);
+    film_add_one(&film, 1, 0x1p-32f, 0x1p-31f, 0.0f);
+    film_add_one(&film, 1, 0.0f, -0.0f, 0.0f);
+    film_add_one(&film, 1, NAN, 0x1p-32f, 0.0f);
+    film_add_one(&film, 99, 0x1p-32f, 0.0f, 0.0f);
+    ck_assert_uint_eq(film.vanished, 1);
+    film_clear(&film);
+    ck_assert_uint_eq(film.vanished, 0);
     film_destroy(&film);
 }
 END_TEST
@@ -442,6 +545,9 @@ int main(void)
     tcase_add_test(tcase, test_rounding);
     tcase_add_test(tcase, test_units_of_any_float);
     tcase_add_test(tcase, test_saturation);
+    tcase_add_test(tcase, test_full);
+    tcase_add_test(tcase, test_order_of_full_sums);
+    tcase_add_test(tcase, test_vanished);
     tcase_add_test(tcase, test_not_finite_counts_as_zero);
     tcase_add_test(tcase, test_crop);
     tcase_add_test(tcase, test_quantum);

@@ -47,6 +47,7 @@ static void render_placed(const Integrator *integrator, const Placement *place, 
     fixture_render(&setup, image);
     ck_assert_uint_eq(image->film.not_finite, 0);
     ck_assert_uint_eq(image->film.saturated, 0);
+    ck_assert_uint_eq(film_full_pixels(&image->film), 0);
 }
 
 START_TEST(test_placements)

@@ -11,7 +11,7 @@ static void films_equal(const char *what, const Film *a, const Film *b)
     size_t pixels = film_pixels(a);
     ck_assert_int_eq(a->quantum_exponent, b->quantum_exponent);
     for (size_t i = 0; i < 3 * pixels; ++i)
-        if (a->sums[i] != b->sums[i])
+        if (film_sum_shown(a->sums[i]) != film_sum_shown(b->sums[i]))
             ck_abort_msg("%s: sum %zu differs: %lld on the CPU, %lld on the device", what, i, (long long)a->sums[i],
                          (long long)b->sums[i]);
     for (size_t i = 0; i < pixels; ++i)
@@ -19,10 +19,11 @@ static void films_equal(const char *what, const Film *a, const Film *b)
             ck_abort_msg("%s: pixel %zu has %u samples on the CPU, %u on the device", what, i, a->counts[i],
                          b->counts[i]);
     for (size_t i = 0; a->light_sums && i < 3 * pixels; ++i)
-        if (a->light_sums[i] != b->light_sums[i])
+        if (film_sum_shown(a->light_sums[i]) != film_sum_shown(b->light_sums[i]))
             ck_abort_msg("%s: the light's sum %zu differs: %lld on the CPU, %lld on the device", what, i,
                          (long long)a->light_sums[i], (long long)b->light_sums[i]);
     ck_assert_uint_eq(a->saturated, b->saturated);
+    ck_assert_uint_eq(a->vanished, b->vanished);
     ck_assert_uint_eq(a->not_finite, b->not_finite);
 }
 
@@ -113,18 +114,23 @@ START_TEST(test_bits_of_coincident_surfaces)
 }
 END_TEST
 
-/* Units so small that most contributions are clamped. */
-START_TEST(test_bits_of_clamped_sums)
+/* Units so small that most contributions are clamped, that sums are full of smaller ones, and so large that most vanish. */
+START_TEST(test_bits_of_sums_out_of_range)
 {
-    const Film fine = {.quantum_exponent = -50};
-    RenderSetup setup = {.text = OPENCL_MATERIALS_SCENE, .samples = 4, .max_depth = 5, .quantum_of = &fine};
+    static const int EXPONENTS[] = {-66, -61, 4};
+    const Film film = {.quantum_exponent = EXPONENTS[_i]};
+    RenderSetup setup = {.text = OPENCL_MATERIALS_SCENE, .samples = 16, .max_depth = 5, .quantum_of = &film};
     RenderedImage image;
     setup.integrator = integrator_ibpt();
     fixture_render(&setup, &image);
-    ck_assert_uint_gt(image.film.saturated, 1000);
+    printf("unit 2^%d: %llu clamped, %llu vanished, %zu of %zu pixels full\n", EXPONENTS[_i],
+           (unsigned long long)image.film.saturated, (unsigned long long)image.film.vanished,
+           film_full_pixels(&image.film), film_pixels(&image.film));
+    ck_assert_uint_gt(_i == 0 ? image.film.saturated : _i == 2 ? image.film.vanished : 1001, 1000);
+    ck_assert_uint_gt(_i < 2 ? film_full_pixels(&image.film) : 101, 100);
     fixture_destroy(&image);
     if (test_device_promises())
-        backends_agree("clamped", setup);
+        backends_agree("out of range", setup);
 }
 END_TEST
 
@@ -190,7 +196,7 @@ TCase *opencl_bits_tests(void)
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);
     tcase_add_test(bits, test_bits_of_coincident_surfaces);
-    tcase_add_test(bits, test_bits_of_clamped_sums);
+    tcase_add_loop_test(bits, test_bits_of_sums_out_of_range, 0, 3);
     tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_chains, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
