@@ -176,6 +176,7 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     }
     if (!(sum > 0.0))
         return no_light(count, error);
+    scene->light_power = sum;
     if (dark > 0)
         log_message(LOG_WARNING, "%zu of %zu lights have no power and are ignored", dark, count);
     for (size_t i = 0; i < count; ++i) {

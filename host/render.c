@@ -4,19 +4,11 @@
 #include "render_run.h"
 
 #include "diagnostics.h"
-#include "log.h"
-#include "pixel_order.h"
-#include "state.h"
+#include "film_pilot.h"
 #include "timing.h"
 
 #include <math.h>
-#include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Paths of the pilot that sets the film's quantum, and the sample number it uses: one that no image reaches. */
-#define PILOT_ITEMS 4096u
-#define PILOT_SAMPLE 0xffff0000u
 
 /* The first segments of a bidirectional walk always survive Russian roulette. */
 #define ROULETTE_DEPTH 3
@@ -30,69 +22,6 @@
 #define DIAGNOSTIC_NAME(constant, name) name,
 static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
 #undef DIAGNOSTIC_NAME
-
-/* ---- the pilot -------------------------------------------------------------------------------------------------- */
-
-typedef struct PilotSample {
-    uint pixel;
-    float luminance;
-} PilotSample;
-
-typedef struct Pilot {
-    pthread_mutex_t mutex;
-    PilotSample samples[PILOT_ITEMS];
-    uint count;
-} Pilot;
-
-static void pilot_splats(void *context, const uint *splats, uint count, uint stride)
-{
-    Pilot *pilot = context;
-    pthread_mutex_lock(&pilot->mutex);
-    for (uint t = 0; t < count && pilot->count < PILOT_ITEMS; ++t) {
-        PilotSample *sample = &pilot->samples[pilot->count++];
-        sample->pixel = state_load(splats, stride, SPLAT_PIXEL, t);
-        sample->luminance = float_abs(rgb_luminance(state_load_vec3(splats, stride, SPLAT_COLOR, t)));
-    }
-    pthread_mutex_unlock(&pilot->mutex);
-}
-
-static int pilot_compare(const void *a, const void *b)
-{
-    const PilotSample *x = a, *y = b;
-    if (x->pixel != y->pixel)
-        return x->pixel < y->pixel ? -1 : 1;
-    return (x->luminance > y->luminance) - (x->luminance < y->luminance);
-}
-
-/* Mean radiance from a few thousand paths over the whole film, so that a crop has the quantum and with it the bits of
- * the whole picture. The sum is taken in the order of pixels, so it does not depend on threads. */
-static bool pilot_run(const BackendInterface *interface, Backend *backend, FrameParams frame, const StepList *list,
-                      double *mean, Error *error)
-{
-    static const atomic_int never = 0;
-    Pilot *pilot = malloc(sizeof *pilot);
-    if (!pilot)
-        return error_memory(error, sizeof *pilot, "the pilot");
-    pilot->count = 0;
-    pthread_mutex_init(&pilot->mutex, NULL);
-    frame.crop_x0 = frame.crop_y0 = 0;
-    frame.crop_x1 = frame.width;
-    frame.crop_y1 = frame.height;
-    frame.first_item = 0;
-    frame.item_count = PILOT_ITEMS;
-    frame.sample_index = PILOT_SAMPLE;
-    frame.pixel_stride = pixel_order_stride(frame.width, frame.height);
-    const SplatSink sink = {.splats = pilot_splats, .context = pilot};
-    bool done = interface->run(backend, &frame, list, &sink, &never, NULL, error);
-    double sum = 0.0;
-    qsort(pilot->samples, pilot->count, sizeof pilot->samples[0], pilot_compare);
-    for (uint i = 0; i < pilot->count; ++i)
-        sum += (double)pilot->samples[i].luminance;
-    *mean = pilot->count > 0 ? sum / pilot->count : 0.0;
-    pthread_mutex_destroy(&pilot->mutex);
-    free(pilot);
-    return done;
-}
 
 /* ---- the passes ------------------------------------------------------------------------------------------------- */
 
@@ -254,21 +183,6 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
         frame->aim_count = 0;
 }
 
-/* Sets the quantum from what path tracing sees, whatever the integrator: films of all can be merged. */
-static bool film_prepare(const RenderRun *run, Error *error)
-{
-    StepList list;
-    FrameParams frame = run->frame;
-    double mean = 0.0;
-    frame.strategies = integrator_pt()->strategies;
-    if (!integrator_pt()->list(&frame, &list, error))
-        return false;
-    bool done = pilot_run(run->interface, run->backend, frame, &list, &mean, error);
-    step_list_destroy(&list);
-    film_quantum_set(run->film, mean);
-    return done;
-}
-
 bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
                  const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
                  RenderResult *result, Error *error)
@@ -284,7 +198,7 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
     run.start = run.last_save = timing_now();
     RenderLayers *layers = options->layers;
     bool done =
-        (keep_quantum || film_prepare(&run, error)) &&
+        (keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
         (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.world_radius, error)) &&
         (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);

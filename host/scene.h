@@ -70,6 +70,7 @@ typedef struct Scene {
     Array lights; /* Light */
     Array light_alias; /* AliasBucket, made by scene_finish */
     Array infinite_lights; /* uint */
+    double light_power; /* luminance of the flux of all lights, made by scene_finish */
     Array distributions2d; /* Distribution2D */
     Array lookup; /* float */
     Array texels; /* uint */

@@ -52,6 +52,7 @@ libtwinlight_host_la_SOURCES = \
 	host/exr.c host/exr.h \
 	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \
+	host/film_pilot.c host/film_pilot.h \
 	host/filter_setup.c host/filter_setup.h \
 	host/flip.c \
 	host/hash.h \

@@ -1,8 +1,10 @@
-/* Borders under every filter, tangent frames without texture coordinates, shapes of no area, and numbers that are none. */
+/* Borders under every filter, lights of any brightness, tangent frames without texture coordinates, shapes of no area, and
+ * numbers that are none. */
 #include "numerics.h"
 
 #include "backend_cpu.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- borders ----------------------------------------------------------------------------------------------------- */
@@ -62,6 +64,120 @@ START_TEST(test_borders)
         }
         groups_destroy(&picture);
     }
+}
+END_TEST
+
+/* ---- brightness -------------------------------------------------------------------------------------------------- */
+
+/* A point light in smooth glass, which path tracing does not see: of any brightness, and beside a dim environment. */
+#define ENCLOSED_SCENE                                                                                                 \
+    BD_BEGIN "%sLightSource \"point\" \"point3 from\" [ 0 -0.4 0 ] \"rgb I\" [ %g %g %g ]\n" BD_GREY BD_FLOOR          \
+             "Material \"dielectric\" \"float eta\" 1.5\n" BD_BALL
+
+#define DIM "LightSource \"infinite\" \"rgb L\" [ 1e-4 1e-4 1e-4 ]\n"
+
+static void enclosed_render(const Integrator *integrator, unsigned samples, const char *more, double intensity,
+                            PictureGroups *picture)
+{
+    char text[2048];
+    snprintf(text, sizeof text, ENCLOSED_SCENE, more, intensity, intensity, intensity);
+    GroupSetup setup = {
+        .groups = 8,
+        .render = {.text = text, .samples = samples, .max_depth = 4, .threads = 2, .integrator = integrator}};
+    groups_render(&setup, picture);
+}
+
+/* The picture is as bright as the light, whatever part of it path tracing sees. */
+START_TEST(test_brightness)
+{
+    static const struct {
+        const char *more;
+        double intensity;
+    } LIGHTS[] = {{"", 1e-9}, {"", 1.0}, {"", 1e6}, {"", 1e7}, {DIM, 1e4}};
+    const Integrator *const integrators[] = {integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
+    const Integrator *integrator = integrators[_i];
+    double mean[2], error[2];
+    PictureGroups expected, got;
+    enclosed_render(integrator_bdpt(), 128, "", 1.0, &expected);
+    groups_block(&expected, 0, 0, 16, 16, &mean[0], &error[0]);
+    groups_destroy(&expected);
+    for (size_t k = 0; k < sizeof LIGHTS / sizeof LIGHTS[0]; ++k) {
+        double intensity = LIGHTS[k].intensity;
+        enclosed_render(integrator, integrator == integrator_mmlt() ? 1024 : 64, LIGHTS[k].more, intensity, &got);
+        groups_block(&got, 0, 0, 16, 16, &mean[1], &error[1]);
+        double ratio = mean[1] / intensity / mean[0];
+        double deviation = hypot(error[0] / mean[0], error[1] / (intensity * mean[0]));
+        printf("%s, intensity %g%s: mean %.5g, over that of 1 %.4f +- %.4f\n", integrator->name, intensity,
+               LIGHTS[k].more[0] ? " beside 1e-4" : "", mean[1], ratio, deviation);
+        ck_assert(got.sound);
+        ck_assert_double_le(deviation, 0.02);
+        /* 15 values: p = 0.01 for any of them, of Student's distribution with 7 degrees of freedom. */
+        ck_assert_double_le(fabs(ratio - 1.0), 5.8 * deviation);
+        groups_destroy(&got);
+    }
+}
+END_TEST
+
+/* Where the pilot sees nothing the unit follows the lights' power; a crop has the whole picture's. */
+START_TEST(test_quantum_of_pilot)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
+    const int crop[4] = {0, 0, 4, 4};
+    int exponents[4][3];
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 3; ++k) {
+            double intensity = k == 1 ? 0x1p40 : 1.0;
+            char text[2048];
+            Error error = {0};
+            Film film;
+            RenderResult result;
+            Scene scene;
+            snprintf(text, sizeof text, ENCLOSED_SCENE, "", intensity, intensity, intensity);
+            const RenderSetup setup = {.text = text, .threads = 1 + k};
+            const RenderOptions options = {.samples = 1, .max_depth = 4};
+            fixture_scene(&setup, &scene);
+            if (k == 2)
+                ck_assert(scene_film_set(&scene, 16, 16, crop, &error));
+            Backend *backend = fixture_open(&setup, &scene, &error);
+            ck_assert_msg(backend != NULL, "%s", error.message);
+            ck_assert(film_init(&film, 16, 16, scene.settings.crop, &error));
+            ck_assert_msg(render_film(integrators[i], &scene, backend_cpu(), backend, &options, false, NULL, &film,
+                                      &result, &error),
+                          "%s", error.message);
+            exponents[i][k] = film.quantum_exponent;
+            ck_assert_int_eq(exponents[i][k], exponents[i][0] + (k == 1 ? 40 : 0));
+            backend_cpu()->close(backend);
+            film_destroy(&film);
+            scene_destroy(&scene);
+        }
+    printf("units of path tracing, which sees nothing, and of the others: 2^%d 2^%d 2^%d 2^%d\n", exponents[0][0],
+           exponents[1][0], exponents[2][0], exponents[3][0]);
+    ck_assert_int_le(abs(exponents[0][0] - exponents[2][0]), 10);
+}
+END_TEST
+
+/* A unit so small that sums of chains, pools and path tracing are full: nothing wraps, every pixel says so, and all threads
+ * give the same. */
+START_TEST(test_full_chains)
+{
+    const Film fine = {.quantum_exponent = -80};
+    RenderedImage one, three;
+    RenderSetup setup = {.text = BD_ROOM BD_BALL,
+                         .samples = 32,
+                         .max_depth = 5,
+                         .threads = 1,
+                         .integrator = integrator_mmlt(),
+                         .quantum_of = &fine};
+    fixture_render(&setup, &one);
+    setup.threads = 3;
+    fixture_render(&setup, &three);
+    ck_assert_uint_gt(one.film.saturated, 0);
+    ck_assert_uint_eq(one.film.saturated, three.film.saturated);
+    ck_assert_uint_gt(film_full_pixels(&one.film), 128);
+    for (int i = 0; i < 3 * 16 * 16; ++i)
+        ck_assert(one.rgb[i] >= 0.0f && one.rgb[i] == three.rgb[i]);
+    fixture_destroy(&one);
+    fixture_destroy(&three);
 }
 END_TEST
 
@@ -237,6 +353,9 @@ TCase *numerics_film_case(void)
     TCase *tcase = tcase_create("film");
     tcase_set_timeout(tcase, 300);
     tcase_add_loop_test(tcase, test_borders, 0, BIDIRECTIONAL_FILTER_COUNT);
+    tcase_add_loop_test(tcase, test_brightness, 0, 3);
+    tcase_add_test(tcase, test_quantum_of_pilot);
+    tcase_add_test(tcase, test_full_chains);
     tcase_add_test(tcase, test_frames);
     tcase_add_loop_test(tcase, test_no_area, 0, 3);
     tcase_add_loop_test(tcase, test_not_finite, 0, 12);
