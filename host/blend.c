@@ -113,7 +113,7 @@ static bool blend_known(const Blend *blend, const double samples[BLEND_STREAMS])
 static void shares_set(Blend *blend, BlendTile *tile, const double samples[BLEND_STREAMS], bool known)
 {
     memset(tile->share, 0, sizeof tile->share);
-    if (blend->shown > 0) {
+    if (blend->shown > 0 && samples[blend->shown - 1] > 0.0) {
         tile->share[blend->shown - 1] = 1.0;
     } else if (known) {
         TileBlend best = tile_blend(tile, samples);

@@ -39,7 +39,7 @@ typedef struct Blend {
     BlendTile *known; /* a tile */
     bool ready[BLEND_SERIES]; /* the stream's variances are there */
     double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
-    int shown; /* 1 + the stream that has all of it; 0: as is best */
+    int shown; /* 1 + the stream that has all of it in generations that have samples of it; 0: as is best */
 } Blend;
 
 /* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not

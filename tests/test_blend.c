@@ -137,6 +137,25 @@ START_TEST(test_absent)
 }
 END_TEST
 
+/* A stream that is shown alone has all, and nothing in a generation in which it has no samples. */
+START_TEST(test_alone)
+{
+    Streams streams;
+    streams_init(&streams);
+    streams.blend.shown = 1 + BLEND_PATHS;
+    for (int g = 0; g < 6; ++g) {
+        stream_set(&streams, BLEND_CHAINS, 4.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_POOL, 1.0, 1.0, 1.0);
+        stream_set(&streams, BLEND_PATHS, 2.0, 1.0, 1.0);
+        if (g % 2 == 1)
+            streams.films[BLEND_PATHS].light_samples = 0;
+        ck_assert_double_eq_tol(generation(&streams), 1.0, 0.08);
+        ck_assert_double_eq(streams.blend.share[BLEND_PATHS], g % 2 == 1 ? 0.0 : 1.0);
+    }
+    streams_destroy(&streams);
+}
+END_TEST
+
 /* A pool of half a sample a pixel shows every other pixel twice as bright, and the next pool the others: that is no
  * variance of what it shows in the end, and counts as little as a correction may make it. */
 START_TEST(test_partial)
@@ -317,6 +336,7 @@ int main(void)
     tcase_add_test(tcase, test_shares);
     tcase_add_loop_test(tcase, test_blind, BLEND_POOL, BLEND_STREAMS);
     tcase_add_loop_test(tcase, test_absent, 0, 6);
+    tcase_add_test(tcase, test_alone);
     tcase_add_test(tcase, test_partial);
     tcase_add_test(tcase, test_beside);
     tcase_add_test(tcase, test_excess);
