@@ -88,15 +88,18 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
 
 /* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `plain`: were the path
  * made by path tracing, it would contribute color / plain. Here as in pt.cl (path_shown) that, times its importance, is
- * shown up to the limit. */
+ * shown up to the limit. Walks from the camera begin with film_reach_factor, which paths that the light's walk brings to the
+ * lens (t = 1) do not have, nor path tracing. */
 SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color, float plain)
 {
-    uint path = chain_key(chain_key_depth(key), chain_key_s(key)), shown = KEY_SHOWN_ALL;
+    uint d = chain_key_depth(key), s = chain_key_s(key), shown = KEY_SHOWN_ALL;
     float limit = RARE_OVER_LIMIT * frame->limit * plain;
-    float worth = rgb_luminance(color) * film_importance(frame, film) / film_reach_factor(frame);
+    float worth = rgb_luminance(color) * film_importance(frame, film);
+    if (s < d)
+        worth /= film_reach_factor(frame);
     if (frame->limit < FLOAT_MAX && worth > limit)
         shown = (uint)(limit / worth * (float)KEY_SHOWN_ALL + 0.5f);
-    return path | shown << 16;
+    return chain_key(d, s) | shown << 16;
 }
 
 /* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by chance. */

@@ -93,5 +93,6 @@ TCase *bidirectional_strategies_case(void);
 TCase *bidirectional_sums_case(void);
 TCase *bidirectional_film_case(void);
 TCase *bidirectional_hard_case(void);
+TCase *mmlt_shown_case(void);
 
 #endif

@@ -165,6 +165,7 @@ void bidirectional_files_make(void)
     test_folder_make();
     image_write("sky.pfm", 8, 0.1, 2.0, -1);
     image_write("sun.pfm", 32, 0.05, 0.2, 32 * 14 + 13);
+    image_write("wide_sun.pfm", 16, 0.05, 0.2, 16 * 7 + 6);
     image_write("bumps.pfm", 8, 0.0, 0.9, -1);
     normals_write();
 }

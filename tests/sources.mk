@@ -183,6 +183,9 @@ tests_test_math_SOURCES = tests/test_math.c \
 	tests/test_math_sphere_maps.c \
 	tests/test_math_warp.c
 
+tests_test_mmlt_SOURCES = tests/test_mmlt.c \
+	tests/test_mmlt_shown.c
+
 tests_test_numerics_SOURCES = tests/test_numerics.c \
 	tests/test_numerics_film.c \
 	tests/test_numerics_lights.c \

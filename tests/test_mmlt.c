@@ -358,6 +358,7 @@ int main(void)
     tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(case_make(suite, "streams"), test_streams, 0, BIDIRECTIONAL_SCENE_COUNT * BLEND_STREAMS);
+    suite_add_tcase(suite, mmlt_shown_case());
     tcase_add_loop_test(case_make(suite, "depths"), test_depths, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);

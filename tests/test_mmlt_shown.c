@@ -1,0 +1,72 @@
+/* What path tracing shows beside chains and what chains put out of the rest are the same function of a path, whatever
+ * strategy makes it and wherever on the film it begins. */
+#include "bidirectional.h"
+
+#include "blend.h"
+
+/* A sun in the sky, a hundredth of all directions, over a pane of glass: paths that meet it are some times above path
+ * tracing's limit, which shows a part of them and leaves the rest to chains. */
+#define SUN(scale)                                                                                                     \
+    "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "            \
+    "\"float scale\" " scale " AttributeEnd\n"
+#define PANE(y, side)                                                                                                  \
+    "Material \"thindielectric\" \"float eta\" 1.5 Shape \"bilinearmesh\" \"point3 P\" [ -" side " " y " -" side       \
+    "  " side " " y " -" side "  -" side " " y " " side "  " side " " y " " side " ]\n"
+
+/* The scene with one stream alone and what that leaves to chains, against path tracing. */
+static void stream_compare(const char *name, const BidirectionalScene *scene, int stream, unsigned expected_samples,
+                           unsigned samples)
+{
+    PictureGroups expected, got;
+    char line[128];
+    GroupSetup setup = {
+        .groups = 16,
+        .render = {
+            .text = bidirectional_text(scene), .samples = expected_samples, .max_depth = scene->depth, .threads = 1}};
+    groups_render(&setup, &expected);
+    setup.render.samples = samples;
+    setup.render.seed = 11000;
+    setup.render.integrator = integrator_mmlt();
+    setup.render.chains = (ChainOptions){.chains = 256, .steps = 16, .shown = 1 + stream};
+    groups_render(&setup, &got);
+    snprintf(line, sizeof line, "%s, stream %d", name, stream);
+    groups_compare(line, &got, &expected, 2, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+
+/* At effort 1 the stream of path tracing alone; make check-long does them all. */
+static bool stream_left_out(int stream)
+{
+    return test_effort() == 1 && stream != BLEND_PATHS;
+}
+
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
+
+/* Large pixels of a small scene, so that the light's walks (t = 1) make a good part of it, and a small crop window, so that
+ * filters reach far beyond it. */
+START_TEST(test_shown_filters)
+{
+    const int stream = _i % BLEND_STREAMS, filter = _i / BLEND_STREAMS;
+    char text[2048];
+    if (stream_left_out(stream))
+        return;
+    snprintf(text, sizeof text,
+             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
+             "PixelFilter %s\nLookAt 0 0.4 0  0 -1 0  0 0 1\n"
+             "Camera \"orthographic\" \"float screenwindow\" [ -2 2 -2 2 ]\nWorldBegin\n" SUN("1") BD_GREY
+             "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
+             BIDIRECTIONAL_FILTERS[filter]);
+    const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
+    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, stream, 2048, 4096);
+}
+END_TEST
+
+TCase *mmlt_shown_case(void)
+{
+    TCase *tcase = tcase_create("shown");
+    tcase_set_timeout(tcase, 3000);
+    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
+    tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * BLEND_STREAMS);
+    return tcase;
+}
