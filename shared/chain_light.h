@@ -16,13 +16,14 @@ SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uin
 }
 
 /* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing shows of
- * it: of several one stands for all, drawn with u in proportion to what they send. It has the luminance of all, so that the
- * chain goes after all of them, and their color on average. *plain: StrategyWeights.plain. */
+ * it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what they send. It has
+ * the luminance of all, so that the chain goes after all of them, and their color on average. *plain:
+ * StrategyWeights.plain, as much larger, so that color / *plain is what path tracing would contribute of the light drawn. */
 SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
                                        float u, float *plain)
 {
     Vec3 one = vec3_splat(0.0f);
-    float all = 0.0f, luminance = 1.0f;
+    float all = 0.0f, luminance = 1.0f, scale = 1.0f;
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
@@ -31,6 +32,8 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
         StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
         color = vec3_scale(color, weights.own);
         float own = rgb_luminance(color), before = all, place;
+        if (own == 0.0f)
+            continue;
         all += own;
         place = u * all;
         bool take = place < own;
@@ -41,7 +44,10 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
             *plain = weights.plain;
         }
     }
-    return vec3_scale(one, all > 0.0f ? all / luminance : 1.0f);
+    if (all > 0.0f)
+        scale = all / luminance;
+    *plain *= scale;
+    return vec3_scale(one, scale);
 }
 
 /* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */

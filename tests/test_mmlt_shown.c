@@ -1,5 +1,5 @@
 /* What path tracing shows beside chains and what chains put out of the rest are the same function of a path, whatever
- * strategy makes it and wherever on the film it begins. */
+ * strategy makes it, wherever on the film it begins, and however many lights send what it carries. */
 #include "bidirectional.h"
 
 #include "blend.h"
@@ -62,11 +62,35 @@ START_TEST(test_shown_filters)
 }
 END_TEST
 
+/* ---- several infinite lights ------------------------------------------------------------------------------------- */
+
+#define UNDER_PANE                                                                                                     \
+    BD_BEGIN BD_GREY                                                                                                   \
+        "Shape \"bilinearmesh\" \"point3 P\" [ -40 -1 -40  40 -1 -40  -40 -1 40  40 -1 40 ]\n" PANE("1.5", "40")
+
+/* A floor under a pane in the sun: a path that ends outside meets all of the lights at once. */
+static const BidirectionalScene SUNS[] = {
+    {"one sun", UNDER_PANE SUN("1"), SUPPORT_SUM_ONLY, 4, 2},
+    {"two suns", UNDER_PANE SUN("0.75") SUN("0.25"), SUPPORT_SUM_ONLY, 4, 2},
+    {"four suns", UNDER_PANE SUN("0.25") SUN("0.25") SUN("0.25") SUN("0.25"), SUPPORT_SUM_ONLY, 4, 2},
+};
+#define SUNS_COUNT (int)(sizeof SUNS / sizeof SUNS[0])
+
+START_TEST(test_shown_lights)
+{
+    const int stream = _i % BLEND_STREAMS;
+    const BidirectionalScene *scene = &SUNS[_i / BLEND_STREAMS];
+    if (!stream_left_out(stream))
+        stream_compare(scene->name, scene, stream, 128, 512);
+}
+END_TEST
+
 TCase *mmlt_shown_case(void)
 {
     TCase *tcase = tcase_create("shown");
     tcase_set_timeout(tcase, 3000);
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
     tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * BLEND_STREAMS);
+    tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * BLEND_STREAMS);
     return tcase;
 }
