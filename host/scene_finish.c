@@ -161,12 +161,12 @@ static bool scene_bounds(Scene *scene, Error *error)
 /* No ray of the camera starts further out along any axis. */
 static float camera_reach(const Camera *camera)
 {
-    float x = camera->lens_radius, y = camera->lens_radius;
+    Vec3 origin = vec3(camera->lens_radius, camera->lens_radius, 0.0f);
     if (camera->kind == CAMERA_ORTHOGRAPHIC) {
-        x += fmaxf(fabsf(camera->screen[0]), fabsf(camera->screen[1]));
-        y += fmaxf(fabsf(camera->screen[2]), fabsf(camera->screen[3]));
+        origin.x += fmaxf(fabsf(camera->screen[0]), fabsf(camera->screen[1]));
+        origin.y += fmaxf(fabsf(camera->screen[2]), fabsf(camera->screen[3]));
     }
-    return vec3_max_abs(affine_magnitude(camera->world_from_camera, vec3(x, y, 0.0f)));
+    return vec3_max_abs(affine_magnitude(camera->world_from_camera, origin));
 }
 
 /* Nor any ray of the light: those from infinity start on a disc as large as the bounding sphere that touches it. */
