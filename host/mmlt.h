@@ -34,7 +34,9 @@ typedef struct Mmlt {
     uint next_sample; /* of the pool: numbers below it are used */
     uint pool_sample; /* the first of the latest pool */
     uint pool_pixel; /* where the latest pool began in the order in which they visit the pixels */
+    uint pool_lights_first; /* of its samples: the first with a walk from the light */
     uint pool_next[MMLT_HALVES + 1]; /* where the next of a half will; last: of all that visit every pixel alike */
+    uint pool_turns[MMLT_HALVES + 1]; /* how often they have visited them all, or how many that visit more there were */
     uint generation;
     uint pool_count; /* room for so many samples */
     uint *pool_words;

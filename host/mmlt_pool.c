@@ -63,18 +63,39 @@ static double host_random(const FrameParams *frame, uint generation, uint use)
     return ((double)random.x[0] + 0.5) / 4294967296.0;
 }
 
+/* Terms of the sequence by which lights_first goes before it begins anew. */
+#define TURNS 16u
+
+/* The first sample with a walk from the light, of the next pool, which begins at `place` in the order of the pixels. Pools visit
+ * the same pixels again after a round, so those with a walk are chosen by their place in that order: each has one in about
+ * four rounds, whatever the sizes of pool and round. Parts of a pool take turns in the order of van
+ * der Corput's sequence, shifted by chance, and anew after TURNS, so that periods that fit it cannot add up. Samples with a walk
+ * stay together, so that chunks without any leave out their steps. turn: rounds so far, or pools where those are longer. */
+static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t place, uint items)
+{
+    double part = host_random(&mmlt->run->frame, (uint)(turn / TURNS), 2 + order);
+    for (uint k = (uint)(turn % TURNS), weight = TURNS / 2; k > 0; k >>= 1, weight >>= 1)
+        part += (double)(k & 1u) * weight / TURNS;
+    return (uint)(((uint64_t)(part * items) + items - place % items) % items);
+}
+
 /* The next pool, of `items` samples: it goes on visiting the pixels where the last one stopped, and the first begins
  * anywhere, so that each by itself is as likely to see one pixel as another. */
 static void pool_place(Mmlt *mmlt, uint items)
 {
     int half = mmlt_half(mmlt, mmlt->generation);
-    uint visits = mmlt->visits[half][IMPORTANCE_CELLS];
-    uint *next = &mmlt->pool_next[visits > 0 ? half : MMLT_HALVES];
+    uint visits = mmlt->visits[half][IMPORTANCE_CELLS], order = visits > 0 ? (uint)half : MMLT_HALVES;
+    uint *next = &mmlt->pool_next[order], *turn = &mmlt->pool_turns[order];
     uint64_t round = visits > 0 ? visits : mmlt->run->crop_pixels;
     if (mmlt->generation == 0)
         *next = (uint)(host_random(&mmlt->run->frame, 0, 1) * (double)round);
     uint64_t end = (uint64_t)*next + items;
     mmlt->pool_pixel = *next;
+    if (items <= round && *next + items / 2 >= round) /* most of it is in the next round */
+        mmlt->pool_lights_first = lights_first(mmlt, order, *turn + 1, *next + items - round % items, items);
+    else
+        mmlt->pool_lights_first = lights_first(mmlt, order, *turn, *next, items);
+    *turn += items <= round ? (uint)(end / round) : 1;
     *next = (uint)(end % round);
     mmlt->pool_sample = mmlt->next_sample;
     mmlt->next_sample += (uint)((end + round - 1) / round) * (visits > 0 ? VISITS_MOST : 1);
@@ -118,6 +139,8 @@ FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count)
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;
     frame.pool_lights = mmlt->options.unblended ? count : (uint)ceil(POOL_LIGHTS * count);
+    frame.pool_items = count;
+    frame.pool_lights_first = mmlt->pool_lights_first;
     frame.pool_lights_weight = (float)((double)count / frame.pool_lights);
     seeds_frame(mmlt, &frame);
     mmlt_frame_film(&frame, &mmlt->pool_film);

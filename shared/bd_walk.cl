@@ -26,7 +26,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
     state_store(paths, stride, BD_S, t, 2u);
     state_store(paths, stride, BD_T, t, 1u);
-    if (frame->max_depth < 2u || (frame->pool != 0u && frame->first_item + t >= frame->pool_lights))
+    if (frame->max_depth < 2u || (frame->pool != 0u && !pool_has_light(frame, frame->first_item + t)))
         return;
     float own;
     if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),

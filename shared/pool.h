@@ -1,6 +1,6 @@
 /* The pool from which chains begin: independent bidirectional samples, each a pair of walks with all connections between
- * them, of which one path is kept in proportion to what it carries (a bundle of candidates, and one of them drawn). From
- * frame->pool_lights on they have the camera's walk alone, with what it meets and is connected with of lights.
+ * them, of which one path is kept in proportion to what it carries (a bundle of candidates, and one of them drawn). But for
+ * frame->pool_lights of them they have the camera's walk alone, with what it meets and is connected with of lights.
  *
  * The random numbers of a pool's sample are a chain's coordinates: the same light and the same point on the lens serve
  * every connection, and the film position is two of the numbers. So the path kept can be made again from the sample's
@@ -51,6 +51,14 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
     return random;
 }
 
+/* Whether the pool's sample has a walk from the light: pool_lights of them from pool_lights_first on, behind the last sample
+ * again from the first. */
+SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item)
+{
+    uint first = frame->pool_lights_first, behind = frame->pool_items - first; /* the first of the pool */
+    return (item < first ? item + behind : item - first) < frame->pool_lights;
+}
+
 /* Roulette goes by all that a sample's paths count for: what few samples have, a pixel rarely visited or a walk from the
  * light, it may not make rarer still. In the same time a glossy hall has 0.85 times the square error, and 0.6 times with the
  * worst thousandth of its pixels, which were paths that counted 128 times, so that fifty chains began with one; beaten metal
@@ -60,7 +68,7 @@ SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __gl
 {
     uint stride = frame->stride;
     float counts =
-        float_max(rarity, 1.0f) * (frame->first_item + t < frame->pool_lights ? frame->pool_lights_weight : 1.0f);
+        float_max(rarity, 1.0f) * (pool_has_light(frame, frame->first_item + t) ? frame->pool_lights_weight : 1.0f);
     state_store_float(paths, stride, BD_ROULETTE_SCALE, t,
                       counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, t));
 }

@@ -334,7 +334,8 @@ typedef struct FrameParams {
     uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
     uint pool; /* 1: bidirectional samples are a pool for chains (pool.h) */
-    uint pool_lights; /* of a pool: items below this have a walk from the light, the others none */
+    uint pool_items; /* of a pool: all of its items */
+    uint pool_lights, pool_lights_first; /* so many of them, from that one on, have a walk from the light */
     float pool_lights_weight; /* all of its items over those */
     uint strategies; /* STRATEGIES_* (mis.h) of bidirectional integrators */
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */

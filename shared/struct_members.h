@@ -161,7 +161,9 @@
     MEMBER(FrameParams, min_depth)                                                                                     \
     MEMBER(FrameParams, roulette_depth)                                                                                \
     MEMBER(FrameParams, pool)                                                                                          \
+    MEMBER(FrameParams, pool_items)                                                                                    \
     MEMBER(FrameParams, pool_lights)                                                                                   \
+    MEMBER(FrameParams, pool_lights_first)                                                                             \
     MEMBER(FrameParams, pool_lights_weight)                                                                            \
     MEMBER(FrameParams, strategies)                                                                                    \
     MEMBER(FrameParams, mis_exponent)                                                                                  \

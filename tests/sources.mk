@@ -29,6 +29,7 @@ check_PROGRAMS += \
 	tests/test_metrics \
 	tests/test_options \
 	tests/test_platform_bits \
+	tests/test_pool \
 	tests/test_reference \
 	tests/test_render \
 	tests/test_scenes \
