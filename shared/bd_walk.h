@@ -154,6 +154,7 @@ typedef struct WalkMeeting {
     Vec3 from_ng; /* geometric normal where the ray left; its direction for the camera's first */
     float own; /* density with which the walk has made the point; of a miss, of its direction */
     uint light; /* that the primitive is; NONE */
+    uint instance, primitive; /* of the hit */
     bool missed;
     /* Unless missed: */
     Surface surface;
@@ -174,6 +175,8 @@ SHARED_FUNCTION void walk_meet(const SceneView *scene, __global const uint *rest
     Hit hit = hit_load(hits, stride, t);
     meeting->ray = ray_load(rays, stride, t);
     meeting->missed = hit.primitive == NONE;
+    meeting->instance = hit.instance;
+    meeting->primitive = hit.primitive;
     meeting->own = state_load_float(paths, stride, BD_PDF, t);
     meeting->from_ng = first ? meeting->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
     meeting->light = NONE;

@@ -59,9 +59,12 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
 
 /* What BUFFER_VERTICES keeps of the camera's half for shifts. */
 #define SHIFT_VERTICES 2u /* z_1 and z_2 may have new directions */
-#define SHIFT_POINTS 0u /* z_2, z_3: 3 each */
-#define SHIFT_DENSITY 6u /* of both, per area; 0: the path cannot be shifted */
-#define SHIFT_WORDS 7u
+#define SHIFT_POINTS 0u /* z_2, z_3: where they are, and of which instance and primitive */
+#define SHIFT_INSTANCE 3u
+#define SHIFT_PRIMITIVE 4u
+#define SHIFT_POINT_WORDS 5u
+#define SHIFT_DENSITY 10u /* of both, per area; 0: the path cannot be shifted */
+#define SHIFT_WORDS 11u
 
 #define HALF_LIGHT 0x1u
 #define HALF_CAMERA 0x2u

@@ -91,7 +91,10 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
     from = chain_vertex_base(SIDE_CAMERA, camera);
     for (uint i = 0u; i < VERTEX_WORDS; ++i)
         state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
-    shift_density_set(vertices, stride, light, t, shift_density(vertices, stride, camera, t));
+    to = shift_base(light);
+    from = shift_base(camera);
+    for (uint i = 0u; i < SHIFT_WORDS; ++i)
+        state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
     chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? HALF_BOTH : 0u);
 }
 

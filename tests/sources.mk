@@ -33,6 +33,7 @@ check_PROGRAMS += \
 	tests/test_reference \
 	tests/test_render \
 	tests/test_scenes \
+	tests/test_shift \
 	tests/test_texture \
 	tests/test_verify
 if HAVE_OPENCL
