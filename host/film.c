@@ -175,7 +175,7 @@ static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
         if (from->counts[i] > 0)
             atomic_count_add(film->counts + i, from->counts[i]);
     }
-    if (film->depth_sums && from->depth_sums)
+    if (film->depth_kinds != 0u && from->depth_kinds != 0u)
         depths_add(film, from, pixels);
     atomic_sum_add(film->saturated, *from->saturated);
     atomic_sum_add(film->vanished, *from->vanished);
