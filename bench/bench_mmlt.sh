@@ -2,13 +2,13 @@
 # What sorting chains and grouping their mutations bring (Frolov 2018, tables 1 to 3): mutations per second without
 # either, with one, with both, and with both where chains are sorted by depth alone, of the published scheme and of
 # generations, on the CPU and on the first OpenCL device; then how often proposals of each kind are taken, by depth. Tab
-# separated, on standard output. Figures are medians of RUNS runs; the ways take turns, so that what else the machine does
-# meets all of them. Only chains count: neither pools nor direct light. usage: bench_mmlt.sh TWINLIGHT SCENE...
+# separated, on standard output. Figures are medians of RUNS rounds; in a round the ways take turns, so that what else the
+# machine does meets all of them. A gain is the median of the rounds' own, with their quartiles. Only chains count: neither pools nor direct light. usage: bench_mmlt.sh TWINLIGHT SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
 
-RUNS=${RUNS:-3}
+RUNS=${RUNS:-7}
 SECONDS_EACH=${SECONDS_EACH:-4}
 DEPTH=${DEPTH:-10}
 RESOLUTION=${RESOLUTION:-128x128}
@@ -31,15 +31,32 @@ run() {
         --stats="$folder/$run_name.$run.json" "$@" "$run_scene" 2>/dev/null
 }
 
-# rate NAME: median of mutations per second of chains
-rate() {
-    for file in "$folder/$1".*.json; do
-        echo "$(number mutations "$file") $(number chain_seconds "$file")"
-    done | awk '{ print $1 / $2 }' | median
+# rates NAME: mutations per second of chains, a line a round.
+rates() {
+    for rates_run in $(seq "$RUNS"); do
+        rates_file=$folder/$1.$rates_run.json
+        echo "$(number mutations "$rates_file") $(number chain_seconds "$rates_file")"
+    done | awk '{ print $1 / $2 }'
+}
+
+# row: the medians of the five ways, and what each of the last four gains over the first.
+row() {
+    for row_name in neither sorted grouped both depth; do
+        rates "$row_name" >"$folder/$row_name.rates"
+        printf '\t%.0f' "$(median <"$folder/$row_name.rates")"
+    done
+    for row_name in sorted grouped both depth; do
+        paste "$folder/neither.rates" "$folder/$row_name.rates" | awk '{ print 100 * ($2 / $1 - 1) }' | sort -g |
+            awk '{ v[NR] = $1 }
+                function at(q, place, low) { place = 1 + q * (NR - 1); low = int(place)
+                    return low == NR ? v[NR] : v[low] + (place - low) * (v[low + 1] - v[low]) }
+                END { printf "\t%+.0f %% (%+.0f ... %+.0f)", at(0.5), at(0.25), at(0.75) }'
+    done
+    echo
 }
 
 head_print
-printf '# setting\t%s segments, %s pixels, %s chains at most, %s s a run, median of %s runs\n' "$DEPTH" "$RESOLUTION" \
+printf '# setting\t%s segments, %s pixels, %s chains at most, %s s a run, median of %s rounds\n' "$DEPTH" "$RESOLUTION" \
     "$CHAINS" "$SECONDS_EACH" "$RUNS"
 printf 'scene\tbackend\tscheme\tneither\tsorted\tgrouped\tboth\tboth, by depth\t'
 printf 'gain of sorting\tgain of grouping\tgain of both\tgain of both, by depth\n'
@@ -62,12 +79,8 @@ for scene in "$@"; do
                     run depth "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --sort=depth
                 }
             done
-            echo "$(rate neither) $(rate sorted) $(rate grouped) $(rate both) $(rate depth)" |
-                awk -v head="$name	$backend	$scheme" '{
-                    printf "%s", head
-                    for (i = 1; i <= 5; ++i) printf "\t%.0f", $i
-                    for (i = 2; i <= 5; ++i) printf "\t%+.0f %%", 100 * ($i / $1 - 1)
-                    print "" }'
+            printf '%s\t%s\t%s' "$name" "$backend" "$scheme"
+            row
             # The acceptance of the last run, as the statistics have it: kind, depth, part.
             [ "$backend" = opencl ] || awk -v head="$name	$scheme" '
                 /"acceptance"/ { found = 1; next }
