@@ -358,10 +358,10 @@ static void *adversary_thread(void *argument)
     return NULL;
 }
 
-/* 10^7 rays; the long test 10^9, over a hundred times as many scenes. */
+/* 10^7 rays for each unit of effort up to 7; the long test 10^9, over a hundred times as many scenes. */
 START_TEST(test_adversary)
 {
-    uint rounds = test_effort() >= 8 ? 100 : 1;
+    uint rounds = test_effort() >= 8 ? 100 : test_effort();
     AdversaryThread total = {0};
     for (uint round = 0; round < rounds; ++round) {
         AdversaryThread shares[THREADS];
