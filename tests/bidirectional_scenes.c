@@ -167,6 +167,7 @@ void bidirectional_files_make(void)
     image_write("sun.pfm", 32, 0.05, 0.2, 32 * 14 + 13);
     image_write("wide_sun.pfm", 16, 0.05, 0.2, 16 * 7 + 6);
     image_write("bumps.pfm", 8, 0.0, 0.9, -1);
+    image_write("signs.pfm", 8, -3.0, 1.0, -1);
     normals_write();
 }
 

@@ -189,6 +189,46 @@ START_TEST(environment_maps)
 }
 END_TEST
 
+static void emission_not_negative(const char *text)
+{
+    Scene scene;
+    Vec3 emission = light_of(text, &scene).emission;
+    ck_assert_msg(emission.x >= 0.0f && emission.y >= 0.0f && emission.z >= 0.0f, "%s: %g %g %g", text,
+                  (double)emission.x, (double)emission.y, (double)emission.z);
+    scene_destroy(&scene);
+}
+
+/* Chains go after luminance (mutation.h): no light may have a channel below 0. Spectra whose colour is outside of the gamut
+ * of sRGB lose what is below 0, numbers below 0 are refused (tests/bad has those of a point light). */
+START_TEST(no_light_is_negative)
+{
+    static const char *const REFUSED[] = {
+        "LightSource \"spot\" \"rgb I\" [ 1 1 -1 ]",
+        "LightSource \"distant\" \"rgb L\" [ -1 1 1 ]",
+        "LightSource \"infinite\" \"rgb L\" [ 1 -1 1 ]",
+        "LightSource \"infinite\" \"float scale\" -1",
+        "LightSource \"point\" \"spectrum I\" [ 400 1 500 -1 600 1 ]",
+        "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 -1 ] " TRIANGLE,
+        "AreaLightSource \"diffuse\" \"float scale\" -1 " TRIANGLE,
+        "Attribute \"light\" \"rgb L\" [ 1 1 -1 ] LightSource \"infinite\"",
+    };
+    char text[256];
+    for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; ++i) {
+        snprintf(text, sizeof text, "WorldBegin\n%s", REFUSED[i]);
+        ck_assert_ptr_nonnull(strstr(import_error(text), "negative"));
+    }
+    for (int nanometre = 380; nanometre <= 720; nanometre += 10) {
+        snprintf(text, sizeof text, "LightSource \"point\" \"spectrum I\" [ %d 0 %d 1 %d 0 ]", nanometre - 5, nanometre,
+                 nanometre + 5);
+        emission_not_negative(text);
+    }
+    emission_not_negative("LightSource \"infinite\" \"blackbody L\" 400");
+    emission_not_negative("AreaLightSource \"diffuse\" \"blackbody L\" 1000 " TRIANGLE);
+    emission_not_negative("LightSource \"point\" \"float power\" -1");
+    emission_not_negative("LightSource \"distant\" \"float illuminance\" -1");
+}
+END_TEST
+
 TCase *import_lights_case(void)
 {
     TCase *tcase = tcase_create("lights");
@@ -201,5 +241,6 @@ TCase *import_lights_case(void)
     tcase_add_test(tcase, area_lights);
     tcase_add_test(tcase, light_attributes);
     tcase_add_test(tcase, environment_maps);
+    tcase_add_test(tcase, no_light_is_negative);
     return tcase;
 }

@@ -85,6 +85,44 @@ START_TEST(test_shown_lights)
 }
 END_TEST
 
+/* ---- signs ------------------------------------------------------------------------------------------------------- */
+
+/* A sky and reflectances that a file has below 0: of an image, a factor of -1, a mix that goes beyond. */
+static const char SIGNS[] = BD_BEGIN BD_LAMP
+    "AttributeBegin LightSource \"infinite\" \"string filename\" \"$FILES/signs.pfm\" AttributeEnd\n"
+    "Texture \"image\" \"spectrum\" \"imagemap\" \"string filename\" \"$FILES/signs.pfm\"\n"
+    "Texture \"factor\" \"spectrum\" \"scale\" \"texture tex\" \"image\" \"float scale\" -1\n"
+    "Texture \"mix\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0.5 0.2 0.9 ] \"texture tex2\" \"factor\" "
+    "\"float amount\" 2\n"
+    "Material \"diffuse\" \"texture reflectance\" \"mix\"\n" BD_FLOOR
+    "Material \"conductor\" \"texture eta\" \"mix\" \"texture k\" \"factor\" \"float roughness\" 0.3\n"
+    "AttributeBegin Translate -1 0 0 " BD_BALL "AttributeEnd\n"
+    "Material \"diffusetransmission\" \"texture reflectance\" \"factor\" \"texture transmittance\" \"mix\"\n"
+    "AttributeBegin Translate 1 0 0 " BD_BALL "AttributeEnd\n";
+
+/* Chains go after luminance, and what has none above 0 they cannot show, though pools and path tracing would. No path carries
+ * such a thing: lights and what surfaces reflect are nowhere below 0. */
+START_TEST(test_signs)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
+    const BidirectionalScene scene = {"signs", SIGNS, SUPPORT_SUM_ONLY, 5, 2};
+    for (int i = 0; i < 3; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {
+            .text = bidirectional_text(&scene), .samples = 4, .max_depth = 5, .integrator = integrators[i]};
+        double sum = 0.0;
+        fixture_render(&setup, &image);
+        for (int k = 0; k < 3 * 16 * 16; ++k) {
+            ck_assert_msg(image.rgb[k] >= 0.0f, "%s: value %d is %g", integrators[i]->name, k, (double)image.rgb[k]);
+            sum += (double)image.rgb[k];
+        }
+        ck_assert_double_gt(sum, 0.0);
+        ck_assert_uint_eq(image.film.not_finite, 0);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
 TCase *mmlt_shown_case(void)
 {
     TCase *tcase = tcase_create("shown");
@@ -92,5 +130,6 @@ TCase *mmlt_shown_case(void)
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
     tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * BLEND_STREAMS);
     tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * BLEND_STREAMS);
+    tcase_add_test(tcase, test_signs);
     return tcase;
 }
