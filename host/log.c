@@ -7,6 +7,7 @@
 
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
 static LogLevel log_level = LOG_INFO;
+static bool log_muted;
 static unsigned long log_warnings;
 static void (*log_sink)(const char *line, void *context);
 static void *log_sink_context;
@@ -17,6 +18,13 @@ void log_level_set(LogLevel level)
 {
     pthread_mutex_lock(&log_mutex);
     log_level = level;
+    pthread_mutex_unlock(&log_mutex);
+}
+
+void log_mute(bool mute)
+{
+    pthread_mutex_lock(&log_mutex);
+    log_muted = mute;
     pthread_mutex_unlock(&log_mutex);
 }
 
@@ -42,9 +50,9 @@ static void log_write(LogLevel level, const char *where, const char *text)
     snprintf(line, sizeof line, "%s%s: %s", where, LEVEL_NAMES[level], text);
     text_make_printable(line);
     pthread_mutex_lock(&log_mutex);
-    if (level == LOG_WARNING)
+    if (level == LOG_WARNING && !log_muted)
         ++log_warnings;
-    if (level <= log_level) {
+    if (level <= log_level && !log_muted) {
         if (log_sink)
             log_sink(line, log_sink_context);
         else

@@ -12,6 +12,9 @@ typedef enum LogLevel {
 /* Messages above `level` are dropped. Default LOG_INFO. */
 void log_level_set(LogLevel level);
 
+/* Drops all messages, uncounted, while `mute` holds: what is read a second time has been spoken of. */
+void log_mute(bool mute);
+
 /* "warning: ...", "info: ..." */
 void log_message(LogLevel level, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

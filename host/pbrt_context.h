@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_PBRT_CONTEXT_H
 #define TWINLIGHT_PBRT_CONTEXT_H
 
+#include "box.h"
 #include "matrix.h"
 #include "name_table.h"
 #include "pbrt_import.h"
@@ -86,6 +87,7 @@ typedef struct ImportObject {
     uint object; /* of the scene */
     bool empty; /* nothing but emissive shapes */
     EmissiveShape *emissive, *last_emissive; /* in the order of the file */
+    Box box; /* of the others */
 } ImportObject;
 
 /* A file being read, or the text that pbrt_import_text was given. */
@@ -102,6 +104,8 @@ typedef struct PbrtImport {
     Scene *scene;
     ImportOptions options;
     Error *error;
+    Vec3 offset; /* taken off all places in the world before they are rounded (scene_center.h); first 0 */
+    Box world; /* of all shapes there, less the offset */
     Arena arena; /* names, textures, area lights: until the import ends */
     const char *directory;
 
@@ -151,10 +155,13 @@ bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const c
 /* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
 bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
 
+/* A transform to the world of the file becomes one to that of the scene, which lies elsewhere by im->offset. */
+void import_matrix_move(const PbrtImport *im, Matrix *matrix);
+
 /* The inverse of a transform. A singular one is an error, and one that does not fit a float. */
 bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
 
-/* Both of the above. */
+/* The transform to the scene's world and its inverse. Of the camera, before WorldBegin, nothing is moved. */
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
 
 /* A file name of the scene as a path: as it is when absolute, else inside the scene's directory. NULL on no memory. */

@@ -5,6 +5,7 @@
 #include "pbrt_directives.h"
 #include "pbrt_parser.h"
 #include "pbrt_state.h"
+#include "scene_center.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -45,6 +46,13 @@ bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
                               "everything stays where it is at StartTime", NULL);
 }
 
+void import_matrix_move(const PbrtImport *im, Matrix *matrix)
+{
+    matrix->m[3] -= (double)im->offset.x;
+    matrix->m[7] -= (double)im->offset.y;
+    matrix->m[11] -= (double)im->offset.z;
+}
+
 bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse)
 {
     if (!matrix_inverse(matrix, inverse)) {
@@ -59,7 +67,11 @@ bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Mat
 
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
 {
-    return import_ctm(im, place, ctm) && import_inverse(im, place, ctm, inverse);
+    if (!import_ctm(im, place, ctm))
+        return false;
+    if (im->in_world)
+        import_matrix_move(im, ctm);
+    return import_inverse(im, place, ctm, inverse);
 }
 
 const char *import_path(PbrtImport *im, const char *name)
@@ -91,6 +103,7 @@ static void import_init(PbrtImport *im, const ImportOptions *options, Scene *sce
     im->directory = "";
     param_buffer_init(&im->params);
     state_init(&im->state);
+    im->world = box_empty();
     array_init(&im->saved, sizeof(StateSave));
     name_table_init(&im->coordinate_systems);
     array_init(&im->coordinate_matrices, sizeof(Matrix));
@@ -133,38 +146,72 @@ static void counts_report(const Scene *scene)
         log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
 }
 
-static bool import_read(PbrtImport *im)
+/* A scene file, or (text) one in memory. */
+typedef struct ImportSource {
+    const char *path, *text;
+    size_t length;
+    const char *name, *directory; /* of a text */
+} ImportSource;
+
+static bool source_open(PbrtImport *im, const ImportSource *source)
 {
-    if (!directives_read(im))
+    if (source->text) {
+        TextWindow window;
+        im->directory = source->directory;
+        text_window_from_memory(&window, source->text, source->length);
+        return parser_open_text(im, &window, source->name);
+    }
+    const char *slash = strrchr(source->path, '/');
+    size_t length = slash ? (size_t)(slash - source->path) + 1 : 0;
+    im->directory = arena_text(&im->arena, source->path, length, im->error);
+    return im->directory && parser_open_file(im, source->path, (SourcePlace){0}, false);
+}
+
+/* Reads it less *offset. *offset becomes what is to be taken off it yet. */
+static bool source_read(const ImportSource *source, const ImportOptions *options, Vec3 *offset, Scene *scene,
+                        Error *error)
+{
+    PbrtImport im;
+    import_init(&im, options, scene, error);
+    im.offset = scene->origin = *offset;
+    bool good = source_open(&im, source) && directives_read(&im);
+    camera_move(&scene->camera_settings, im.offset);
+    scene->movable = true;
+    *offset = good && !box_is_empty(&im.world) ? scene_center_offset(&im.world) : vec3_splat(0.0f);
+    import_destroy(&im);
+    return good;
+}
+
+/* Where a world lies is known when all of it is read. One that is far away is read again, and nothing said twice. */
+static bool source_import(const ImportSource *source, const ImportOptions *options, Scene *scene, Error *error)
+{
+    Vec3 offset = vec3_splat(0.0f);
+    if (!source_read(source, options, &offset, scene, error))
         return false;
-    counts_report(im->scene);
-    im->scene->movable = true;
+    if (!vec3_is_zero(offset)) {
+        scene_destroy(scene);
+        scene_init(scene);
+        log_mute(true);
+        bool good = source_read(source, options, &offset, scene, error);
+        log_mute(false);
+        if (!good)
+            return false;
+    }
+    counts_report(scene);
     return true;
 }
 
 bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error)
 {
-    PbrtImport im;
-    import_init(&im, options, scene, error);
-    const char *slash = strrchr(path, '/');
-    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
-    im.directory = arena_text(&im.arena, path, length, error);
-    bool good = im.directory && parser_open_file(&im, path, (SourcePlace){0}, false) && import_read(&im);
-    import_destroy(&im);
-    return good;
+    const ImportSource source = {.path = path};
+    return source_import(&source, options, scene, error);
 }
 
 bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
                       const ImportOptions *options, Scene *scene, Error *error)
 {
-    PbrtImport im;
-    import_init(&im, options, scene, error);
-    im.directory = directory;
-    TextWindow window;
-    text_window_from_memory(&window, text, length);
-    bool good = parser_open_text(&im, &window, name) && import_read(&im);
-    import_destroy(&im);
-    return good;
+    const ImportSource source = {.text = text, .length = length, .name = name, .directory = directory};
+    return source_import(&source, options, scene, error);
 }
 
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)

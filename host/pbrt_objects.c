@@ -20,6 +20,7 @@ bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_plac
     if (!object || !scene_object_begin(im->scene, &object->object, im->error) ||
         !name_table_add(&im->objects, kept, index, im->error))
         return false;
+    object->box = box_empty();
     im->open_object = (int)index;
     im->object_first_primitive = im->scene->primitives.count;
     return state_push(im, "ObjectBegin");
@@ -55,5 +56,9 @@ bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_p
     for (const EmissiveShape *shape = object->emissive; shape; shape = shape->next)
         if (!emissive_shape_add(im, shape, &ctm))
             return false;
+    if (!box_is_empty(&object->box)) {
+        Box placed = box_transform(&object->box, matrix_affine(ctm.m));
+        box_join(&im->world, &placed);
+    }
     return object->empty || scene_add_instance(im->scene, object->object, ctm.m, inverse.m, im->error);
 }

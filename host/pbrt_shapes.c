@@ -90,9 +90,18 @@ static bool emissive_keep(PbrtImport *im, EmissiveShape shape)
     return true;
 }
 
+/* Of the space that shapes are added to now: the world or an object definition. */
+static Box *space_box(PbrtImport *im)
+{
+    return im->open_object < 0 ? &im->world : &ARRAY_AT(&im->object_definitions, ImportObject, im->open_object).box;
+}
+
 /* Adds a mesh that is in its final space. */
 static bool mesh_emit(PbrtImport *im, uint kind, const MeshData *mesh, Shape shape, const AreaEmission *emission)
 {
+    Box *box = space_box(im);
+    for (size_t i = 0; i < mesh->vertex_count; ++i)
+        box_add(box, vec3(mesh->positions[3 * i], mesh->positions[3 * i + 1], mesh->positions[3 * i + 2]));
     size_t first_light = im->scene->lights.count;
     const float *radiance = emission ? emission->radiance : NULL;
     uint flags = emission ? emission->flags : 0u;
@@ -144,6 +153,8 @@ static bool quadric_emit(PbrtImport *im, uint kind, const Quadric *quadric, cons
         !scene_add_quadric(im->scene, kind, *quadric, matrix->m, inverse->m, shape,
                            emission ? emission->radiance : NULL, emission ? emission->flags : 0u, im->error))
         return false;
+    Box box = quadric_box(&ARRAY_AT(&im->scene->quadrics, Quadric, im->scene->quadrics.count - 1), kind);
+    box_join(space_box(im), &box);
     if (emission)
         power_apply(im->scene, first_light, emission);
     return true;
@@ -291,6 +302,8 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
     *context = (ShapeContext){.place = im->place};
     if (!import_ctm(im, im->place, &context->ctm) || !value_material(im, &context->shape.material))
         return false;
+    if (im->open_object < 0)
+        import_matrix_move(im, &context->ctm);
     context->invisible = context->shape.material == MATERIAL_INTERFACE;
     context->has_inverse = matrix_inverse(&context->ctm, &context->inverse);
     bool reverse = im->state.reverse_orientation;

@@ -75,6 +75,7 @@ typedef struct Scene {
     Array lookup; /* float */
     Array texels; /* uint */
 
+    Vec3 origin; /* of the scene's coordinates in those of the file: what the importer has taken off */
     bool movable; /* nobody keeps coordinates of it: scene_finish may move it (scene_center.h) */
     Array shape_objects; /* uint: the object of every shape */
     uint current_object;

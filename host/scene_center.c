@@ -1,7 +1,8 @@
 /* Coordinates around c are c 2^-23 apart, so that edges, distances and the origins of rays lose as many bits as c is
  * larger than the scene. Less a number within a factor of two, floats lose nothing (P. H. Sterbenz, "Floating-Point
  * Computation", 1974): a scene that is moved to the origin is the same to the last bit, and its differences are not
- * rounded any more. */
+ * rounded any more. What transforms in double have put there need not be rounded so far away at all: the importer knows
+ * where a world lies when it has read it, and reads it again (pbrt_import.c). */
 #include "scene_center.h"
 
 #include "matrix.h"
@@ -11,7 +12,7 @@
 /* How many times its half extent a world must be away. Then every coordinate is within a factor of two of the centre. */
 #define FAR_EXTENTS 8.0f
 
-static Vec3 box_offset(const Box *world)
+Vec3 scene_center_offset(const Box *world)
 {
     float center[3], half = 0.0f;
     for (int i = 0; i < 3; ++i) {
@@ -82,7 +83,7 @@ static void quadrics_move(Scene *scene, Vec3 offset)
     }
 }
 
-static void camera_move(CameraSettings *camera, Vec3 offset)
+void camera_move(CameraSettings *camera, Vec3 offset)
 {
     const double c[3] = {(double)offset.x, (double)offset.y, (double)offset.z};
     for (int i = 0; i < 3; ++i) {
@@ -94,7 +95,7 @@ static void camera_move(CameraSettings *camera, Vec3 offset)
 
 bool scene_center(Scene *scene, const Box *world)
 {
-    Vec3 offset = box_offset(world);
+    Vec3 offset = scene_center_offset(world);
     if (offset.x == 0.0f && offset.y == 0.0f && offset.z == 0.0f)
         return false;
     vertices_move(scene, offset);

@@ -140,8 +140,11 @@ static bool scene_bounds(Scene *scene, Error *error)
     float largest = 0.0f;
     if (!world_box(scene, &world, &largest, error))
         return false;
-    memcpy(scene->bounds_min, world.low, sizeof world.low);
-    memcpy(scene->bounds_max, world.high, sizeof world.high);
+    const float origin[3] = {scene->origin.x, scene->origin.y, scene->origin.z};
+    for (int i = 0; i < 3; ++i) {
+        scene->bounds_min[i] = world.low[i] + origin[i];
+        scene->bounds_max[i] = world.high[i] + origin[i];
+    }
     if (scene->movable && scene_center(scene, &world)) {
         largest = 0.0f;
         if (!world_box(scene, &world, &largest, error))

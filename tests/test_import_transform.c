@@ -72,7 +72,7 @@ START_TEST(look_at_is_left_handed)
 }
 END_TEST
 
-/* Where (0,0,0), (1,0,0) and (0,1,0) land after the directives. */
+/* Where (0,0,0), (1,0,0) and (0,1,0) land after the directives, in coordinates of the file. */
 static void triangle_positions(const char *directives, Vec3 out[3])
 {
     char text[1024];
@@ -80,9 +80,44 @@ static void triangle_positions(const char *directives, Vec3 out[3])
     snprintf(text, sizeof text, "%s Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]", directives);
     import_world(text, &scene);
     ck_assert_uint_eq(scene.positions.count, 3);
-    memcpy(out, scene.positions.data, 3 * sizeof *out);
+    for (size_t i = 0; i < 3; ++i)
+        out[i] = vec3_add(ELEMENT(&scene, positions, Vec3, i), scene.origin);
     scene_destroy(&scene);
 }
+
+/* A world far away is moved before its points are rounded, and nothing is said twice. */
+START_TEST(far_world_is_moved)
+{
+    Scene scene;
+    Error error = {{0}, {0}};
+    import_text(
+        "LookAt 100000 0 -4 100000 0 0 0 1 0 Camera \"perspective\" WorldBegin Translate 100000 0 0\n"
+        "LightSource \"point\" \"point3 from\" [ 0.001 0.5 0.5 ]\n"
+        "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\"\n"
+        "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 0.001 1 0 1 -1 0 ] \"integer indices\" [ 0 1 2 1 1 3 ]\n"
+        "Shape \"sphere\" \"float radius\" 0.5\nIdentity ObjectBegin \"o\" Shape \"disk\" ObjectEnd\n"
+        "Translate 100000 0 0 Translate 0.001 0 0 ObjectInstance \"o\"",
+        &scene);
+    const char *log = import_log(), *said = strstr(log, "of no area");
+    ck_assert_ptr_nonnull(said);
+    ck_assert_ptr_null(strstr(said + 1, "of no area"));
+    ck_assert_uint_eq(scene.counts.degenerate_triangles, 1);
+    assert_vec3(scene.origin, 100000, 0, 0, 0.0f);
+    assert_vec3(ELEMENT(&scene, positions, Vec3, 2), 0.001f, 1, 0, 1e-9f);
+    assert_vec3(ELEMENT(&scene, lights, Light, 0).position, 0.001f, 0.5f, 0.5f, 1e-9f);
+    assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 0, 0, 0, 0.0f);
+    ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 1).center.x, 0.0f); /* of the object, which is where it was */
+    ASSERT_NEAR(ELEMENT(&scene, instances, Instance, 0).world_from_object.m[3], 0.001f, 1e-9f);
+    ASSERT_FLOAT(ELEMENT(&scene, texture_ops, TextureOp, 2).texture_from_world.m[3], 0.0f);
+    ck_assert_double_eq(scene.camera_settings.world_from_camera[3], 0.0);
+    ck_assert_double_eq(scene.camera_settings.camera_from_world[3], 0.0);
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    ASSERT_FLOAT(scene.bounds_min[0], 99999.0f);
+    ASSERT_FLOAT(scene.bounds_max[0], 100001.0f);
+    scene_destroy(&scene);
+}
+END_TEST
 
 START_TEST(directives_compose)
 {
@@ -162,6 +197,7 @@ TCase *import_transform_case(void)
     tcase_add_test(tcase, rotation_axes);
     tcase_add_test(tcase, inverses);
     tcase_add_test(tcase, look_at_is_left_handed);
+    tcase_add_test(tcase, far_world_is_moved);
     tcase_add_test(tcase, directives_compose);
     tcase_add_test(tcase, camera_transform);
     tcase_add_test(tcase, world_begin_resets);

@@ -14,10 +14,10 @@ typedef struct Placement {
 } Placement;
 
 /* The seed is the same, so only paths whose rounding decides something, a hit or a lobe, differ at all: nothing for a
- * power of two. 10^4 away the vertices of the mesh are rounded to 10^-3 when they are read. */
+ * power of two. */
 static const Placement PLACEMENTS[] = {{1.0, 0.0, 0.0, 0.0},    {1.0 / 1024.0, 0.0, 0.0, 0.0}, {1e-3, 0.0, 1e-6, 1e-3},
                                        {37.0, 0.0, 1e-6, 1e-3}, {1e4, 0.0, 1e-6, 1e-3},        {1.0, 100.0, 1e-6, 1e-3},
-                                       {1.0, 1e4, 1e-4, 5e-3}};
+                                       {1.0, 1e4, 1e-6, 1e-3}};
 #define PLACEMENT_COUNT ((int)(sizeof PLACEMENTS / sizeof PLACEMENTS[0]))
 
 /* Glass, a mesh with normals, a lamp, a floor. */
@@ -146,6 +146,56 @@ START_TEST(test_moved)
 }
 END_TEST
 
+/* A lamp that hangs 0.005 under a ceiling, less than floats resolve 10^5 away: points are moved before they are rounded.
+ * What the file has are the numbers of a room at the origin, and a transform. */
+static const char *ceiling_text(double shift)
+{
+    static char text[2048];
+    double x = shift, y = -2.0 * shift;
+    snprintf(
+        text, sizeof text,
+        "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nPixelFilter \"box\"\n"
+        "LookAt %.17g %.17g %.17g  %.17g %.17g %.17g  0 1 0\nCamera \"perspective\" \"float fov\" "
+        "50\nWorldBegin\n" BD_GREY
+        "ObjectBegin \"ball\" Shape \"sphere\" \"float radius\" 0.3 ObjectEnd\nTranslate %.17g %.17g %.17g\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -2 0 -2  2 0 -2  -2 0 2  2 0 2 ]\n"
+        "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 1 3 2 ]\n"
+        "\"point3 P\" [ -2 2.7 -2  2 2.7 -2  -2 2.7 2  2 2.7 2 ]\n"
+        "AttributeBegin Translate 0.8 0.303 0.4 ObjectInstance \"ball\" AttributeEnd\n"
+        "AttributeBegin Translate -0.9 0.005 0.3 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.4 AttributeEnd\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [ 9 9 9 ] \"bool twosided\" true\n"
+        "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 1 3 2 ]\n"
+        "\"point3 P\" [ -0.4 2.695 -0.4  0.4 2.695 -0.4  -0.4 2.695 0.4  0.4 2.695 0.4 ]\n",
+        x, 1.25 + y, -4.0 + x, x, 1.25 + y, x, x, y, x);
+    return text;
+}
+
+START_TEST(test_rounded_once)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt()};
+    static const double SHIFTS[] = {0.0, 1e4, 1e5, 1e6};
+    RenderedImage first, image;
+    for (int i = 0; i < 4; ++i) {
+        Metrics metrics;
+        Error error = {0};
+        RenderSetup setup = {
+            .text = ceiling_text(SHIFTS[i]), .samples = 64, .max_depth = 5, .integrator = integrators[_i]};
+        fixture_render(&setup, &image);
+        if (i == 0) {
+            first = image;
+            continue;
+        }
+        ck_assert(metrics_compute(image.rgb, first.rgb, 16, 16, 4, &metrics, &error));
+        printf("%s, under a ceiling %g away: relMSE %.3g, worst block %.3g\n", integrators[_i]->name, SHIFTS[i],
+               metrics.rel_mse, metrics.block_max);
+        ck_assert_double_le(metrics.rel_mse, 1e-6);
+        ck_assert_double_le(metrics.block_max, 1e-3);
+        fixture_destroy(&image);
+    }
+    fixture_destroy(&first);
+}
+END_TEST
+
 /* ---- two surfaces in one place ----------------------------------------------------------------------------------- */
 
 /* Everywhere the first of the two is met, for any number of threads: the same sums, and no trace of the other's colour.
@@ -258,6 +308,7 @@ TCase *numerics_scale_case(void)
     tcase_set_timeout(tcase, 300);
     tcase_add_loop_test(tcase, test_placements, 0, 2);
     tcase_add_loop_test(tcase, test_moved, 0, 2);
+    tcase_add_loop_test(tcase, test_rounded_once, 0, 2);
     tcase_add_loop_test(tcase, test_far, 0, 3);
     tcase_add_test(tcase, test_coincident);
     tcase_add_test(tcase, test_sun_scaled);
