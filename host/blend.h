@@ -4,8 +4,9 @@
  *
  * Each tile of the picture takes a share of every stream, in inverse proportion to its variance (Graybill and Deal 1959),
  * which is estimated from the generations before: a share that depends on nothing of the generation it is applied to
- * leaves the mean right. A path that carries more than a limit is a bright dot where a pool or path tracing has met it by
- * chance; each shows as much of it as the limit, and the rest is left to the chains, which come by many of its like. What it
+ * leaves the mean of that one right, where its chains are new. The blend of all is consistent.
+ *
+ * A path that carries more than a limit is a bright dot where a pool or path tracing has met it by chance; each shows as much of it as the limit, and the rest is left to the chains, which come by many of its like. What it
  * carries depends on how probable it is that the stream makes it, so both leave different parts. The same variances say how
  * the time is divided. */
 #ifndef TWINLIGHT_BLEND_H

@@ -2,8 +2,9 @@
  * segments by path tracing, longer ones by Markov chains.
  *
  * In generations: a pool of independent bidirectional samples, from it chains drawn in proportion to what the samples are
- * worth, some steps of each, and again. The mean of all generations is right whatever their number and length, for
- * chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). */
+ * worth, some steps of each, and again. The mean of a generation's chains is right whatever their number and length, for
+ * chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). Sizes, shares, limits and
+ * importance of a generation follow from earlier ones, and the picture is a ratio of sums over all: it is consistent. */
 #include "mmlt.h"
 
 #include "bd_fields.h"

@@ -18,8 +18,9 @@
 #define POOL_PER_STEP (1.0 / 12.0)
 
 /* Even generations and odd ones are two renderings that know of each other only what they have found out about the scene:
- * shares, plans and limits of one follow from what the other has seen. So neither weighs its own errors, which its chains
- * carry on from one generation to the next, and the images of both can be compared. */
+ * shares, plans and limits of one follow from what the other has seen. So neither weighs its own errors directly, which its
+ * chains carry on from one generation to the next, and the images of both can be compared. By way of the other its past
+ * does have a part in its shares, so a picture is consistent but not unbiased. */
 #define MMLT_HALVES 2
 
 typedef struct Mmlt {
