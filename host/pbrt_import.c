@@ -155,7 +155,7 @@ typedef struct ImportSource {
 
 static bool source_open(PbrtImport *im, const ImportSource *source)
 {
-    if (source->text) {
+    if (!source->path) {
         TextWindow window;
         im->directory = source->directory;
         text_window_from_memory(&window, source->text, source->length);
