@@ -27,8 +27,8 @@ typedef struct InstanceBounds {
 /* Room for the rounding of these figures themselves. */
 #define INSTANCE_SLACK 1.001
 
-/* Boxes no float hierarchy refuses. */
-#define INSTANCE_BOX_MAX 1e18
+/* Of a box, and of its margin: Embree leaves out boxes that reach further than 1.844e18. */
+#define INSTANCE_BOX_MAX 0.9e18
 
 /* Row-major inverse of the upper left 3x3 part of a; false when it has none. */
 static inline bool instance_invert(const Affine *a, double out[9])
