@@ -63,8 +63,8 @@ static inline void instance_image(const Affine *a, const double inverse[9], cons
                                   double low[3], double high[3])
 {
     for (int i = 0; i < 3; ++i) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
+        low[i] = (double)INFINITY;
+        high[i] = (double)-INFINITY;
     }
     for (int corner = 0; corner < 8; ++corner) {
         double p[3];
