@@ -255,8 +255,9 @@ static void backend_cpu_statistics(Backend *backend, BackendStatistics *statisti
     cpu_name(statistics->device, sizeof statistics->device);
 }
 
-static size_t backend_cpu_devices(BackendDevice *devices, size_t capacity)
+static size_t backend_cpu_devices(BackendDevice *devices, size_t capacity, bool probe_all)
 {
+    (void)probe_all; /* it is what others are compared with */
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE), units = sysconf(_SC_NPROCESSORS_ONLN);
     if (capacity < 1)
         return 1;
@@ -268,7 +269,8 @@ static size_t backend_cpu_devices(BackendDevice *devices, size_t capacity)
     devices->memory = pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page : 0;
     devices->allocation_limit = devices->memory;
     devices->units = units > 0 ? (unsigned)units : 1u;
-    devices->rounds_division = devices->keeps_denormals = devices->atomics64 = devices->same_bits = true;
+    devices->promises_division = devices->rounds_division = true;
+    devices->keeps_denormals = devices->atomics64 = devices->same_bits = true;
     return 1;
 }
 

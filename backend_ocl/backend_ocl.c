@@ -53,11 +53,14 @@ static bool queues_make(Backend *backend, Error *error)
     return status == CL_SUCCESS || ocl_fail(error, name, "making a queue", status);
 }
 
-static void promise_warn(const OclDevice *device)
+/* A driver's promise is taken; where there is none, a probe says what the device does. */
+static void rounding_ask(OclDevice *device)
 {
     const BackendDevice *info = &device->info;
+    if (!info->promises_division)
+        ocl_device_probe(device, false);
     if (!info->same_bits)
-        log_message(LOG_WARNING, "%s does not promise %s%s%s: the image may differ from the CPU's in the last bits",
+        log_message(LOG_WARNING, "%s does not have %s%s%s: the image may differ from the CPU's in the last bits",
                     info->name, info->rounds_division ? "" : "correctly rounded division and square roots",
                     !info->rounds_division && !info->keeps_denormals ? ", nor " : "",
                     info->keeps_denormals ? "" : "denormal numbers");
@@ -107,7 +110,7 @@ static bool backend_build(Backend *backend, const BackendScene *scene, const Bac
         (options->film_on_device && !device_film_check(&backend->device, error)))
         return false;
     backend->film_on_device = options->film_on_device;
-    promise_warn(&backend->device);
+    rounding_ask(&backend->device);
     backend->adder_count = adder_count(options);
     backend->slots = environment_is("TWINLIGHT_OVERLAP", "0") ? 1 : BATCH_SLOTS;
     if (!timeline_init(&backend->timeline, options->record_spans, error) || !queues_make(backend, error))

@@ -1,5 +1,8 @@
 #include "devices.h"
 
+#include "log.h"
+#include "rounding_probe.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,12 +52,20 @@ static const char *device_kind(cl_device_id id)
 
 /* Kernels use nothing but + - * / sqrt in single precision (NUMERICS): with these correctly rounded and denormals kept,
  * every device computes what the CPU computes. */
-static void device_promises(cl_device_id id, BackendDevice *info)
+static bool device_same_bits(const OclDevice *device)
 {
+    return device->info.rounds_division && device->info.keeps_denormals && device->rounds_to_nearest;
+}
+
+static void device_promises(cl_device_id id, OclDevice *device)
+{
+    BackendDevice *info = &device->info;
     cl_ulong config = device_number(id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof(cl_device_fp_config));
-    info->rounds_division = (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    info->promises_division = (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    info->rounds_division = info->promises_division;
     info->keeps_denormals = (config & CL_FP_DENORM) != 0;
-    info->same_bits = info->rounds_division && info->keeps_denormals && (config & CL_FP_ROUND_TO_NEAREST) != 0;
+    device->rounds_to_nearest = (config & CL_FP_ROUND_TO_NEAREST) != 0;
+    info->same_bits = device_same_bits(device);
     info->atomics64 = device_has_extension(id, "cl_khr_int64_base_atomics");
 }
 
@@ -76,7 +87,7 @@ static void device_describe(cl_platform_id platform, OclDevice *device)
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof device->group_limit, &device->group_limit, NULL);
     /* PoCL. Asked for a program's binary it would build every kernel of it, most of which no rendering uses. */
     device->keeps_programs = strcmp(info->platform, "Portable Computing Language") == 0;
-    device_promises(id, info);
+    device_promises(id, device);
 }
 
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
@@ -105,12 +116,34 @@ size_t ocl_devices_find(OclDevice *devices, size_t capacity)
     return found;
 }
 
-size_t ocl_devices_list(BackendDevice *devices, size_t capacity)
+void ocl_device_probe(OclDevice *device, bool anew)
+{
+    BackendDevice *info = &device->info;
+    RoundingProbe probe;
+    Error error = {0};
+    if (!rounding_probe_run(device, anew, &probe, &error)) {
+        log_message(LOG_WARNING, "divisions and square roots of %s cannot be probed: %s", info->name,
+                    error_text(&error));
+        return;
+    }
+    info->probed = probe.compared;
+    info->rounds_division = probe.wrong == 0;
+    info->same_bits = device_same_bits(device);
+    if (info->promises_division && probe.wrong > 0)
+        log_message(LOG_WARNING,
+                    "%s promises correctly rounded division and square roots, but %llu of %llu are not; %s", info->name,
+                    (unsigned long long)probe.wrong, (unsigned long long)probe.compared, probe.first);
+}
+
+size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all)
 {
     OclDevice *all = calloc(OCL_DEVICES_MAX, sizeof *all);
     size_t count = all ? ocl_devices_find(all, OCL_DEVICES_MAX) : 0;
-    for (size_t i = 0; i < count && i < capacity; ++i)
+    for (size_t i = 0; i < count && i < capacity; ++i) {
+        if (probe_all || !all[i].info.promises_division)
+            ocl_device_probe(&all[i], probe_all);
         devices[i] = all[i].info;
+    }
     free(all);
     return count;
 }

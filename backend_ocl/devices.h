@@ -12,6 +12,7 @@ typedef struct OclDevice {
     cl_platform_id platform;
     cl_device_id id;
     BackendDevice info;
+    bool rounds_to_nearest;
     size_t group_limit; /* work-items of the largest work-group */
     bool keeps_programs; /* its driver has a cache of its own, and builds a kernel when that is first used */
     size_t index; /* what --device counts */
@@ -21,8 +22,12 @@ typedef struct OclDevice {
  * filled. */
 size_t ocl_devices_find(OclDevice *devices, size_t capacity);
 
+/* Replaces what the driver promises of division and square roots by what a probe finds (rounding_probe.h), with a warning
+ * where it is less. A probe takes a fraction of a second; unless `anew`, what an earlier one found is taken. */
+void ocl_device_probe(OclDevice *device, bool anew);
+
 /* The interface's list (backend.h). */
-size_t ocl_devices_list(BackendDevice *devices, size_t capacity);
+size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all);
 
 /* The device that --device=`choice` means: a number, or a part of the name in any case that fits one device; NULL: the
  * first. Otherwise an error that lists the devices. */

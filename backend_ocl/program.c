@@ -21,10 +21,10 @@ const char *ocl_kernel_name(unsigned kernel)
 
 /* No option here lets a device compute other bits: what OpenCL calls fast is all off by default, and fused products are
  * switched off in platform.h. */
-static void options_make(const OclDevice *device, uint features, char *options, size_t size)
+void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size)
 {
     snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,
-             device->info.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+             device->info.promises_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
 /* Nanoseconds: a driver that takes longer to make a program did not have it in its cache. */
@@ -154,12 +154,12 @@ static void save_to_cache(const OclProgram *program, CacheKey key)
 
 bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error)
 {
-    char options[160];
+    char options[OCL_OPTIONS_SIZE];
     const char *folder = program_source_folder();
     memset(program, 0, sizeof *program);
     program->context = context;
     program->device = device;
-    options_make(device, features, options, sizeof options);
+    ocl_program_options(device, features, options, sizeof options);
     char *source = program_source_read(folder, "kernels.cl", error);
     if (!source)
         return false;

@@ -18,6 +18,12 @@ typedef struct OclProgram {
     bool cached; /* it came from Twinlight's cache (program_cache.h) */
 } OclProgram;
 
+#define OCL_OPTIONS_SIZE 160
+
+/* The options of a build. A driver refuses the one that asks for correctly rounded division where it does not promise
+ * that. */
+void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size);
+
 /* Builds the kernels for scenes with these features (FEATURE_*). `context` and `device` are borrowed. On failure the
  * error holds the compiler's first message and the log has all of them. */
 bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error);

@@ -15,6 +15,7 @@ libtwinlight_ocl_la_SOURCES = \
 	backend_ocl/program.c backend_ocl/program.h \
 	backend_ocl/program_cache.c backend_ocl/program_cache.h \
 	backend_ocl/program_source.c backend_ocl/program_source.h \
+	backend_ocl/rounding_probe.c backend_ocl/rounding_probe.h \
 	backend_ocl/timeline.c backend_ocl/timeline.h
 libtwinlight_ocl_la_CPPFLAGS = $(AM_CPPFLAGS) -DKERNELS_INSTALLED='"$(shareddir)"' \
 	-DKERNELS_BUILD='"$(abs_top_srcdir)/shared"' -DPROGRAM_FOLDER='"$(bindir)"'

@@ -108,10 +108,12 @@ typedef struct BackendDevice {
     uint64_t memory; /* bytes */
     uint64_t allocation_limit; /* bytes of the largest single buffer */
     unsigned units;
-    bool rounds_division; /* division and square root are correctly rounded */
+    bool promises_division; /* says that division and square root are correctly rounded */
+    bool rounds_division; /* they are: by the probe, or as promised where there was none */
+    uint64_t probed; /* divisions and roots that were compared with the host's; 0: there was no probe */
     bool keeps_denormals;
     bool atomics64;
-    bool same_bits; /* the image of the CPU backend, bit for bit, is promised */
+    bool same_bits; /* the image of the CPU backend, bit for bit, is to be expected */
 } BackendDevice;
 
 /* Something that took time while rendering. */
@@ -156,8 +158,9 @@ typedef struct Backend Backend;
 /* Functions named "may be NULL" are of backends that have such a thing. */
 typedef struct BackendInterface {
     const char *name;
-    /* Fills up to `capacity` devices and returns how many there are; --device counts them in this order. */
-    size_t (*devices)(BackendDevice *devices, size_t capacity);
+    /* Fills up to `capacity` devices and returns how many there are; --device counts them in this order. Those that do
+     * not promise correctly rounded division are probed, or were once; all of them, and now, where `probe_all`. */
+    size_t (*devices)(BackendDevice *devices, size_t capacity, bool probe_all);
     /* Which of `devices` BackendOptions.device means; false with an error when it fits none or several. NULL for
      * backends without a choice of devices. */
     bool (*device_index)(const char *device, size_t *index, Error *error);

@@ -74,12 +74,12 @@ static bool devices_add(BackendChoices *choices, const BackendInterface *interfa
 static bool all_devices_add(BackendChoices *choices, const BackendInterface *interface, Error *error)
 {
     static BackendDevice devices[DEVICES_MAX];
-    size_t found = interface->devices ? interface->devices(devices, DEVICES_MAX) : 0;
+    size_t found = interface->devices ? interface->devices(devices, DEVICES_MAX, false) : 0;
     for (size_t i = 0; i < found; ++i) {
         char number[24];
         int length = snprintf(number, sizeof number, "%zu", i);
         if (!devices[i].same_bits)
-            log_message(LOG_WARNING, "%s is left out: it does not promise the same bits", devices[i].name);
+            log_message(LOG_WARNING, "%s is left out: the same bits are not to be expected of it", devices[i].name);
         else if (!choice_add(choices, interface, number, (size_t)length, error))
             return false;
     }

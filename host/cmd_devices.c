@@ -12,7 +12,7 @@ static const OptionSpec SPECS[] = {{"json", 0, NULL, "print JSON"}};
 static const OptionTable TABLE = {
     "devices",
     "devices [OPTION]...",
-    "Lists the backends of this build and their devices, with what each promises.",
+    "Lists the backends of this build and their devices, with what each promises, and how it divides.",
     SPECS,
     sizeof SPECS / sizeof SPECS[0],
     "A device is chosen by render's --backend and --device.\nMore: man twinlight-devices.",
@@ -33,6 +33,13 @@ static const char *yes_no(bool yes)
     return yes ? "yes" : "no";
 }
 
+static const char *same_bits(const BackendDevice *device)
+{
+    if (!device->same_bits)
+        return "not expected";
+    return device->promises_division ? "promised" : "expected, by the probe";
+}
+
 static double gibibytes(uint64_t bytes)
 {
     return (double)bytes / 1073741824.0;
@@ -45,10 +52,17 @@ static void device_text(const BackendDevice *device, size_t index)
     printf("     version                          %s\n", device->version);
     printf("     memory                           %.2f GiB, largest buffer %.2f GiB\n", gibibytes(device->memory),
            gibibytes(device->allocation_limit));
-    printf("     correctly rounded division, root %s\n", yes_no(device->rounds_division));
+    printf("     correctly rounded division, root %s", yes_no(device->rounds_division));
+    if (device->promises_division && device->probed > 0)
+        printf(device->rounds_division ? ", promised and" : ", though promised,");
+    else if (device->probed > 0)
+        printf(",");
+    if (device->probed > 0)
+        printf(" by a probe of %llu divisions and roots", (unsigned long long)device->probed);
+    printf("\n");
     printf("     denormal numbers                 %s\n", yes_no(device->keeps_denormals));
     printf("     64-bit integer atomics           %s\n", yes_no(device->atomics64));
-    printf("     the same image, bit for bit      %s\n", device->same_bits ? "promised" : "not promised");
+    printf("     the same image, bit for bit      %s\n", same_bits(device));
 }
 
 static void device_json(JsonWriter *json, const BackendDevice *device, size_t index)
@@ -62,7 +76,9 @@ static void device_json(JsonWriter *json, const BackendDevice *device, size_t in
     json_unsigned(json, "compute_units", device->units);
     json_unsigned(json, "memory_bytes", device->memory);
     json_unsigned(json, "largest_buffer_bytes", device->allocation_limit);
+    json_bool(json, "promises_division", device->promises_division);
     json_bool(json, "rounds_division", device->rounds_division);
+    json_unsigned(json, "probed_divisions", device->probed);
     json_bool(json, "keeps_denormals", device->keeps_denormals);
     json_bool(json, "atomics64", device->atomics64);
     json_bool(json, "same_bits", device->same_bits);
@@ -92,7 +108,7 @@ static void devices_print(const BackendTable *backends, bool as_json, BackendDev
         json_object_begin(&json, NULL);
     for (int b = 0; b < backends->count; ++b) {
         const BackendInterface *backend = backends->backends[b];
-        size_t count = backend->devices(devices, DEVICES_MAX);
+        size_t count = backend->devices(devices, DEVICES_MAX, true);
         if (count > DEVICES_MAX)
             count = DEVICES_MAX;
         if (!as_json) {

@@ -63,6 +63,7 @@ SHARED_FILES = \
 	shared/pt.cl \
 	shared/ray.h \
 	shared/rng.h \
+	shared/rounding.cl \
 	shared/scaled.h \
 	shared/scene_types.h \
 	shared/scene_view.h \

@@ -106,14 +106,31 @@ same instances.pbrt "opencl two film" --crop=16,12,17,13 --samples=50
 same instances.pbrt opencl --max-depth=1 --samples=3
 same instances.pbrt opencl --max-depth=65535 --samples=1
 
-# plant FOLDER EDIT: the kernels' sources with one of bsdf_diffuse.h, an edit for sed, that is not as it should be.
+# plant FOLDER EDIT [FILE]: the kernels' sources with one, bsdf_diffuse.h, that is not as it should be; EDIT is for sed.
 plant() {
+    plant_file=${3:-bsdf_diffuse.h}
     mkdir "$1"
     cp "$sources"/*.h "$sources"/*.cl "$1/"
-    sed -i "$2" "$1/bsdf_diffuse.h"
-    ! cmp -s "$1/bsdf_diffuse.h" "$sources/bsdf_diffuse.h"
+    sed -i "$2" "$1/$plant_file"
+    ! cmp -s "$1/$plant_file" "$sources/$plant_file"
     result 'no fault was planted' $?
 }
+
+# ---- divisions and roots ------------------------------------------------------------------------------------------
+
+expect 0 'root yes, promised and by a probe of 6291456 divisions and roots' devices
+expect 0 '"probed_divisions": 6291456' devices --json
+
+# One result of six million; products with reciprocals; roots by reciprocal roots.
+plant one 's/float_bits(float_sqrt(x\.c))/float_bits(float_sqrt(x.c)) ^ (first + (uint)i == 777777u ? 1u : 0u)/' rounding.cl
+plant products 's|x\.a / x\.b|x.a * (1.0f / x.b)|' rounding.cl
+plant roots 's/float_bits(float_sqrt(x\.c))/float_bits(x.c * rsqrt(x.c))/' rounding.cl
+TWINLIGHT_KERNELS=$work/one expect 0 'but 1 of 6291456 are not; sqrt(0x1.' devices
+TWINLIGHT_KERNELS=$work/products expect 0 'root no, though promised, by a probe of 6291456 divisions and roots' devices
+[ "$(grep -c 'same image, bit for bit      not expected' out)" -eq 2 ] && grep -qE 'are not; -?0x[0-9a-fp.+-]+ / -?0x' err
+result 'products with reciprocals pass for quotients' $?
+TWINLIGHT_KERNELS=$work/roots expect 0 '"rounds_division": false' devices --json
+TWINLIGHT_KERNELS=$work/nowhere expect 0 'cannot be probed: ' devices
 
 # ---- verify -------------------------------------------------------------------------------------------------------
 

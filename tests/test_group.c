@@ -189,8 +189,9 @@ END_TEST
 
 static size_t device_count = 3;
 
-static size_t play_devices(BackendDevice *devices, size_t capacity)
+static size_t play_devices(BackendDevice *devices, size_t capacity, bool probe_all)
 {
+    ck_assert(!probe_all);
     for (size_t i = 0; i < device_count && i < capacity; ++i) {
         memset(&devices[i], 0, sizeof devices[i]);
         snprintf(devices[i].name, sizeof devices[i].name, "device %zu", i);

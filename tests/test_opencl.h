@@ -27,6 +27,8 @@ static inline bool test_device_promises(void)
 {
     OclDevice device;
     test_device(&device);
+    if (!device.info.promises_division)
+        ocl_device_probe(&device, false);
     return device.info.same_bits;
 }
 

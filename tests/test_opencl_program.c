@@ -282,15 +282,14 @@ END_TEST
 START_TEST(test_program_that_the_device_refuses)
 {
     static const char TEXT[] = "#line 1 \"shared/kernels.cl\"\n__kernel void k(__global int *a) { a[0] = 3; }\n";
-    char folder[PATH_MAX], path[PATH_MAX], options[160];
+    char folder[PATH_MAX], path[PATH_MAX], options[OCL_OPTIONS_SIZE];
     const unsigned char nonsense[] = "this is no program";
     bool cached = true;
     OclDevice device;
     Error error = {0};
     folder_with_cache(folder, sizeof folder, strchr(TEXT, '\n') + 1);
     test_device(&device);
-    snprintf(options, sizeof options, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x1u%s",
-             device.info.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+    ocl_program_options(&device, 1u, options, sizeof options);
     const char *parts[] = {TEXT, options, device.info.platform, device.info.name, device.info.version};
     ck_assert(cache_write(cache_key(parts, 5), nonsense, sizeof nonsense, path));
     ck_assert_msg(small_build(folder, &cached, &error), "%s", error.message);
