@@ -111,7 +111,7 @@ static void chunk_compare(RoundingProbe *probe, uint first, uint count, const ui
 /* The first chunk is small, and not timed: drivers build kernels when they are first used. */
 static bool chunks_run(const ProbeDevice *device, RoundingProbe *probe, Error *error)
 {
-    uint *theirs = malloc(CHUNK_LAST * ROUNDING_WORDS * sizeof *theirs);
+    uint *theirs = calloc((size_t)CHUNK_LAST * ROUNDING_WORDS, sizeof *theirs);
     if (!theirs)
         return error_memory(error, CHUNK_LAST * ROUNDING_WORDS * sizeof *theirs, "the probe of divisions");
     uint first = 0, size = CHUNK_FIRST;
