@@ -3,8 +3,10 @@
 
 #include "bad_chains.h"
 #include "chain_list.h"
+#include "frame_name.h"
 #include "interrupt.h"
 #include "log.h"
+#include "path_name.h"
 #include "pbrt_import.h"
 #include "progress.h"
 #include "render.h"
@@ -35,7 +37,8 @@ static const RenderOptionSet OPTIONS = {
 
 /* One rendering from command line to files. */
 typedef struct RenderJob {
-    const RenderCommand *command;
+    RenderCommand *command;
+    Arena names; /* of files, with the frame's number */
     const Integrator *integrator;
     Scene scene;
     Film film;
@@ -52,22 +55,56 @@ typedef struct RenderJob {
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
 
+/* Puts the frame's number into the names of the command line. */
+static bool names_fill(RenderJob *job, Error *error)
+{
+    RenderCommand *command = job->command;
+    const char **names[] = {&command->output, &command->png_path, &command->stats, &command->trace, &command->dump_bad};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+        if (!*names[i] || !frame_name_has(*names[i]))
+            continue;
+        if (command->frame < 0) {
+            error_set(error, "%s has a place for the number of a frame, and none is given", *names[i]);
+            return error_fix(error, "add --frame=N");
+        }
+        *names[i] = frame_name_fill(&job->names, *names[i], command->frame, error);
+        if (!*names[i])
+            return false;
+    }
+    return true;
+}
+
+/* The image's name: the command line's, or the scene's Film's, which may have a place for the frame too. */
+static const char *image_name(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const char *film = path_file_name(job->scene.settings.output);
+    if (command->output)
+        return command->output;
+    if (!film[0])
+        return strcmp(command->scene, "-") == 0 ? "stdin" : path_file_name(command->scene);
+    return command->frame < 0 ? film : frame_name_fill(&job->names, film, command->frame, error);
+}
+
 static bool outputs_name(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     RenderOutput *output = &job->output;
-    if (!render_output_name(output, &job->scene, command->scene, command->output, command->png, command->png_path,
-                            command->exposure, error))
+    const char *image = image_name(job, error);
+    const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
+    if (!image || !render_output_name(output, image, command->png, command->png_path, error))
         return false;
+    output->film_scale = job->scene.settings.film_scale;
+    output->exposure = (float)command->exposure;
     output->scene_file = command->scene;
     output->integrator = command->integrator;
     output->seed = command->seed;
     output->despeckle = command->despeckle;
     output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
-    return render_output_distinct(output, command->stats, command->trace, command->dump_bad, error) &&
+    return render_output_distinct(output, stats, command->trace, command->dump_bad, error) &&
            render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
-           (!command->stats || render_output_check(command->stats, error)) &&
+           (!stats || render_output_check(stats, error)) &&
            (!command->trace || render_output_check(command->trace, error)) &&
            (!command->dump_bad || render_output_check(command->dump_bad, error));
 }
@@ -293,6 +330,8 @@ static int job_run(RenderJob *job, Error *error)
     if (!job->integrator || !render_settings_check(command, job->integrator, error) ||
         !render_settings_layers(command, job->integrator, &job->layers.wanted, error))
         return EXIT_USAGE;
+    if (!names_fill(job, error))
+        return EXIT_USAGE;
     if (command->output && !render_output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */
     if (!stage_run(scene_load, job, &job->load, error))
@@ -322,7 +361,7 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command = {.png = true};
+    RenderCommand command = {.png = true, .frame = -1};
     OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
     if (end != OPTIONS_READ)
         return options_status(end);
@@ -338,6 +377,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     if (job.backend.backend)
         job.backend.interface->close(job.backend.backend);
     bad_chains_cancel(&job.bad_chains);
+    arena_destroy(&job.names);
     render_layers_destroy(&job.layers);
     film_destroy(&job.film);
     scene_destroy(&job.scene);

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 void text_make_printable(char *text)
@@ -82,9 +81,23 @@ bool error_fix(Error *error, const char *format, ...)
     return false;
 }
 
+void error_print(const Error *error, FILE *stream)
+{
+    fprintf(stream, "%s\n", error->message);
+    if (error->fix[0])
+        fprintf(stream, "  fix: %s\n", error->fix);
+}
+
+#define OUT_OF_MEMORY "out of memory: "
+
+bool error_is_memory(const Error *error)
+{
+    return strncmp(error_text(error), OUT_OF_MEMORY, strlen(OUT_OF_MEMORY)) == 0;
+}
+
 bool error_memory(Error *error, unsigned long long bytes, const char *what)
 {
-    error_set(error, "out of memory: %llu bytes for %s", bytes, what);
+    error_set(error, OUT_OF_MEMORY "%llu bytes for %s", bytes, what);
     return error_fix(error, "use a smaller scene, fewer threads, or a machine with more memory");
 }
 

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* A place in a text file. `file` is borrowed and may be NULL; line and column count from 1, 0 when unknown. */
 typedef struct SourcePlace {
@@ -38,6 +39,11 @@ bool error_in(Error *error, const char *file);
 
 /* Adds what to do. Returns false. */
 bool error_fix(Error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The message, and what to do in a second line. */
+void error_print(const Error *error, FILE *stream);
+
+bool error_is_memory(const Error *error);
 
 /* "error: out of memory: N bytes for WHAT". Returns false. */
 bool error_memory(Error *error, unsigned long long bytes, const char *what);

@@ -53,6 +53,31 @@ bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *fi
     return true;
 }
 
+bool file_read_stream(int descriptor, const char *name, size_t limit, FileData *file, Error *error)
+{
+    size_t room = 0, got = 1;
+    int failure = 0;
+    *file = (FileData){0};
+    while (failure == 0 && got > 0 && file->size <= limit) {
+        if (file->size == room) {
+            room = room > 0 ? 2 * room : (size_t)1 << 16;
+            char *more = realloc(file->data, room);
+            failure = more ? 0 : ENOMEM;
+            file->data = more ? more : file->data;
+        }
+        if (failure == 0)
+            failure = bytes_read(descriptor, file->data + file->size, room - file->size, &got);
+        file->size += failure == 0 ? got : 0;
+    }
+    if (failure == 0 && file->size > limit)
+        failure = EFBIG;
+    if (failure == 0)
+        return true;
+    free(file->data);
+    *file = (FileData){0};
+    return file_read_error(name, failure, (SourcePlace){0}, error);
+}
+
 bool file_read(const char *path, size_t limit, SourcePlace place, FileData *file, Error *error)
 {
     FileOpened opened;

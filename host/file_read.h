@@ -26,6 +26,9 @@ bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *fi
 /* The same, and reads it. */
 bool file_read(const char *path, size_t limit, SourcePlace place, FileData *file, Error *error);
 
+/* Reads a stream of at most `limit` bytes to its end: a pipe or a file. `name` is for errors. */
+bool file_read_stream(int descriptor, const char *name, size_t limit, FileData *file, Error *error);
+
 /* "cannot read PATH: ..." for an errno. Returns false. */
 bool file_read_error(const char *path, int failure, SourcePlace place, Error *error);
 

@@ -2,8 +2,10 @@
  * backend. */
 #include "config.h"
 
+#include "build_info.h"
 #include "cmd_compare.h"
 #include "command.h"
+#include "name_table.h"
 
 #ifdef HAVE_EMBREE
 #include "backend_cpu.h"
@@ -76,7 +78,7 @@ static void help_print(FILE *stream)
 
 static void version_print(FILE *stream, const BackendTable *backends)
 {
-    fputs(PACKAGE_NAME " " PACKAGE_VERSION "\nBackends:", stream);
+    fprintf(stream, PACKAGE_NAME " " PACKAGE_VERSION " (commit %s)\nBackends:", build_commit());
     for (int i = 0; i < backends->count; ++i)
         fprintf(stream, " %s", backends->backends[i]->name);
     fputs("\nLicence: Apache-2.0\n", stream);
@@ -88,7 +90,14 @@ static int usage_fail(Error *error, const char *word)
         error_set(error, "unknown %s %s", word[0] == '-' ? "option" : "command", word);
     else
         error_set(error, "no command is given");
-    error_fix(error, "use render, compare, bench, info, devices or pyramid; see twinlight --help");
+    const char *names[COMMAND_COUNT];
+    for (int i = 0; i < COMMAND_COUNT; ++i)
+        names[i] = COMMANDS[i].name;
+    const char *nearest = word && word[0] != '-' ? name_nearest(word, names, COMMAND_COUNT) : NULL;
+    if (nearest)
+        error_fix(error, "did you mean %s? twinlight --help lists all", nearest);
+    else
+        error_fix(error, "use render, compare, bench, info, devices or pyramid; see twinlight --help");
     return EXIT_USAGE;
 }
 
@@ -131,8 +140,6 @@ int main(int argc, char **argv)
     Error error = {0};
     int status = output_close(command_run(&table, argc, argv, &error), &error);
     if (error.message[0])
-        fprintf(stderr, "%s\n", error.message);
-    if (error.message[0] && error.fix[0])
-        fprintf(stderr, "  fix: %s\n", error.fix);
+        error_print(&error, stderr);
     return status;
 }

@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include "name_table.h"
+
 #include <assert.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -10,6 +12,13 @@
 
 static const OptionSpec HELP = {"help", 'h', NULL, "print this and exit"};
 
+/* What pbrt calls an option, where a command has it. --help does not list these. */
+static const struct {
+    const char *alias, *name;
+} ALIASES[] = {{"nthreads", "threads"}, {"outfile", "output"}, {"spp", "samples"}};
+
+#define ALIAS_COUNT (sizeof ALIASES / sizeof ALIASES[0])
+
 /* Option i, which is --help behind all others. */
 static const OptionSpec *spec_at(const OptionTable *table, int i)
 {
@@ -18,7 +27,7 @@ static const OptionSpec *spec_at(const OptionTable *table, int i)
 
 /* getopt's two tables. */
 typedef struct GetoptTables {
-    struct option longs[OPTION_SPECS_MAX + 1];
+    struct option longs[OPTION_SPECS_MAX + ALIAS_COUNT + 1];
     char letters[2 + 3 * OPTION_SPECS_MAX];
 } GetoptTables;
 
@@ -45,6 +54,13 @@ static void getopt_tables_fill(GetoptTables *tables, const OptionTable *table)
         for (int colons = 0; colons < argument; ++colons)
             *letter++ = ':';
     }
+    struct option *next = &tables->longs[table->count + 1];
+    for (size_t a = 0; a < ALIAS_COUNT; ++a)
+        for (int i = 0; i < table->count; ++i)
+            if (strcmp(table->specs[i].name, ALIASES[a].name) == 0) {
+                *next = tables->longs[i];
+                next++->name = ALIASES[a].alias;
+            }
 }
 
 static int spec_index(const OptionTable *table, int code)
@@ -57,6 +73,36 @@ static int spec_index(const OptionTable *table, int code)
     return -1;
 }
 
+/* A long option that is none, or the beginning of several. */
+static void name_refuse(const OptionTable *table, const char *word, Error *error)
+{
+    const char *names[OPTION_SPECS_MAX];
+    char given[64], list[256] = "";
+    int used = 0, matches = 0;
+    word += strspn(word, "-");
+    int length = (int)strcspn(word, "=");
+    for (int i = 0; i <= table->count; ++i) {
+        names[i] = spec_at(table, i)->name;
+        if (strncmp(names[i], word, (size_t)length) != 0)
+            continue;
+        ++matches;
+        if (used < (int)sizeof list - 32)
+            used += snprintf(list + used, sizeof list - (size_t)used, "%s--%.20s", used > 0 ? ", " : "", names[i]);
+    }
+    snprintf(given, sizeof given, "%.*s", length, word);
+    if (matches > 1) {
+        error_set(error, "option --%s is short for several: %s", given, list);
+        error_fix(error, "write more of the name");
+        return;
+    }
+    const char *nearest = name_nearest(given, names, (size_t)table->count + 1);
+    error_set(error, "unknown option --%s", given);
+    if (nearest)
+        error_fix(error, "did you mean --%s? twinlight %s --help lists all", nearest, table->command);
+    else
+        error_fix(error, "see twinlight %s --help", table->command);
+}
+
 /* What getopt_long refused: `code` is its return value, `word` the argument it was reading. */
 static void options_refuse(const OptionTable *table, int code, const char *word, Error *error)
 {
@@ -67,12 +113,14 @@ static void options_refuse(const OptionTable *table, int code, const char *word,
         error_fix(error, "write --%s=%s", spec->name, spec->argument);
         return;
     }
+    if (!spec && !optopt) {
+        name_refuse(table, word, error);
+        return;
+    }
     if (spec)
         error_set(error, "option --%s takes no value: %s", spec->name, word);
-    else if (optopt)
-        error_set(error, "unknown option -%c", optopt);
     else
-        error_set(error, "unknown or ambiguous option %s", word);
+        error_set(error, "unknown option -%c", optopt);
     error_fix(error, "see twinlight %s --help", table->command);
 }
 

@@ -23,6 +23,7 @@
 #define IMPORT_COPIES_MAX (1u << 26) /* vertices of these instances, of which each has its own */
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
 #define IMPORT_COORDINATE_MAX 1e12 /* of a point in world space: products of three must fit a float */
+#define IMPORT_ERRORS_MAX 20 /* of a scene, shown in one run */
 #define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
 
 /* Instead of an index of a material. */
@@ -100,10 +101,20 @@ typedef struct SourceFile {
     size_t nesting; /* open AttributeBegin when it began */
 } SourceFile;
 
+/* What has gone wrong so far (pbrt_errors.h). */
+typedef struct ImportErrors {
+    Error latest; /* not printed yet */
+    int count;
+    bool definition_failed; /* so that what is missing may be a consequence */
+    bool missing; /* the error on its way is about something that is missing */
+    bool world_order; /* a directive stood on the wrong side of WorldBegin: said once */
+} ImportErrors;
+
 typedef struct PbrtImport {
     Scene *scene;
     ImportOptions options;
     Error *error;
+    ImportErrors errors;
     Vec3 offset; /* taken off all places in the world before they are rounded (scene_center.h); first 0 */
     Box world; /* of all shapes there, less the offset */
     Arena arena; /* names, textures, area lights: until the import ends */

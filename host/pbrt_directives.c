@@ -1,6 +1,7 @@
 #include "pbrt_directives.h"
 
 #include "log.h"
+#include "pbrt_errors.h"
 #include "pbrt_parser.h"
 #include "pbrt_state.h"
 
@@ -176,9 +177,9 @@ static bool directive_color_space(PbrtImport *im)
 static bool directive_world_begin(PbrtImport *im)
 {
     Matrix world[2] = {matrix_identity(), matrix_identity()};
+    im->in_world = true; /* whatever is wrong: what follows belongs to the world */
     if (!import_settings_finish(im) || !state_coordinate_system(im, "world", world))
         return false;
-    im->in_world = true;
     memcpy(im->state.ctm, world, sizeof world);
     im->state.active_transforms = 3;
     return true;
@@ -267,7 +268,10 @@ static bool directive_import(PbrtImport *im)
     SourcePlace place;
     if (!parser_string(im, "the name of a file", &name, &place) || !state_push(im, "Import"))
         return false;
-    return parser_open_file(im, name, place, true);
+    if (parser_open_file(im, name, place, true))
+        return true;
+    --im->saved.count;
+    return false;
 }
 
 static const Directive DIRECTIVES[] = {
@@ -333,15 +337,19 @@ static bool directive_unknown(PbrtImport *im, const Token *token)
 
 static bool directive_run(PbrtImport *im, const Directive *directive)
 {
+    bool misplaced = directive->where == (im->in_world ? BEFORE_WORLD : IN_WORLD);
+    if (misplaced && im->errors.world_order)
+        errors_missing(im);
+    im->errors.world_order = im->errors.world_order || misplaced;
     if (directive->plain == directive_world_begin && im->in_world) {
         error_at(im->error, im->place, "a second WorldBegin");
         return error_fix(im->error, "delete it: a file holds one scene");
     }
-    if (directive->where == BEFORE_WORLD && im->in_world) {
+    if (misplaced && im->in_world) {
         error_at(im->error, im->place, "%s must stand before WorldBegin", directive->name);
         return error_fix(im->error, "move it up: WorldBegin ends the options, camera and film");
     }
-    if (directive->where == IN_WORLD && !im->in_world) {
+    if (misplaced) {
         error_at(im->error, im->place, "%s must stand after WorldBegin", directive->name);
         return error_fix(im->error, "move it down, or add WorldBegin above it");
     }
@@ -351,14 +359,49 @@ static bool directive_run(PbrtImport *im, const Directive *directive)
     return parser_string(im, "a quoted name", &kind, NULL) && parser_params(im) && directive->named(im, kind);
 }
 
-static bool directive_read(PbrtImport *im, const Token *token)
+static const Directive *directive_find(const Token *token)
 {
-    param_buffer_clear(&im->params);
-    im->place = token->place;
     for (size_t i = 0; i < DIRECTIVE_COUNT; ++i)
         if (token_is(token, DIRECTIVES[i].name))
-            return directive_run(im, &DIRECTIVES[i]);
-    return directive_unknown(im, token);
+            return &DIRECTIVES[i];
+    return NULL;
+}
+
+/* Whether later directives may refer to what this one makes. */
+static bool directive_defines(const Directive *directive)
+{
+    static const char *const NAMES[] = {"AttributeBegin", "CoordinateSystem",  "Import",
+                                        "Include",        "MakeNamedMaterial", "MakeNamedMedium",
+                                        "ObjectBegin",    "Texture",           "TransformBegin"};
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; ++i)
+        if (strcmp(directive->name, NAMES[i]) == 0)
+            return true;
+    return false;
+}
+
+/* Drops tokens up to the next directive, or to the end of a file. */
+static bool directive_skip(PbrtImport *im)
+{
+    Token token;
+    do {
+        if (!parser_next(im, &token)) {
+            errors_note(im, false);
+            return false;
+        }
+    } while (token.kind != TOKEN_END && !directive_find(&token));
+    parser_put_back(im, &token);
+    return true;
+}
+
+/* False when reading is to end. */
+static bool directive_read(PbrtImport *im, const Token *token)
+{
+    const Directive *directive = directive_find(token);
+    param_buffer_clear(&im->params);
+    im->place = token->place;
+    if (directive ? directive_run(im, directive) : directive_unknown(im, token))
+        return true;
+    return errors_note(im, !directive || directive_defines(directive) || im->errors.world_order) && directive_skip(im);
 }
 
 /* At the end of an imported file, whose scope ends, or of the scene. */
@@ -369,7 +412,10 @@ static bool file_end(PbrtImport *im)
     if (open > 0) {
         const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
         error_at(im->error, save->place, "%s without its end", save->opened_by);
-        return error_fix(im->error, "add the missing end, or delete this line");
+        error_fix(im->error, "add the missing end, or delete this line");
+        if (!errors_note(im, false))
+            return false;
+        im->saved.count = file->nesting;
     }
     if (!file->is_import)
         return true;
@@ -387,8 +433,10 @@ bool directives_read(PbrtImport *im)
 {
     for (;;) {
         Token token;
-        if (!parser_next(im, &token))
+        if (!parser_next(im, &token)) {
+            errors_note(im, false);
             return false;
+        }
         if (token.kind != TOKEN_END) {
             if (!directive_read(im, &token))
                 return false;
@@ -399,6 +447,6 @@ bool directives_read(PbrtImport *im)
         if (!file_end(im))
             return false;
         if (last)
-            return im->in_world || world_missing(im);
+            return im->in_world || im->errors.count > 0 || (world_missing(im) || errors_note(im, false));
     }
 }

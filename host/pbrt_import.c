@@ -1,14 +1,19 @@
 #include "pbrt_import.h"
 
+#include "file_read.h"
 #include "log.h"
 #include "pbrt_context.h"
 #include "pbrt_directives.h"
+#include "pbrt_errors.h"
 #include "pbrt_parser.h"
 #include "pbrt_state.h"
 #include "scene_center.h"
+#include "scene_format.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix)
 {
@@ -30,6 +35,8 @@ bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const c
     char list[400] = "";
     size_t used = 0;
     error_at(im->error, place, "unknown %s \"%s\"", kind, name);
+    if (scene_format_is_v3(kind, name))
+        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade, which is pbrt-v4's");
     if (nearest)
         return error_fix(im->error, "did you mean \"%s\"?", nearest);
     for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)
@@ -175,6 +182,7 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     import_init(&im, options, scene, error);
     im.offset = scene->origin = *offset;
     bool good = source_open(&im, source) && directives_read(&im);
+    good = errors_end(&im) && good;
     camera_move(&scene->camera_settings, im.offset);
     scene->movable = true;
     *offset = good && !box_is_empty(&im.world) ? scene_center_offset(&im.world) : vec3_splat(0.0f);
@@ -216,6 +224,12 @@ bool pbrt_import_text(const char *text, size_t length, const char *name, const c
 
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)
 {
-    const ImportOptions options = {.lenient = lenient};
-    return pbrt_import(path, &options, scene, error) && (scene_finish(scene, error) || error_in(error, path));
+    const ImportOptions options = {.lenient = lenient, .all_errors = true};
+    FileData text = {0};
+    bool piped = strcmp(path, "-") == 0;
+    bool good = piped ? file_read_stream(STDIN_FILENO, "standard input", IMPORT_FILE_BYTES_MAX, &text, error) &&
+                            pbrt_import_text(text.data, text.size, "stdin", "", &options, scene, error)
+                      : pbrt_import(path, &options, scene, error);
+    free(text.data);
+    return good && (scene_finish(scene, error) || error_in(error, piped ? "stdin" : path));
 }

@@ -6,6 +6,7 @@
 
 typedef struct ImportOptions {
     bool lenient; /* what is not supported is replaced, with a warning that says by what, instead of refused */
+    bool all_errors; /* goes on behind errors, up to IMPORT_ERRORS_MAX, and prints all but the last */
 } ImportOptions;
 
 /* Reads the file `path`; names in it are relative to its folder. `scene` must come from scene_init; scene_finish is
@@ -13,7 +14,8 @@ typedef struct ImportOptions {
  * says file:line:column. */
 bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error);
 
-/* The same, and scene_finish. */
+/* The same with all errors of the scene, and scene_finish. The path "-" is standard input, in which names lead from the
+ * current folder. */
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error);
 
 /* As pbrt_import, from memory. `name` stands for the file's name in messages; `directory` is where names in the text lead

@@ -1,5 +1,6 @@
 /* Material, MakeNamedMaterial, and the material in force for a shape. */
 #include "log.h"
+#include "pbrt_errors.h"
 #include "pbrt_values.h"
 
 #include <stdio.h>
@@ -176,6 +177,7 @@ static uint mix_part(MaterialReader *r, const Param *param, size_t i)
     if (material == NONE) {
         char known[400];
         name_table_list(&r->im->materials, known, sizeof known);
+        errors_missing(r->im);
         param_error(r->list, "materials", "unknown material \"%s\"", name);
         error_fix(r->list->error, "defined before this line: %s", known);
     } else if (material == MATERIAL_INTERFACE) {
@@ -352,6 +354,7 @@ bool value_material(PbrtImport *im, uint *material)
     const char *nearest = name_table_nearest(&im->materials, state->material_name);
     char known[400];
     name_table_list(&im->materials, known, sizeof known);
+    errors_missing(im);
     error_at(im->error, state->material_place, "unknown material \"%s\"", state->material_name);
     return error_fix(im->error, "%s%s%sdefined: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
                      nearest ? "\"? " : "", known);

@@ -1,5 +1,6 @@
 /* ObjectBegin, ObjectEnd and ObjectInstance. */
 #include "pbrt_shapes.h"
+#include "pbrt_errors.h"
 #include "pbrt_state.h"
 
 #include <string.h>
@@ -47,6 +48,7 @@ bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_p
     if (index == NONE) {
         char known[400];
         name_table_list(&im->objects, known, sizeof known);
+        errors_missing(im);
         error_at(im->error, name_place, "unknown object \"%s\"", name);
         return error_fix(im->error, "defined before this line: %s", known);
     }

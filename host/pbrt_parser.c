@@ -1,13 +1,30 @@
 #include "pbrt_parser.h"
 
 #include "file_read.h"
+#include "scene_format.h"
 
 #include <string.h>
 #include <unistd.h>
 
-bool parser_open_text(PbrtImport *im, const TextWindow *window, const char *name)
+/* A scene that is none is told by its first bytes. */
+static bool format_check(TextWindow *window, const char *name, Error *error)
+{
+    const char *fix, *other;
+    text_window_reaches(window, 64);
+    other = scene_format_other(window->position, (size_t)(window->end - window->position), &fix);
+    if (!other)
+        return true;
+    error_at(error, (SourcePlace){.file = name}, "this is no scene of pbrt-v4's but %s", other);
+    return error_fix(error, "%s", fix);
+}
+
+bool parser_open_text(PbrtImport *im, TextWindow *window, const char *name)
 {
     SourceFile *file = &im->files[im->file_count];
+    if (im->file_count == 0 && !format_check(window, name, im->error)) {
+        text_window_close(window);
+        return false;
+    }
     *file = (SourceFile){.nesting = im->saved.count};
     if (!lexer_init(&file->lexer, window, name, im->error))
         return false;

@@ -4,8 +4,8 @@
 
 #include "pbrt_context.h"
 
-/* Opens a text, of which `name` is the file in messages, as the innermost file. */
-bool parser_open_text(PbrtImport *im, const TextWindow *window, const char *name);
+/* Opens a text, of which `name` is the file in messages, as the innermost file. Takes the window. */
+bool parser_open_text(PbrtImport *im, TextWindow *window, const char *name);
 
 /* Opens `name`, named at `place` (a file of NULL: the main scene), below the scene's directory. */
 bool parser_open_file(PbrtImport *im, const char *name, SourcePlace place, bool is_import);

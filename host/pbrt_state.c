@@ -1,6 +1,7 @@
 #include "pbrt_state.h"
 
 #include "log.h"
+#include "pbrt_errors.h"
 
 #include <string.h>
 
@@ -54,11 +55,13 @@ bool state_pop(PbrtImport *im, const char *opened_by, const char *closed_by)
     size_t floor =
         im->file_count > 0 && im->files[im->file_count - 1].is_import ? im->files[im->file_count - 1].nesting : 0;
     if (im->saved.count <= floor) {
+        errors_missing(im);
         error_at(im->error, im->place, "%s without %s", closed_by, opened_by);
         return error_fix(im->error, "delete it, or add %s before it", opened_by);
     }
     const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
     if (strcmp(save->opened_by, opened_by) != 0) {
+        errors_missing(im);
         error_at(im->error, im->place, "%s, but the innermost open scope is the %s of line %d", closed_by,
                  save->opened_by, save->place.line);
         return error_fix(im->error, "close that one first");
@@ -92,6 +95,7 @@ bool state_use_coordinate_system(PbrtImport *im, const char *name, SourcePlace n
     if (known == NONE) {
         char names[400];
         name_table_list(&im->coordinate_systems, names, sizeof names);
+        errors_missing(im);
         error_at(im->error, name_place, "unknown coordinate system \"%s\"", name);
         return error_fix(im->error, "known here: %s", names);
     }

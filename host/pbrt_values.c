@@ -1,6 +1,7 @@
 #include "pbrt_values.h"
 
 #include "log.h"
+#include "pbrt_errors.h"
 
 #include <math.h>
 #include <string.h>
@@ -102,6 +103,7 @@ uint value_texture_index(PbrtImport *im, ParamList *list, const Param *param, bo
         return texture;
     const NameTable *other = spectrum ? &im->float_textures : &im->spectrum_textures;
     const char *nearest = name_table_nearest(table, name);
+    errors_missing(im);
     param_error(list, param->name, "unknown %s texture \"%s\" for parameter \"%s\"", type, name, param->name);
     if (name_table_find(other, name) != NONE)
         error_fix(list->error, "there is a %s texture of that name; \"%s\" needs a %s texture",

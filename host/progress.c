@@ -1,5 +1,6 @@
 #include "progress.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -45,13 +46,17 @@ void progress_line(const RenderProgress *now, int columns, char *text, size_t si
 {
     char elapsed[24], remaining[32] = "?", samples[24], rays[24], figures[160];
     progress_time(now->elapsed, elapsed, sizeof elapsed);
+    double left = now->fraction > 0.0 ? now->elapsed * (1.0 - now->fraction) / now->fraction : 0.0;
+    bool finishing = now->fraction >= 1.0 || (now->fraction > 0.0 && left < 0.05);
     if (now->fraction > 0.0)
-        progress_time(now->elapsed * (1.0 - now->fraction) / now->fraction, remaining, sizeof remaining);
+        progress_time(left, remaining, sizeof remaining);
     double per_second = now->elapsed > 0.0 ? 1.0 / now->elapsed : 0.0;
     progress_rate((double)now->samples * per_second, samples, sizeof samples);
     progress_rate((double)now->rays * per_second, rays, sizeof rays);
-    snprintf(figures, sizeof figures, "%3.0f %%  %s, %s left  %ssamples/s  %srays/s", 100.0 * now->fraction, elapsed,
-             remaining, samples, rays);
+    /* 99 % at most: while this line is shown, the rendering is not done. */
+    snprintf(figures, sizeof figures, "%3.0f %%  %s, %s%s  %ssamples/s  %srays/s",
+             fmin(99.0, floor(100.0 * now->fraction)), elapsed, finishing ? "finishing" : remaining,
+             finishing ? "" : " left", samples, rays);
 
     int width = columns - (int)strlen(figures) - 4; /* brackets, a blank, and the last column free */
     width = width > BAR_MAX ? BAR_MAX : width;

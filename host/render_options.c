@@ -1,5 +1,6 @@
 #include "render_options.h"
 
+#include "frame_name.h"
 #include "option_values.h"
 #include "options.h"
 #include "path_name.h"
@@ -37,7 +38,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: chains know nothing of where the lights are"},
     [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
-    [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one per processor)"},
+    [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
@@ -49,10 +50,12 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
          "depth; all (but by-depth) or none (default: mmlt all, else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
                           "add a layer without pixels that are T times as bright as the median around them"},
+    [OPTION_FRAME] = {"frame", 0, "N", "the number that file names with %d, %4d or %04d get in its place"},
     [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
     [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
     [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
-    [OPTION_STATS] = {"stats", 0, "FILE.json", "write what was rendered, how fast, and what was noticed"},
+    [OPTION_STATS] = {"stats", 0, "FILE.json",
+                      "write what was rendered, how fast, and what was noticed; -: to standard output"},
     [OPTION_TRACE] = {"trace", 0, "FILE.json", "write when a device did what, for chrome://tracing"},
     [OPTION_VERIFY] = {"verify", 0, NULL,
                        "compare the backend's state with the CPU's bit for bit, instead of rendering"},
@@ -83,6 +86,11 @@ static bool number_set(const Parse *parse, int option, const char *value, Error 
         if (!option_whole(name, value, 1, 1024, &whole, error))
             return false;
         command->threads = (int)whole;
+        return true;
+    case OPTION_FRAME:
+        if (!option_whole(name, value, 0, FRAME_MAX, &whole, error))
+            return false;
+        command->frame = (int)whole;
         return true;
     case OPTION_BATCH:
         if (!option_whole(name, value, 1, 1u << 26, &whole, error))

@@ -39,7 +39,8 @@ typedef struct RenderCommand {
     bool has_crop;
     int crop[4];
     double save_every;
-    const char *stats;
+    const char *stats; /* "-": standard output */
+    int frame; /* for names with a place for it (frame_name.h); -1: not given */
     const char *trace;
     bool lenient;
     bool quiet;
@@ -79,6 +80,7 @@ typedef enum RenderOption {
     OPTION_SAVE_EVERY,
     OPTION_LAYERS,
     OPTION_DESPECKLE,
+    OPTION_FRAME,
     OPTION_PNG,
     OPTION_NO_PNG,
     OPTION_EXPOSURE,

@@ -29,15 +29,10 @@ static bool path_with_ending(char target[PATH_MAX], const char *path, const char
     return true;
 }
 
-bool render_output_name(RenderOutput *output, const Scene *scene, const char *scene_file, const char *exr,
-                        bool want_png, const char *png, double exposure, Error *error)
+bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error)
 {
-    const char *film_name = path_file_name(scene->settings.output);
-    const char *base = exr ? exr : film_name[0] ? film_name : path_file_name(scene_file);
     output->png[0] = '\0';
-    output->film_scale = scene->settings.film_scale;
-    output->exposure = (float)exposure;
-    if (!path_with_ending(output->exr, base, ".exr", error))
+    if (!path_with_ending(output->exr, image, ".exr", error))
         return false;
     return !want_png || path_with_ending(output->png, png ? png : output->exr, ".png", error);
 }

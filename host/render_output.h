@@ -22,10 +22,9 @@ typedef struct RenderOutput {
     int max_depth;
 } RenderOutput;
 
-/* Sets the names: `exr` as given, or the file name (without folders) of the scene's Film, or the scene file's name, in
- * the current folder; `png` as given or beside the EXR, none when !want_png. Also film_scale and exposure. */
-bool render_output_name(RenderOutput *output, const Scene *scene, const char *scene_file, const char *exr,
-                        bool want_png, const char *png, double exposure, Error *error);
+/* Sets the names: the EXR's is `image` with the ending .exr; the PNG's is `png`, or beside the EXR when that is NULL,
+ * none when !want_png. */
+bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
 /* Fails when scene, image, PNG, statistics, trace and list of bad chains (NULL: none) are not all different files. */
 bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, const char *bad,

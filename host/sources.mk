@@ -55,6 +55,7 @@ libtwinlight_host_la_SOURCES = \
 	host/film_pilot.c host/film_pilot.h \
 	host/filter_setup.c host/filter_setup.h \
 	host/flip.c \
+	host/frame_name.c host/frame_name.h \
 	host/hash.h \
 	host/html.c host/html.h \
 	host/image.c host/image.h \
@@ -87,6 +88,7 @@ libtwinlight_host_la_SOURCES = \
 	host/path_name.c host/path_name.h \
 	host/pbrt_context.h \
 	host/pbrt_directives.c host/pbrt_directives.h \
+	host/pbrt_errors.c host/pbrt_errors.h \
 	host/pbrt_film_camera.c \
 	host/pbrt_import.c host/pbrt_import.h \
 	host/pbrt_lexer.c host/pbrt_lexer.h \
@@ -122,6 +124,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene.c host/scene.h \
 	host/scene_center.c host/scene_center.h \
 	host/scene_finish.c \
+	host/scene_format.c host/scene_format.h \
 	host/scene_advice.c host/scene_advice.h \
 	host/scene_pack.c host/scene_pack.h \
 	host/scene_summary.c host/scene_summary.h \

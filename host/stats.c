@@ -6,6 +6,7 @@
 #include "timing.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static void stats_scene(JsonWriter *json, const RenderStats *stats)
 {
@@ -176,8 +177,17 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_object_end(&json);
 }
 
+bool stats_to_output(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
 bool stats_write(const char *path, const RenderStats *stats, Error *error)
 {
+    if (stats_to_output(path)) {
+        stats_print(stdout, stats); /* main looks for failures */
+        return true;
+    }
     FILE *stream = fopen(path, "w");
     if (!stream)
         return error_errno(error, "write", path);

@@ -22,6 +22,9 @@ typedef struct RenderStats {
     double load, build, render, write, total;
 } RenderStats;
 
+/* Whether the path means standard output: "-". */
+bool stats_to_output(const char *path);
+
 bool stats_write(const char *path, const RenderStats *stats, Error *error);
 
 /* The name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */

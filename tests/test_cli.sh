@@ -20,6 +20,8 @@ expect 0 '--max-depth=D' pyramid --help
 expect 0 '--reference-time=TIME' bench --help
 expect 2 'no command is given'
 expect 2 'unknown command paint' paint
+expect 2 'did you mean render?' rander
+expect 0 '(commit ' --version
 expect 2 'unknown option --verbose' --verbose
 
 # ---- bad options --------------------------------------------------------------------------------------------------
@@ -27,6 +29,11 @@ expect 2 'unknown option --verbose' --verbose
 expect 2 'no scene is given' render
 expect 2 'more than one scene' render "$scene" "$scene"
 expect 2 'option --fast' render --fast "$scene"
+expect 2 'did you mean --seed?' render --sedd=1 "$scene"
+expect 2 'is short for several: --strategy, --steps, --stats' render --st=1 "$scene"
+expect 2 'unknown option --verbose' render --verbose "$scene"
+expect 2 'add --frame=N' render -o a.%04d.exr "$scene"
+expect 2 '--frame=-1: not a whole number' render --frame=-1 "$scene"
 expect 2 '--samples needs a value' render "$scene" --samples
 expect 2 '--quiet takes no value' render --quiet=yes "$scene"
 expect 2 '--samples=0: out of range' render --samples=0 "$scene"
@@ -83,7 +90,7 @@ expect 2 'more than one scene' info "$scene" "$scene"
 expect 2 'no scene is given' pyramid
 expect 2 'does not end in .png' pyramid -o sheet.exr "$scene"
 expect 2 '--max-depth=13: out of range' pyramid --max-depth=13 "$scene"
-expect 2 'unknown or ambiguous option --crop' pyramid --crop=0,0,1,1 "$scene"
+expect 2 'unknown option --crop' pyramid --crop=0,0,1,1 "$scene"
 expect 2 '--device is for devices' pyramid --device=0 "$scene"
 expect 2 '' compare
 expect 2 '' compare one.exr
@@ -110,6 +117,52 @@ if [ "$(id -u)" -ne 0 ]; then
     expect 1 'locked/image.exr' render -o locked/image.exr "$scene"
 fi
 file_missing cornell.exr
+
+# ---- scenes that are none, or wrong -------------------------------------------------------------------------------
+
+not_a_scene() {
+    printf '%b' "$1" >other
+    expect 1 "but $2" info other
+    "$program" info - <other >out 2>err
+    grep -qF "but $2" err
+    result "$2 on standard input" $?
+}
+not_a_scene '\n{ "asset": { "version": "2.0" } }' 'a JSON file'
+not_a_scene 'glTF\0002' 'a binary glTF file'
+not_a_scene '<?xml version="1.0"?>' 'an XML file'
+not_a_scene 'ply\nformat ascii 1.0' 'a PLY mesh'
+not_a_scene '\0037\0213\0010' 'compressed by gzip'
+printf 'Film "image"\nWorldBegin\nMaterial "matte"\n' >v3.pbrt
+expect 1 "convert the scene with pbrt --upgrade" info v3.pbrt
+
+# Every error once, in order; not what follows from one, such as the material that line 5 does not make.
+printf '%s\n' 'Film "rgb" "integer xresolution" [ -3 ]' 'Camera "perspectiv"' 'WorldBegin' 'Material "matte"' \
+    'MakeNamedMaterial "a" "string type" "diffus"' 'NamedMaterial "a"' 'Shape "sphere" "float radius" [ x ]' \
+    'Shape "sphere"' 'AttributeBegin' 'LightSource "pointy"' 'WorldBegin' >wrong.pbrt
+expect 1 '' info wrong.pbrt
+grep -o '^wrong.pbrt:[0-9]*' err | cut -d: -f2 | tr '\n' ' ' >lines
+[ "$(cat lines)" = '1 2 4 5 7 10 11 9 ' ]
+result "errors of lines $(cat lines), not of 1 2 4 5 7 10 11 9" $?
+[ "$(grep -c '  fix: ' err)" -eq 8 ]
+result 'not every error says what to do' $?
+for directive in Shape Shape Shape; do
+    printf "WorldBegin\n%s\n" "$directive"
+done | "$program" info - >out 2>err
+[ "$(grep -c 'error: ' err)" -lt 6 ]
+result 'one missing string is many errors' $?
+{
+    echo WorldBegin
+    for i in $(seq 40); do
+        echo "Material \"m$i\""
+    done
+} >many.pbrt
+expect 1 'there may be more errors than these 20' info many.pbrt
+[ "$(grep -c 'error: unknown material' err)" -eq 20 ]
+result 'not 20 errors' $?
+echo 'Shape "sphere" Material "diffuse" LightSource "point"' >early.pbrt
+expect 1 'Shape must stand after WorldBegin' info early.pbrt
+[ "$(grep -c 'error: ' err)" -eq 1 ]
+result 'a missing WorldBegin is several errors' $?
 
 # ---- rendering ----------------------------------------------------------------------------------------------------
 
@@ -138,6 +191,32 @@ file_missing named.png
 render -o upper.EXR "$scene"
 file_exists upper.EXR
 file_exists upper.png
+
+render --stats=- --frame=7 -o 'frame%d.%04d.exr' - <"$scene"
+result 'a scene from standard input: exit status' $?
+file_exists frame7.0007.exr
+file_exists frame7.0007.png
+grep -q '"image": "frame7.0007.exr"' out
+result 'no statistics on standard output' $?
+file_missing -
+grep -v '"string filename"' "$scene" | render -
+file_exists stdin.exr
+render -o plain2.exr "$scene"
+"$program" render --integrator=pt --resolution=16x12 --spp=1 -j 2 -o short.exr "$scene" >out 2>err
+cmp plain2.exr short.exr
+result '--spp and -j are not --samples and --threads' $?
+
+# shellcheck disable=SC2016 # for bash to expand
+completes() {
+    bash -c 'compopt() { :; }; source "$1"; shift; program=$1; shift
+        COMP_WORDS=(twinlight "$@"); COMP_CWORD=$#; _twinlight "$program"; echo "${COMPREPLY[*]}"' \
+        bash "$completion" "$program" "$@"
+}
+completion=${scene%/scenes/*}/man/bash/twinlight
+[ "$(completes pyr)" = pyramid ] && [ "$(completes render --integ)" = --integrator= ] &&
+    [ "$(completes render --backend = op)" = opencl ] && [ "$(completes compare --no)" = "$(
+        "$program" compare --help | grep -o -- '--no[a-z-]*' | paste -s -d ' ')" ]
+result 'completion in bash' $?
 
 render --threads=1 -o one.exr "$scene"
 render --threads=3 -o three.exr "$scene"

@@ -181,6 +181,8 @@ static const struct {
     {"--png a.pbrt", "png ", "a.pbrt"},
     {"--png=b.png a.pbrt", "png=b.png ", "a.pbrt"},
     {"--qui a.pbrt", "quiet ", "a.pbrt"},
+    {"--spp=4 --outfile x.exr a.pbrt", "samples=4 output=x.exr ", "a.pbrt"},
+    {"--sp 4 a.pbrt", "samples=4 ", "a.pbrt"},
     {"--samples=1 --samples=2 a.pbrt", "samples=1 samples=2 ", "a.pbrt"},
     {"-- --samples=4", "", "--samples=4"},
 };
@@ -200,9 +202,10 @@ END_TEST
 static const struct {
     const char *line, *message;
 } BAD_LINES[] = {
-    {"--sample-count=4 a", "error: unknown or ambiguous option --sample-count=4"},
-    {"--s=4 a", "error: unknown or ambiguous option --s=4"},
+    {"--sample-count=4 a", "error: unknown option --sample-count"},
+    {"--s=4 a", "error: option --s is short for several: --samples, --save-every, --seed"},
     {"-z a", "error: unknown option -z"},
+    {"--nthreads=4 a", "error: unknown option --nthreads"},
     {"a --samples", "error: option --samples needs a value"},
     {"a -o", "error: option --output needs a value"},
     {"--quiet=yes a", "error: option --quiet takes no value: --quiet=yes"},
@@ -284,6 +287,12 @@ START_TEST(test_progress_line_fits_its_terminal)
         ck_assert_int_eq(text[0], '[');
         ck_assert_int_lt((int)strlen(text), columns);
     }
+    const RenderProgress late = {.elapsed = 100.0, .fraction = 0.9999, .samples = 100, .rays = 100};
+    progress_line(&late, 0, text, sizeof text);
+    ck_assert_str_eq(text, " 99 %  1:40, finishing  1.00 samples/s  1.00 rays/s");
+    const RenderProgress over = {.elapsed = 100.0, .fraction = 1.0, .samples = 100, .rays = 100};
+    progress_line(&over, 0, text, sizeof text);
+    ck_assert_str_eq(text, " 99 %  1:40, finishing  1.00 samples/s  1.00 rays/s");
     const RenderProgress start = {0};
     progress_line(&start, 0, text, sizeof text);
     ck_assert_str_eq(text, "  0 %  0.0 s, ? left  0.00 samples/s  0.00 rays/s");
