@@ -2,10 +2,16 @@
 
 #include "rays_embree.h"
 
+#include "bvh.h"
 #include "instance_bounds.h"
 #include "primitive.h"
+#include "ray_reach.h"
 #include "state.h"
 #include "triangle_cluster.h"
+
+#ifndef TWINLIGHT_DOUBLE
+#include "bvh_traverse.h"
+#endif
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -30,6 +36,8 @@ struct RaysEmbree {
     ObjectRays *objects; /* [0]: the world */
     size_t object_count;
     size_t instance_count;
+    float reach; /* of the origins of rays that Embree is asked about, in the world */
+    Bvh outer; /* for the others; empty where there are none */
     atomic_llong bytes;
     char failure[256]; /* Embree's last complaint */
 };
@@ -226,9 +234,33 @@ static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *
     rtcReleaseGeometry(geometry);
 }
 
+#ifdef TWINLIGHT_DOUBLE /* the host's hierarchy knows floats alone; Embree's boxes suit all rays */
+
+static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
+{
+    (void)scene;
+    (void)error;
+    rays->reach = rays->view.frame->ray_reach;
+    return true;
+}
+
+#define OUTER_WALK(rays, ray, any) hit_none((ray).t_max)
+
+#else
+
+static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
+{
+    rays->reach = ray_reach_inner(&rays->view, (uint)rays->instance_count);
+    return !(rays->reach < rays->view.frame->ray_reach) || bvh_build(scene, &rays->outer, error);
+}
+
+#define OUTER_WALK(rays, ray, any) bvh_walk(&(rays)->view, (rays)->outer.words, (ray), (any))
+
+#endif
+
 static void reaches_set(RaysEmbree *rays)
 {
-    float world = rays->view.frame->ray_reach;
+    float world = rays->reach;
     for (size_t i = 0; i < rays->object_count; ++i)
         rays->objects[i].reach = i == 0 ? world : 0.0f;
     for (size_t i = 0; i < rays->instance_count; ++i) {
@@ -289,7 +321,7 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     return true;
 }
 
-static bool rays_build(RaysEmbree *rays, int threads, Error *error)
+static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads, Error *error)
 {
     char config[64];
     snprintf(config, sizeof config, "threads=%d,set_affinity=0", threads);
@@ -301,6 +333,8 @@ static bool rays_build(RaysEmbree *rays, int threads, Error *error)
     rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);
     if (!rays->objects)
         return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
+    if (!outer_build(rays, scene, error))
+        return false;
     reaches_set(rays);
     /* The world last: its instances need their objects' bounds. */
     for (size_t i = rays->object_count; i-- > 0;)
@@ -321,7 +355,7 @@ RaysEmbree *rays_embree_create(const BackendScene *scene, int threads, Error *er
     rays->view = scene_view(scene->frame, scene->geometry, scene->tables, scene->texels);
     rays->object_count = scene->object_count;
     rays->instance_count = scene->instance_count;
-    if (!rays_build(rays, threads, error)) {
+    if (!rays_build(rays, scene, threads, error)) {
         rays_embree_destroy(rays);
         return NULL;
     }
@@ -340,6 +374,7 @@ void rays_embree_destroy(RaysEmbree *rays)
     }
     if (rays->device)
         rtcReleaseDevice(rays->device);
+    bvh_destroy(&rays->outer);
     free(rays->objects);
     free(rays);
 }
@@ -355,9 +390,18 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
+/* Embree's boxes are wide enough for rays that start within reach, and which ray that is decides no bit: both walks find
+ * what the shared primitive test finds. */
+static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
+{
+    return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;
+}
+
 Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
+    if (ray_is_outer(rays, ray))
+        return OUTER_WALK(rays, *ray, false);
     walk_begin(&walk, rays, ray);
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
@@ -369,6 +413,8 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
+    if (ray_is_outer(rays, ray))
+        return OUTER_WALK(rays, *ray, true).primitive != NONE;
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
@@ -408,5 +454,5 @@ uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint c
 size_t rays_embree_bytes(const RaysEmbree *rays)
 {
     long long bytes = atomic_load(&((RaysEmbree *)(uintptr_t)rays)->bytes);
-    return bytes > 0 ? (size_t)bytes : 0;
+    return (bytes > 0 ? (size_t)bytes : 0) + rays->outer.word_count * sizeof *rays->outer.words;
 }

@@ -263,6 +263,23 @@ result 'pyramid: --unweighted changes nothing' $?
 expect 0 'lights        2' info "$scene"
 expect 0 '"feature_mask"' info --json "$scene"
 
+# One vertex that is far from all others is said.
+far() {
+    {
+        echo 'LookAt 0 -3 2  0 0 0  0 0 1 Camera "perspective" WorldBegin LightSource "infinite" AttributeBegin'
+        for _ in 1 2 3 4 5 6 7 8 9; do
+            echo 'Translate .1 0 0 Shape "sphere" "float radius" .05'
+        done
+        echo "AttributeEnd Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  0 $1 0 ] \"integer indices\" [ 0 1 2 ]"
+    } >far.pbrt
+}
+far 1e6
+expect 0 '1 of the primitives and instances reaches as far as 1e+06' render --resolution=4x4 --spp=1 -o far.exr far.pbrt
+far 10
+expect 0 '' render --resolution=4x4 --spp=1 -o far.exr far.pbrt
+! grep -q 'of the primitives' err
+result 'a vertex that is not far is said to be' $?
+
 # Light that no path can bring is said to be missing, where glass is smooth and the sun a point; not where it is rough.
 pool() {
     printf '%s\n' 'WorldBegin LightSource "distant"' 'Material "diffuse"' \
