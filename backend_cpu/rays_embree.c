@@ -13,10 +13,12 @@
 #include "bvh_traverse.h"
 #endif
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* One Object's hierarchy. */
 typedef struct ObjectRays {
@@ -321,13 +323,52 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     return true;
 }
 
+/* What Embree takes to start; and then to build, for each of its threads and for each primitive. */
+#define EMBREE_BYTES ((size_t)128 << 20)
+#define EMBREE_THREAD_BYTES ((size_t)8 << 20)
+#define EMBREE_PRIMITIVE_BYTES ((size_t)200)
+
+/* Where memory ends inside of Embree, it may end the program. So its memory is asked for before, and given back. */
+static bool memory_probe(const RaysEmbree *rays, int threads, Error *error)
+{
+    size_t bytes = (size_t)threads * EMBREE_THREAD_BYTES;
+    for (size_t i = 0; i < rays->object_count; ++i)
+        bytes += EMBREE_PRIMITIVE_BYTES * rays->view.objects[i].primitive_count;
+    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED)
+        return error_memory(error, bytes, "ray queries");
+    munmap(room, bytes);
+    return true;
+}
+
+static void *thread_empty(void *nothing)
+{
+    return nothing;
+}
+
+/* Likewise where there can be no thread at all. */
+static bool thread_probe(Error *error)
+{
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, thread_empty, NULL) == 0)
+        return pthread_join(thread, NULL) == 0;
+    error_set(error, "no thread can be started");
+    return error_fix(error, "end other programs, or have the limit raised: ulimit -u");
+}
+
 static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads, Error *error)
 {
     char config[64];
     snprintf(config, sizeof config, "threads=%d,set_affinity=0", threads);
+    if (!thread_probe(error))
+        return false;
     rays->device = rtcNewDevice(config);
+    if (!rays->device && rtcGetDeviceError(NULL) == RTC_ERROR_OUT_OF_MEMORY)
+        return error_memory(error, EMBREE_BYTES, "Embree");
     if (!rays->device)
         return error_set(error, "Embree cannot be started (error %d)", (int)rtcGetDeviceError(NULL));
+    if (!memory_probe(rays, threads, error))
+        return false;
     rtcSetDeviceErrorFunction(rays->device, embree_error_callback, rays);
     rtcSetDeviceMemoryMonitorFunction(rays->device, embree_memory_callback, rays);
     rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);

@@ -1,9 +1,10 @@
 #include "log.h"
 
+#include "progress.h"
+
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <unistd.h>
 
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
 static LogLevel log_level = LOG_INFO;
@@ -56,7 +57,7 @@ static void log_write(LogLevel level, const char *where, const char *text)
         if (log_sink)
             log_sink(line, log_sink_context);
         else
-            fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
+            fprintf(stderr, "%s%s\n", stream_is_terminal(stderr) ? "\r\033[K" : "", line);
     }
     pthread_mutex_unlock(&log_mutex);
 }

@@ -130,6 +130,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene_pack.c host/scene_pack.h \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
+	host/startup.c host/startup.h \
 	host/stats.c host/stats.h \
 	host/student.c host/student.h \
 	host/svg_chart.c host/svg_chart.h \

@@ -448,4 +448,56 @@ awk -F'[:,]' '/"render"/ { used = $2 } END { exit !(used >= 0.9) }' time.json
 result '--time=1s: rendering took less' $?
 file_exists time.exr
 
+# ---- little to work with ------------------------------------------------------------------------------------------
+
+# limited STATUS TEXT LIMIT...: a rendering under ulimit; as bash has it.
+limited() {
+    expected=$1
+    text=$2
+    shift 2
+    # shellcheck disable=SC2016 # for bash to expand
+    bash -c 'program=$1 scene=$2; shift 2; ulimit "$@" && exec "$program" render --spp=1 --resolution=16x16 --no-png -o limited.exr "$scene"' \
+        bash "$program" "$scene" "$@" >out 2>err
+    status=$?
+    [ "$status" -eq "$expected" ] && grep -qF -- "$text" err
+    result "ulimit $*: exit status $status, not $expected, or no \"$text\"" $?
+}
+# A sanitizer needs terabytes of address space, and stack of its own.
+if ! grep -q '^SANITIZE_CFLAGS = .*fsanitize' "$build/Makefile"; then
+    limited 1 'ulimit -s 8192' -s 128
+    limited 0 '' -Ss 128
+    for kilobytes in 185000 190000 195000 200000 210000; do
+        limited 1 'error: ' -v $kilobytes
+    done
+fi
+
+# A log line must not land in the image.
+"$program" render --spp=1 --resolution=16x16 --no-png -o closed.exr far.pbrt 2>&-
+result 'standard error closed: exit status' $?
+"$program" compare closed.exr closed.exr >out 2>err
+result 'standard error closed: the image cannot be read' $?
+
+# ---- what floats cannot hold --------------------------------------------------------------------------------------
+
+bright() {
+    echo "LookAt 0 -3 2  0 0 0  0 0 1 Camera \"perspective\" $1 WorldBegin LightSource \"infinite\" \"rgb L\" [ $2 $2 $2 ]" \
+        'Shape "sphere" "float radius" .5' >bright.pbrt
+}
+bright 'Film "rgb" "float iso" [ 1e22 ]' 1e20
+expect 0 '256 of 256 pixels (100 %) are brighter than a float can say' render --resolution=16x16 --spp=1 --integrator=pt \
+    -o bright.exr bright.pbrt
+bright '"float lensradius" [ 1e20 ] "float focaldistance" [ 3 ]' 1
+expect 1 "the camera's lens has a radius of 1e+20" render --resolution=16x16 --spp=1 --integrator=pt -o bright.exr bright.pbrt
+
+# Camera space may be scaled as one likes.
+for scale in 1 1.1368683772161603e-13 9223372036854775808; do # powers of two: not even a bit changes
+    {
+        echo "Scale $scale $scale $scale"
+        cat "$scene"
+    } >scaled.pbrt
+    render --integrator=bdpt -o scaled$scale.exr scaled.pbrt
+done
+cmp scaled1.exr scaled1.1368683772161603e-13.exr && cmp scaled1.exr scaled9223372036854775808.exr
+result 'the image depends on the scale of camera space' $?
+
 checks_end
