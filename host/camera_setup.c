@@ -3,6 +3,7 @@
 #include "matrix.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool affine_set(const double m[16], Affine *out, Error *error)
 {
@@ -115,4 +116,31 @@ bool camera_setup(const CameraSettings *given, int width, int height, Camera *ou
         out->screen[i] = (float)(scale * window[i]);
     return affine_set(settings.world_from_camera, &out->world_from_camera, error) &&
            affine_set(settings.camera_from_world, &out->camera_from_world, error);
+}
+
+void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 origin, float world_to_camera[16],
+                     float world_to_ndc[16])
+{
+    Matrix view, to_window = matrix_identity(),
+                 move = matrix_translate(-(double)origin.x, -(double)origin.y, -(double)origin.z);
+    memcpy(view.m, settings->camera_from_world, sizeof view.m);
+    Matrix world = matrix_multiply(&view, &move);
+    /* The window's units are 2^exponent as many as those of the settings where it is not a tangent. */
+    double unit = camera->kind == CAMERA_PERSPECTIVE ? 1.0 : ldexp(1.0, -unit_exponent(settings->world_from_camera));
+    const double left = unit * (double)camera->screen[0], right = unit * (double)camera->screen[1],
+                 low = unit * (double)camera->screen[2], high = unit * (double)camera->screen[3];
+    int across = camera->kind == CAMERA_PERSPECTIVE ? 2 : 3; /* what is divided by: z, or 1 */
+    to_window.m[0] = 1.0 / (right - left);
+    to_window.m[5] = 1.0 / (low - high);
+    to_window.m[across] = -left / (right - left);
+    to_window.m[4 + across] = -high / (low - high);
+    if (camera->kind == CAMERA_PERSPECTIVE) {
+        to_window.m[10] = to_window.m[15] = 0.0;
+        to_window.m[11] = to_window.m[14] = 1.0; /* z becomes 1 / z */
+    }
+    Matrix picture = matrix_multiply(&to_window, &world);
+    for (int i = 0; i < 16; ++i) {
+        world_to_camera[i] = (float)world.m[i];
+        world_to_ndc[i] = (float)picture.m[i];
+    }
 }

@@ -2,6 +2,7 @@
 #include "command.h"
 
 #include "bad_chains.h"
+#include "camera_setup.h"
 #include "chain_list.h"
 #include "diagnostics.h"
 #include "frame_name.h"
@@ -103,6 +104,8 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->despeckle = command->despeckle;
     output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
+    camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
+                    output->world_to_ndc);
     return render_output_distinct(output, stats, command->trace, command->dump_bad, error) &&
            render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
            (!stats || render_output_check(stats, error)) &&
