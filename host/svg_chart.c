@@ -99,7 +99,8 @@ static void grid_even(FILE *stream, const Axis *x, const Axis *y, bool vertical)
     double apart = (high - low) / 4.0, unit = pow(10.0, floor(log10(apart))), part = apart / unit;
     double step = unit * (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0);
     int digits = (int)floor(log10(high)) - (int)floor(log10(step)) + 1;
-    for (double k = ceil(low / step); k * step <= high; k += 1.0)
+    int first = (int)ceil(low / step), last = (int)floor(high / step);
+    for (int k = first; k <= last; ++k)
         grid_line(stream, x, y, vertical, false, k * step, digits > 1 ? digits : 1);
 }
 
