@@ -116,14 +116,14 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     return alpha > 0.0f && ray_hash(query, id) <= alpha;
 }
 
-/* Whether a hit of the primitive counts: always, but for an alpha texture. */
-SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *query, uint id, const Hit *hit)
+/* Whether a hit of the primitive counts: always, but for an alpha texture. `asked`: what the ray's hash is asked with. */
+SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *query, uint id, uint asked, const Hit *hit)
 {
     if (!SCENE_HAS(scene, FEATURE_ALPHA))
         return true;
     Primitive primitive = scene->primitives[id];
     return !(primitive.shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
-           primitive_alpha_keeps(scene, query, id, &primitive, hit);
+           primitive_alpha_keeps(scene, query, asked, &primitive, hit);
 }
 
 /* An intersection with what is no triangle, whatever its alpha texture says: the first; of a sphere the first beyond
@@ -145,14 +145,11 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
 
 /* Whether a hit at hit->t counts: it lies in the primitive's box (to which hit->t may be moved), and an alpha texture
  * does not say otherwise. `asked`: the number that the hash of a partly transparent one takes. */
-SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, uint asked, const Primitive *primitive,
-                                             const RayQuery *query, Hit *hit)
+SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, uint asked, const RayQuery *query,
+                                             Hit *hit)
 {
     Box box = primitive_box(scene, id);
-    if (!box_admits_hit(&box, query, &hit->t))
-        return false;
-    return !SCENE_HAS(scene, FEATURE_ALPHA) || !(primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) ||
-           primitive_alpha_keeps(scene, query, asked, primitive, hit);
+    return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, asked, hit);
 }
 
 /* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it not,
@@ -163,12 +160,12 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
     if (!primitive_curved_from(scene, &primitive, query, 0.0f, hit))
         return false;
     float first = hit->t;
-    if (primitive_curved_counts(scene, id, id, &primitive, query, hit))
+    if (primitive_curved_counts(scene, id, id, query, hit))
         return true;
     return SCENE_HAS(scene, FEATURE_ALPHA) && SCENE_HAS(scene, FEATURE_SPHERE) &&
            primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE &&
            primitive_curved_from(scene, &primitive, query, first, hit) &&
-           primitive_curved_counts(scene, id, id ^ PRIMITIVE_FAR_SIDE, &primitive, query, hit);
+           primitive_curved_counts(scene, id, id ^ PRIMITIVE_FAR_SIDE, query, hit);
 }
 
 /* Whether a hit of a triangle with the corners a, b, c, as triangle_query finds it, counts: where its box and its alpha
@@ -177,7 +174,7 @@ SHARED_FUNCTION bool primitive_triangle_counts(const SceneView *scene, uint id, 
                                                const RayQuery *query, Hit *hit)
 {
     Box box = triangle_box(a, b, c);
-    return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, hit);
+    return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, id, hit);
 }
 
 /* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and but for quadrics u, v.
