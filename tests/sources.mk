@@ -54,11 +54,16 @@ endif
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
+# Whether the tests see faults that are planted one at a time: mutants.sh -h. An hour or two; not a part of any check.
+.PHONY: mutants
+mutants: twinlight$(EXEEXT)
+	$(srcdir)/tests/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
+
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 TEST_CACHE = $(abs_top_builddir)/test-cache
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(TEST_CACHE)'; export XDG_CACHE_HOME;
 clean-local:
-	rm -rf test-cache
+	rm -rf test-cache mutants.work mutants.md
 
 EXTRA_DIST += \
 	tests/analytic.h \
@@ -72,6 +77,9 @@ EXTRA_DIST += \
 	tests/geometry_suites.h \
 	tests/instances.pbrt \
 	tests/light_fixture.h \
+	tests/mutants.md \
+	tests/mutants.sh \
+	tests/mutants.txt \
 	tests/numerics.h \
 	tests/opencl_probe.h \
 	tests/render_fixture.h \
