@@ -83,6 +83,7 @@ EXTRA_DIST += \
 	tests/numerics.h \
 	tests/opencl_probe.h \
 	tests/render_fixture.h \
+	tests/test_blend.h \
 	tests/test_bvh.h \
 	tests/test_emit.h \
 	tests/test_files.h \
@@ -129,6 +130,9 @@ tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
 	tests/test_bidirectional_strategies.c \
 	tests/test_bidirectional_walks.c \
 	tests/test_bidirectional_weights.c
+
+tests_test_blend_SOURCES = tests/test_blend.c \
+	tests/test_blend_known.c
 
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
