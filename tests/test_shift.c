@@ -1,7 +1,10 @@
 /* Shifts where surfaces are finer than a thousandth of a segment: what a chain keeps has to be what it kept. */
 #include "bidirectional.h"
 
+#include "shift.h"
+
 #include <stdlib.h>
+#include <string.h>
 
 /* A distant light comes from below and passes the floor, at y = 0. A black triangle far away makes the scene large and thereby
  * light tracing rare, so that paths with one vertex from the light, whose z_2 shifts keep, have nearly all of the weight. */
@@ -66,9 +69,128 @@ START_TEST(test_fins)
 }
 END_TEST
 
+/* ---- what is kept ------------------------------------------------------------------------------------------------ */
+
+/* One chain whose current path is in bank 0; its proposal, a shift or not, goes to bank 1. */
+typedef struct Kept {
+    FrameParams frame;
+    uint paths[CHAIN_NUMBERS], vertices[CHAIN_VERTEX_WORDS];
+    WalkMeeting meeting; /* of z_2, and then of z_3 */
+} Kept;
+
+static void kept_init(Kept *kept, uint shift)
+{
+    memset(kept, 0, sizeof *kept);
+    kept->frame.stride = 1;
+    kept->paths[CHAIN_MOVE] = HALF_CAMERA << MOVE_CHANGED | shift << MOVE_SHIFT;
+}
+
+/* The walk that draws directions with density pdf_w goes from o to p, on a primitive whose normal is ng. */
+static void kept_walk(Kept *kept, Vec3 o, Vec3 p, Vec3 ng, float pdf_w)
+{
+    WalkMeeting *meeting = &kept->meeting;
+    Vec3 d = vec3_sub(p, o);
+    *meeting = (WalkMeeting){.from = o, .light = NONE, .instance = 7, .primitive = 9};
+    meeting->ray.o = o;
+    meeting->ray.d = vec3_normalize(d);
+    meeting->distance2 = vec3_length_squared(d);
+    meeting->surface.p = p;
+    meeting->surface.ng = ng;
+    kept->paths[BD_SHIFT_DENSITY] = float_bits(pdf_w);
+}
+
+static bool kept_meet(Kept *kept, uint depth)
+{
+    return shift_meet(&kept->frame, kept->paths, kept->vertices, 0, depth, &kept->meeting);
+}
+
+/* Density per area by the definition. */
+static double area_density(const Kept *kept, double pdf_w)
+{
+    const WalkMeeting *meeting = &kept->meeting;
+    return pdf_w * fabs((double)vec3_dot(meeting->ray.d, meeting->surface.ng)) / (double)meeting->distance2;
+}
+
+/* The density of z_2 and z_3 is the product of both per area, of either path; the ratio of the proposal's to the current path's is
+ * that of volumes. What cannot be shifted has 0, and a path that cannot makes no step to one that can. */
+START_TEST(test_kept_density)
+{
+    Kept kept;
+    double expected[2];
+    for (uint path = 0; path < 2; ++path) {
+        if (path == 0)
+            kept_init(&kept, 0);
+        /* As taking a proposal leaves it: the current path's bank is the other. */
+        kept.paths[CHAIN_MOVE] = HALF_CAMERA << MOVE_CHANGED | (path == 0 ? 0u : HALF_CAMERA) << MOVE_BANKS;
+        kept_walk(&kept, vec3((float)path, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
+        expected[path] = area_density(&kept, (double)0.7f);
+        ck_assert(kept_meet(&kept, 2));
+        kept_walk(&kept, vec3(1.0f, 2.0f, 3.0f), vec3(-1.0f, 5.0f, (float)path), vec3(1.0f, 0.0f, 0.0f),
+                  4.0f + (float)path);
+        expected[path] *= area_density(&kept, 4.0 + path);
+        ck_assert(kept_meet(&kept, 3));
+        TEST_NEAR(shift_density(kept.vertices, 1, 1u - path, 0) / expected[path], 1.0, 1e-6);
+    }
+    /* The path in bank 0 is proposed, that in bank 1 current. */
+    kept.paths[CHAIN_MOVE] |= (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
+    TEST_NEAR(shift_ratio(kept.paths, kept.vertices, 1, 0) / (expected[1] / expected[0]), 1.0, 1e-6);
+    kept.paths[CHAIN_MOVE] ^= SHIFT_KEEPS << MOVE_SHIFT;
+    ck_assert_float_eq(shift_ratio(kept.paths, kept.vertices, 1, 0), 0.0f);
+    kept.meeting.missed = true;
+    kept_meet(&kept, 3);
+    ck_assert_float_eq(shift_density(kept.vertices, 1, 0, 0), 0.0f);
+    ck_assert_float_eq(shift_ratio(kept.paths, kept.vertices, 1, 0), 1.0f);
+    ck_assert_uint_eq(shift_kind(kept.paths, kept.vertices, 1, 0), SHIFT_STEP | SHIFT_KEEPS);
+    shift_density_set(kept.vertices, 1, 1, 0, 0.0f);
+    ck_assert_uint_eq(shift_kind(kept.paths, kept.vertices, 1, 0), SHIFT_STEP);
+    kept.paths[CHAIN_MOVE] &= ~(SHIFT_STEP << MOVE_SHIFT);
+    ck_assert_float_eq(shift_ratio(kept.paths, kept.vertices, 1, 0), 1.0f);
+}
+END_TEST
+
+/* What z_2 has to be met as: where it was, of the primitive and the instance that it was of. Numbers are 2^-23 apart, and a
+ * direction that is drawn with density p by one of two numbers alone goes astray by up to 2^-23 / p of the distance; that is
+ * found. A thousandth of the segment away is another place. */
+START_TEST(test_kept_point)
+{
+    static const struct {
+        float pdf_w, away; /* across the ray */
+        uint instance, primitive;
+        bool found;
+    } CASES[] = {{1.0f, 0.0f, 7, 9, true},
+                 {1.0f, 0.0f, 8, 9, false},
+                 {1.0f, 0.0f, 7, 8, false},
+                 {1.0f, 0.5e-6f, 7, 9, true},
+                 {1.0f, 0.01f, 7, 9, false},
+                 {1e-3f, 0x1p-23f * 1e3f, 7, 9, true},
+                 {1.0f, 0x1p-23f * 1e3f, 7, 9, false},
+                 {1e-3f, 0x1p-23f * 1e4f, 7, 9, false}};
+    const struct {
+        Vec3 o, p;
+    } WALKS[] = {{vec3_splat(0.0f), vec3(0.0f, 0.0f, 1.0f)}, {vec3(0.0f, 0.0f, -2.0f), vec3(0.0f, 0.0f, 2.0f)}};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; ++i)
+        for (size_t k = 0; k < 2; ++k) {
+            Kept kept;
+            Vec3 o = WALKS[k].o, p = WALKS[k].p;
+            float distance = p.z - o.z;
+            uint point = shift_point(0, 2);
+            kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);
+            kept_walk(&kept, o, vec3(CASES[i].away * distance, 0.0f, p.z), vec3(0.0f, 0.0f, -1.0f), CASES[i].pdf_w);
+            state_store_vec3(kept.vertices, 1, point, 0, p);
+            kept.vertices[point + SHIFT_INSTANCE] = CASES[i].instance;
+            kept.vertices[point + SHIFT_PRIMITIVE] = CASES[i].primitive;
+            ck_assert_msg(kept_meet(&kept, 2) == CASES[i].found, "case %zu, distance %g", i, (double)distance);
+        }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("shift");
+    TCase *kept = tcase_create("kept");
+    tcase_add_test(kept, test_kept_density);
+    tcase_add_test(kept, test_kept_point);
+    suite_add_tcase(suite, kept);
     TCase *fins = tcase_create("fins");
     tcase_set_timeout(fins, 600);
     tcase_add_loop_test(fins, test_fins, 0, 2);
