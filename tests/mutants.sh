@@ -174,17 +174,17 @@ make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log"
 
 # ---- running ----------------------------------------------------------------------------------------------------------
 
-# Which programs could see a fault in FILE: those that are likely to or quick, and then the others.
+# Which programs, or PROGRAM:CASE, could see a fault in FILE: those that are likely to or quick, and then the others.
 likely() {
     case $1 in
-    shared/mis.h | shared/strategy.h) echo test_light test_bidirectional ;;
+    shared/mis.h | shared/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/mutation.h) echo test_chain test_shift test_layers ;;
-    shared/shift.h) echo test_chain test_shift ;;
-    shared/bsdf_invert.h) echo test_bsdf test_shift ;;
+    shared/shift.h) echo test_shift:kept test_chain test_shift ;;
+    shared/bsdf_invert.h) echo test_bsdf:inverse test_shift ;;
     shared/pool.h) echo test_chain_population test_pool test_layers ;;
     shared/chain_light.h) echo test_layers test_shift ;;
-    shared/light_emit.h) echo test_emit test_bidirectional ;;
-    shared/light_*.h | shared/camera.h) echo test_light test_emit test_analytic test_bidirectional ;;
+    shared/light_emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
+    shared/light_*.h | shared/camera.h) echo test_light test_emit test_bidirectional:walks test_analytic ;;
     shared/film_sum.h) echo test_film test_layers test_emit ;;
     host/chain_population.c) echo test_chain_population test_layers ;;
     host/*) echo test_blend test_pool test_layers ;;
@@ -193,10 +193,10 @@ likely() {
 others() {
     case $1 in
     shared/mis.h | shared/strategy.h | shared/light_*.h | shared/camera.h)
-        echo test_numerics test_mmlt test_render test_scenes test_reference test_cli.sh ;;
+        echo test_bidirectional test_numerics test_render test_scenes test_mmlt test_cli.sh ;;
     shared/film_sum.h)
         echo test_blend test_render test_group test_verify test_cli.sh test_numerics test_bidirectional test_mmlt ;;
-    *) echo test_mmlt test_numerics test_scenes test_reference test_layers test_aim test_cli.sh ;;
+    *) echo test_mmlt test_layers test_aim test_numerics test_scenes test_cli.sh ;;
     esac
 }
 # Those of `make check-long` that take more samples or have more cases there.
@@ -209,11 +209,16 @@ longer() {
     esac
 }
 
+# Other work on the machine is no fault.
+export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-4}"
+
 # test_fails PROGRAM NUMBER EFFORT: runs it; what it says goes to $work/out. 77: it is skipped.
 test_fails() {
-    run=tests/$1 limit=900
-    case $1 in *.sh) run=$source/tests/$1 ;; esac
+    run=tests/${1%%:*} limit=600 case=''
+    case $1 in *.sh) run=$source/tests/$1 ;; *:*) case=${1#*:} ;; esac
     [ "$3" = 1 ] || limit=7200
+    CK_RUN_CASE=$case
+    if [ "$case" ]; then export CK_RUN_CASE; else unset CK_RUN_CASE; fi
     TWINLIGHT_MUTANT=$2 TWINLIGHT_TEST_EFFORT=$3 srcdir=$source XDG_CACHE_HOME=$work/cache \
         timeout -k 10 $limit "$run" >"$work/out" 2>&1
     case $? in 0 | 77) return 1 ;; esac
@@ -250,7 +255,7 @@ killer() {
     shift 2
     for killer_name; do
         if test_fails "$killer_name" "$killer_number" "$killer_effort"; then
-            printf '%s\t%s' "$killer_name" "$(failed_case)"
+            printf '%s\t%s' "${killer_name%%:*}" "$(failed_case)"
             return 0
         fi
     done
