@@ -85,6 +85,7 @@ EXTRA_DIST += \
 	tests/render_fixture.h \
 	tests/test_blend.h \
 	tests/test_bvh.h \
+	tests/test_chain.h \
 	tests/test_emit.h \
 	tests/test_files.h \
 	tests/test_import.h \
@@ -147,6 +148,9 @@ tests_test_bvh_SOURCES = tests/test_bvh.c \
 	tests/test_bvh_build.c \
 	tests/test_bvh_opencl.c \
 	tests/bvh_scenes.c
+
+tests_test_chain_SOURCES = tests/test_chain.c \
+	tests/test_chain_shown.c
 
 tests_test_emit_SOURCES = tests/test_emit.c \
 	tests/test_emit_area.c \
