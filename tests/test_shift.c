@@ -1,5 +1,6 @@
 /* Shifts where surfaces are finer than a thousandth of a segment: what a chain keeps has to be what it kept. */
 #include "bidirectional.h"
+#include "test_files.h"
 
 #include "shift.h"
 
@@ -74,7 +75,7 @@ END_TEST
 /* One chain whose current path is in bank 0; its proposal, a shift or not, goes to bank 1. */
 typedef struct Kept {
     FrameParams frame;
-    uint paths[CHAIN_NUMBERS], vertices[CHAIN_VERTEX_WORDS];
+    uint paths[CHAIN_NUMBERS + 64], vertices[CHAIN_VERTEX_WORDS];
     WalkMeeting meeting; /* of z_2, and then of z_3 */
 } Kept;
 
@@ -131,6 +132,15 @@ START_TEST(test_kept_density)
         ck_assert(kept_meet(&kept, 3));
         TEST_NEAR(shift_density(kept.vertices, 1, 1u - path, 0) / expected[path], 1.0, 1e-6);
     }
+    /* The current path again: both of its vertices are where they are kept. */
+    Kept again = kept;
+    again.paths[CHAIN_MOVE] =
+        HALF_CAMERA << MOVE_CHANGED | HALF_CAMERA << MOVE_BANKS | (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
+    kept_walk(&again, vec3(0.0f, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
+    ck_assert(kept_meet(&again, 2));
+    kept_walk(&again, vec3(1.0f, 2.0f, 3.0f), vec3(-1.0f, 5.0f, 0.0f), vec3(1.0f, 0.0f, 0.0f), 4.0f);
+    ck_assert(kept_meet(&again, 3));
+    TEST_NEAR(shift_ratio(again.paths, again.vertices, 1, 0), 1.0, 1e-6);
     /* The path in bank 0 is proposed, that in bank 1 current. */
     kept.paths[CHAIN_MOVE] |= (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
     TEST_NEAR(shift_ratio(kept.paths, kept.vertices, 1, 0) / (expected[1] / expected[0]), 1.0, 1e-6);
@@ -184,12 +194,56 @@ START_TEST(test_kept_point)
 }
 END_TEST
 
+/* The numbers that a shift finds draw the direction to where the next vertex is, also where numbers count from the direction to a
+ * light; they stand among the coordinates, and the density that is noted is the diffuse lobe's: cosine over pi. */
+START_TEST(test_kept_numbers)
+{
+    static Scene scene;
+    static Kept kept;
+    unsigned state = 5;
+    scene_init(&scene);
+    scene.frame.aim_count = (uint)_i;
+    scene.frame.aims[0] = vec3(1.0f, 3.0f, -2.0f);
+    scene.frame.aims_near[0] = scene.frame.aims_power[0] = 1.0f;
+    scene.frame.stride = 1;
+    scene.frame.max_depth = 5;
+    scene.frame.roulette_depth = 100;
+    SceneView view = {.frame = &scene.frame, .features = ~0u};
+    Vertex vertex = {.p = vec3(0.5f, -0.25f, 1.0f), .beta = vec3_splat(1.0f), .back = 1.0f};
+    vertex.ng = vec3_normalize(vec3(1.0f, 2.0f, 0.5f));
+    vertex.frame = frame_from_normal(vertex.ng);
+    vertex.wo = vec3_normalize(vec3(0.3f, 0.1f, 0.7f));
+    vertex.bsdf = (Bsdf){.kind = MATERIAL_DIFFUSE, .color0 = vec3_splat(0.5f)};
+    bsdf_flags_set(&vertex.bsdf);
+    for (uint n = 0; n < 4000; ++n) {
+        uint i = 1 + n % 2, d = 4;
+        float u[6];
+        WalkStep step;
+        for (int k = 0; k < 6; ++k)
+            u[k] = (float)test_random_unit(&state);
+        Vec3 w = frame_to_world(vertex.frame, warp_cosine_hemisphere(vec2(u[0], u[1])));
+        Random4 numbers = {{(uint)(u[2] * 4e9f), (uint)(u[3] * 4e9f), (uint)(u[4] * 4e9f), 0u}};
+        kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);
+        state_store_vec3(kept.vertices, 1, shift_point(0, i + 1), 0, vec3_mad(vertex.p, 1.0f + 3.0f * u[5], w));
+        ck_assert(shift_aim(&view, kept.paths, kept.vertices, 0, d, i, &vertex, &numbers));
+        for (uint k = 0; k < 2; ++k)
+            TEST_TRUE(state_load(kept.paths, 1, shift_number(&scene.frame, d, i, k), 0) == numbers.x[1 + k]);
+        TEST_TRUE(walk_scatter(&view, &vertex, SIDE_CAMERA, 1, 1.0f, 0.0f, numbers, &step));
+        TEST_NEAR(vec3_length(vec3_sub(step.ray.d, w)), 0.0, 1e-4);
+        shift_drawn(&view, kept.paths, 0, &vertex, numbers, w);
+        TEST_NEAR(bits_float(kept.paths[BD_SHIFT_DENSITY]), (double)vec3_dot(w, vertex.ng) / 3.14159265358979, 1e-5);
+    }
+    scene_destroy(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("shift");
     TCase *kept = tcase_create("kept");
     tcase_add_test(kept, test_kept_density);
     tcase_add_test(kept, test_kept_point);
+    tcase_add_loop_test(kept, test_kept_numbers, 0, 2);
     suite_add_tcase(suite, kept);
     TCase *fins = tcase_create("fins");
     tcase_set_timeout(fins, 600);
