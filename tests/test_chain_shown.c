@@ -17,7 +17,7 @@ enum { WIDTH = 9, X0 = 1, X1 = 7, Y0 = 2, Y1 = 6, COLUMNS = X1 - X0, ROWS = Y1 -
 
 typedef struct Shown {
     LightFixture light;
-    uint paths[CHAIN_NUMBERS], rays[RAY_WORDS], splats[SPLAT_WORDS], diagnostics[DIAGNOSTIC_COUNT];
+    uint paths[CHAIN_NUMBERS + 64], rays[RAY_WORDS], splats[SPLAT_WORDS], diagnostics[DIAGNOSTIC_COUNT];
     unsigned state;
 } Shown;
 
@@ -286,6 +286,65 @@ START_TEST(test_environment)
 }
 END_TEST
 
+/* A camera's walk of four segments meets a lamp: the contribution has the weight of s = 0 among all strategies, which the walk's
+ * delta vertices leave, and the key what path tracing shows of it by the weight of both of its own. */
+START_TEST(test_met_lamp)
+{
+    enum { D = 4 };
+    static const float TRIANGLE[9] = {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f};
+    Shown shown;
+    FrameParams *frame = &shown.light.scene.frame;
+    const Vec3 beta = vec3(3.0f, 5.0f, 2.0f);
+    uint full[D * DENSITY_WORDS], compact[D];
+    float weights_seen[2] = {0.0f, 0.0f};
+    shown_init(&shown, 8);
+    fixture_add_polygon(&shown.light, TRIANGLE, 3, NULL, 0, LIGHT_TWO_SIDED);
+    fixture_finish(&shown.light);
+    frame->strategies = STRATEGIES_BDPT;
+    frame->mis_exponent = 2;
+    frame->only_s = NONE;
+    frame->limit = 0.01f;
+    for (uint delta = 0; delta < 2; ++delta) { /* the second time z_2 is one */
+        for (uint i = 0; i < D; ++i) {
+            float own = octaves(&shown, 0.5), other = octaves(&shown, 0.5);
+            full[i * DENSITY_WORDS + DENSITY_OWN] = float_bits(own);
+            full[i * DENSITY_WORDS + DENSITY_OTHER] = float_bits(other);
+            compact[i] = float_bits(i + 2 < D ? other / own : own);
+        }
+        WalkMeeting meeting = {.light = 0, .instance = 0, .primitive = 0, .back = 0.7f};
+        meeting.from = vec3(0.3f, 0.2f, 2.0f);
+        meeting.ray.o = meeting.from;
+        meeting.ray.d = vec3(0.0f, 0.0f, -1.0f);
+        meeting.distance2 = 4.0f;
+        meeting.surface = (Surface){.p = vec3(0.3f, 0.2f, 0.0f), .ng = vec3(0.0f, 0.0f, 1.0f)};
+        StrategyEnds ends = {0};
+        Vec3 met = emission_met(&shown.light.view, &meeting, &ends);
+        DensityView view = {.light = full, .camera = full, .stride = 1, .camera_delta = delta << 2};
+        StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, D + 1, &view, &ends);
+        weights_seen[delta] = weights.own;
+        TEST_TRUE(weights.own < 0.9f * weights.plain); /* or what follows says nothing */
+        memset(shown.paths, 0, sizeof shown.paths);
+        state_store(shown.paths, 1, CHAIN_PROPOSED_KEY, 0, chain_key(D, 0));
+        state_store_vec3(shown.paths, 1, BD_BETA, 0, beta);
+        state_store(shown.paths, 1, BD_CAMERA_DELTA, 0, delta << 2);
+        state_store(shown.paths, 1, CHAIN_NUMBERS + NUMBER_CAMERA, 0, 0x40000000u);
+        state_store(shown.paths, 1, CHAIN_NUMBERS + NUMBER_CAMERA + 1u, 0, 0xc0000000u);
+        chain_meet_light(&shown.light.view, shown.paths, compact, 0, D, &meeting);
+        Vec3 expected = vec3_scale(vec3_mul(beta, met), weights.own);
+        Vec3 got = state_load_vec3(shown.paths, 1, BD_CONTRIBUTION, 0);
+        Vec2 film = chain_film_load(shown.paths, 1, CHAIN_PROPOSED_FILM, 0);
+        TEST_NEAR(film.x, X0 + 0.5 - RADIUS_X + 0.25 * (COLUMNS + 2.0 * RADIUS_X - 1.0), 1e-5);
+        TEST_NEAR(film.y, Y0 + 0.5 - RADIUS_Y + 0.75 * (ROWS + 2.0 * RADIUS_Y - 1.0), 1e-5);
+        TEST_NEAR(vec3_length(vec3_sub(got, expected)) / vec3_length(expected), 0.0, 1e-5);
+        uint key = state_load(shown.paths, 1, CHAIN_PROPOSED_KEY, 0);
+        double f = luminance_of(expected) * importance_at(&shown, film) / reach_factor();
+        TEST_NEAR((key >> 16) / 65535.0, 4.0 * 0.01 * (double)weights.plain / f, 2.0 / 65535.0);
+    }
+    TEST_TRUE(fabsf(weights_seen[0] - weights_seen[1]) > 0.01f);
+    fixture_destroy(&shown.light);
+}
+END_TEST
+
 /* ---- pools ------------------------------------------------------------------------------------------------------- */
 
 /* Pools visit the pixels of every other cell three times as often. */
@@ -430,6 +489,7 @@ TCase *chain_shown_tests(void)
     tcase_add_test(tcase, test_halves);
     tcase_add_test(tcase, test_large);
     tcase_add_test(tcase, test_environment);
+    tcase_add_test(tcase, test_met_lamp);
     tcase_add_test(tcase, test_candidates);
     tcase_add_test(tcase, test_start);
     return tcase;
