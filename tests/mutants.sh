@@ -178,11 +178,11 @@ make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log"
 likely() {
     case $1 in
     shared/mis.h | shared/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
-    shared/mutation.h) echo test_chain test_shift test_layers ;;
+    shared/mutation.h) echo test_chain:shown test_chain test_shift test_layers ;;
     shared/shift.h) echo test_shift:kept test_chain test_shift ;;
     shared/bsdf_invert.h) echo test_bsdf:inverse test_shift ;;
-    shared/pool.h) echo test_chain_population test_pool test_layers ;;
-    shared/chain_light.h) echo test_layers test_shift ;;
+    shared/pool.h) echo test_chain:shown test_chain_population test_pool test_layers ;;
+    shared/chain_light.h) echo test_chain:shown test_layers test_shift ;;
     shared/light_emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
     shared/light_*.h | shared/camera.h) echo test_light test_emit test_bidirectional:walks test_analytic ;;
     shared/film_sum.h) echo test_film test_layers test_emit ;;
