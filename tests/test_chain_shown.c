@@ -392,7 +392,7 @@ START_TEST(test_candidates)
         survival[i] = 0.25f + 0.125f * (float)(i % 4);
         cover[i] = 0.5f + 0.0625f * (float)i;
         importance[i] = octaves(&shown, 1.0);
-        colors[i] = vec3_scale(color_draw(&shown), 4.0f);
+        colors[i] = vec3_scale(color_draw(&shown), i % 2 == 0 ? 2.0f : 40.0f); /* below the limit and above */
         worths[i] = worth_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
                              (double)cover[i], pixel);
         sum += worths[i];
@@ -406,6 +406,7 @@ START_TEST(test_candidates)
             double counted = KINDS[i][0] > 1 ? (double)LIGHTS_WEIGHT : 1.0;
             Vec3 got = candidate_offer(frame, shown.paths, 0, KINDS[i][0], KINDS[i][1], survival[i], cover[i],
                                        importance[i], colors[i]);
+            TEST_TRUE((f > (double)LIMIT) == (i % 2 == 1));
             TEST_NEAR(luminance_of(got) / luminance_of(colors[i]), counted * fmin((double)LIMIT / f, 1.0), 1e-5);
         }
         TEST_NEAR(bits_float(shown.paths[BD_CANDIDATE_SUM]) / sum, 1.0, 1e-5);

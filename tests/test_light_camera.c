@@ -191,7 +191,7 @@ START_TEST(test_reach)
         frame.filter.radius_x = narrow ? 0.75f : 2.5f;
         frame.filter.radius_y = narrow ? 3.25f : 0.5f;
         for (int i = 0; i < 200 * 200; ++i) {
-            double x = 15.0 + 16.0 * (i % 200 + 0.5) / 200.0, y = 25.0 + 13.0 * (i / 200 + 0.5) / 200.0;
+            double x = 15.0 + 16.1 * (i % 200 + 0.5) / 200.0, y = 25.0 + 13.0 * (i / 200 + 0.5) / 200.0;
             bool reached_x = false, reached_y = false;
             for (uint pixel = 20; pixel < 26; ++pixel)
                 reached_x = reached_x || fabs(x - pixel - 0.5) < (double)frame.filter.radius_x;
