@@ -341,4 +341,4 @@ END {
     print "| | file | kind of fault | original | faulty | killed by |\n|---|---|---|---|---|---|"
     printf "%s", rows
 }' "$results" "$list" >"$table"
-grep ' faults: ' "$table"
+grep '^[0-9]* faults: ' "$table"
