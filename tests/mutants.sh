@@ -6,7 +6,7 @@ set -u
 usage() {
     cat <<'TEXT'
 usage: tests/mutants.sh [OPTION]... [NUMBER]...
-Runs the tests against planted faults: those with the numbers given, or all that the results lack.
+Runs the tests against planted faults: those with the numbers given, or all that the results of earlier runs in the folder lack.
 
   -w FOLDER   work there (mutants.work): the sources with faults, their build, results.tsv
   -p PROGRAM  an ordinary build of twinlight: without a fault, pictures must have the same bits as its pictures
@@ -291,7 +291,8 @@ step() {
 }
 
 touch "$results"
-if [ ! -f "$work/control" ]; then
+# When anything has been built since, once more.
+if [ ! -f "$work/control" ] || find tests twinlight -type f -newer "$work/control" | grep -q .; then
     control || exit 1
     touch "$work/control"
 fi
