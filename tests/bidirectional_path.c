@@ -12,8 +12,8 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
     return !path->delta[t - 1] && !path->delta[t];
 }
 
-/* The same weights from one word a vertex: of the last two of a side their own density, of those before the ratio of both,
- * where that is a number: at the ends of the range of floats it is not. */
+/* Compact densities give the same weights: the last two vertices of a side have their own density, those before the ratio of
+ * both. Left out where a ratio is not a normal number. */
 static void compact_check(const DensityView *full, uint set, uint exponent, uint s, uint t, const StrategyEnds *ends,
                           StrategyWeights expected)
 {

@@ -4,7 +4,7 @@
 
 #include "test_util.h"
 
-/* What is made of variances that are known. */
+/* Blends of given variances. */
 TCase *blend_known_tests(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* Shares, errors, plans and importance from variances that are told to a blend tile by tile, against what is best by search. */
+/* Shares, errors, plans, importance and visits that a blend derives from given variances, against a search for the optimum. */
 #include "test_blend.h"
 #include "test_files.h"
 
@@ -6,13 +6,13 @@
 #include "film_sum.h"
 #include "importance.h"
 
-/* Other tiles than rows, and half a tile at the lower border. */
+/* Width and height differ, and the last row of tiles is half outside the picture. */
 #define WIDTH 64
 #define HEIGHT 44
 #define PIXELS ((size_t)WIDTH * HEIGHT)
 #define ROUNDS 40
 
-/* In test_blend.c it is measured that plans have pools take this part of the time that they share with chains. */
+/* The part that pools have of the time of pools and chains together where both are all that counts (test_plan in test_blend.c). */
 #define POOL_PART 0.45
 
 typedef struct Known {
@@ -26,7 +26,7 @@ static double octaves(Known *known, double most)
     return exp2(most * (2.0 * test_random_unit(&known->state) - 1.0));
 }
 
-/* Tells the blend of variances of all streams, and of the samples and steps by which they came about. */
+/* Sets random variances of all streams, and random numbers of the samples that they were estimated from. */
 static void known_tell(Known *known, double range)
 {
     for (size_t i = 0; i < blend_tile_count(&known->blend); ++i) {
@@ -61,9 +61,9 @@ static void known_destroy(Known *known)
 
 /* ---- shares ------------------------------------------------------------------------------------------------------ */
 
-/* The variance of what a tile shows where path tracing has the share w and of the rest chains the share c. Chains put out all of
- * three things: their own, the excess over what pools show, the excess over what path tracing shows. The last is a part of
- * what chains and excess together vary by. */
+/* Variance of a tile in which path tracing has the share w and the rest is split between chains (share c) and pool. What pools
+ * clamp (excess) comes from chains and goes with chains and pool; what path tracing clamps (rare) goes with path tracing. The
+ * model of blend.c: the chains' part of the first estimate shares the rare remainder with the second. */
 static double blended_variance(const BlendTile *tile, const double samples[BLEND_STREAMS], double w, double c)
 {
     double rare = tile->spread[BLEND_RARE] / samples[BLEND_CHAINS];
@@ -76,7 +76,8 @@ static double blended_variance(const BlendTile *tile, const double samples[BLEND
     return (1.0 - w) * (1.0 - w) * others + w * w * paths + 2.0 * w * (1.0 - w) * c * fmin(rare, others);
 }
 
-/* The share in [0, 1] that makes f(share) least, f convex. */
+/* Ternary search in [0, 1] for the share of path tracing (of_paths) or of chains among chains and pool with the least variance,
+ * which is convex in either. */
 static double share_search(const BlendTile *tile, const double samples[BLEND_STREAMS], bool of_paths, double c)
 {
     double low = 0.0, high = 1.0;
@@ -96,15 +97,14 @@ static double least_variance(const BlendTile *tile, const double samples[BLEND_S
     return blended_variance(tile, samples, *w, *c);
 }
 
-/* Sums of the three channels of pixel i in films of 2^-20 units: other ones in every stream and channel. */
+/* What a stream has in a channel of pixel i, in units of the film: different in all streams, channels and neighbouring pixels. */
 static double stream_value(int s, size_t i, size_t channel)
 {
     return ldexp(1.0 + s * 3.0 + (double)(i % 7) + 20.0 * (double)channel, 20);
 }
 
-/* A generation is blended in the shares of least variance that the teacher knows, not the pupil: every pixel and channel has the
- * share of each stream, of the excess what path tracing leaves, and of the rare rest what path tracing has. What a stream has
- * none of takes no share, and it does not matter that nothing is known of it. Sums that are full in a stream are counted. */
+/* A generation is blended with the teacher's shares of least variance, not the pupil's, in every pixel and channel. A stream without
+ * samples has no share, and then its variances need not be known. Pixels with a full sum in a stream count as saturated. */
 START_TEST(test_shares_known)
 {
     Known teacher, pupil, others[2];
@@ -162,7 +162,7 @@ static double dark_square(const Blend *blend)
     return DARK_PART * light * light;
 }
 
-/* A tile's error is that of its best blend over the square of its light, which dark places have at least as much of. */
+/* The error of a tile is the least variance over the square of its light, to which DARK_PART of the mean's square is added. */
 START_TEST(test_errors_known)
 {
     Known known;
@@ -181,8 +181,8 @@ START_TEST(test_errors_known)
 }
 END_TEST
 
-/* Variance of all that chains put out goes as a / pools + b / steps; in equal time it is least where pools have the part
- * sqrt(a) / (sqrt(a) + sqrt(b)) of it, which is POOL_PART. Here over what it has been by the pools and steps so far. */
+/* The variance of chains is a / T_pool + b / T_steps. In a given time it is least where pools have the part
+ * sqrt(a) / (sqrt(a) + sqrt(b)), which is POOL_PART. Returns the variance of one step relative to that of the past. */
 static double chains_vary(const Blend *blend, const double samples[BLEND_STREAMS], const double costs[BLEND_STREAMS])
 {
     double a = POOL_PART * POOL_PART, b = (1.0 - POOL_PART) * (1.0 - POOL_PART);
@@ -207,13 +207,13 @@ static double picture_error(const Blend *blend, const double samples[BLEND_STREA
     return sum;
 }
 
-/* The plan is the best of all that divide the time into twentieths. */
+/* Of all divisions of the time into twentieths the plan has the least error. */
 START_TEST(test_plan_known)
 {
     Known known;
     double costs[BLEND_STREAMS];
     known_init(&known, 11);
-    known.blend.tiles[0] = 2; /* few are enough */
+    known.blend.tiles[0] = 2; /* two tiles, so that 171 plans are quickly searched */
     known.blend.tiles[1] = 1;
     for (int s = 0; s < BLEND_STREAMS; ++s) {
         double one[BLEND_STREAMS] = {0.0};
@@ -250,7 +250,7 @@ static uint cell_of(size_t x, size_t y)
     return (uint)(y * IMPORTANCE_SIDE / HEIGHT * IMPORTANCE_SIDE + x * IMPORTANCE_SIDE / WIDTH);
 }
 
-/* Whether tile `tile` of an axis meets cell `cell` of `size` pixels: the common part of two intervals has a length. */
+/* Whether tile and cell overlap along an axis of `size` pixels. */
 static bool tile_meets(int tile, int cell, int size)
 {
     double begin = (double)cell * size / IMPORTANCE_SIDE, end = (double)(cell + 1) * size / IMPORTANCE_SIDE;
@@ -262,8 +262,8 @@ static bool tile_near(int tile, int cell, int size)
     return tile_meets(tile - 1, cell, size) || tile_meets(tile, cell, size) || tile_meets(tile + 1, cell, size);
 }
 
-/* The root of one over the mean light of a pixel in the tiles that a cell meets and those beside them, and over what a dark place
- * has at least, a twentieth of the mean; scaled so that light weighs on average as much as it is. */
+/* Importance is (L + 0.05 mean)^(-1/2), L the light per pixel of the tiles that the cell overlaps and their neighbours, scaled so
+ * that the sum of L times importance is the sum of L. */
 START_TEST(test_importance_known)
 {
     Known known;
@@ -290,9 +290,8 @@ START_TEST(test_importance_known)
 }
 END_TEST
 
-/* Every pixel of a cell has as many visits, a quarter of four even, the rest in proportion to the root of what the tiles that the
- * cell's pixels are in vary by, times what has been visited already; of a pixel and of a tile it is known how rare that makes
- * a visit. */
+/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, v the root of the mean error of the tiles that its pixels are
+ * in times `visited`. Rarity is the mean number of visits over the cell's; that of a tile is the mean over its pixels. */
 START_TEST(test_visits_known)
 {
     Known known;

@@ -111,9 +111,8 @@ START_TEST(test_inverse)
 }
 END_TEST
 
-/* Any direction and any choice of the lobe, also those that do not go together: what is found draws the direction with this choice
- * and has a density above 0. Distances count in the lobe's width, as above; the tails of narrow lobes are left out, where
- * floats do not tell half vectors apart. */
+/* For independent directions and lobe numbers: where an inverse is found, it draws the direction with that lobe number, and its
+ * density is positive. Narrow lobes are left out: in their tails floats do not resolve half vectors. */
 START_TEST(test_any)
 {
     const struct TestMaterial *kind = &TEST_MATERIALS[_i];

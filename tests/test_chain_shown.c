@@ -1,5 +1,5 @@
-/* What chains and pools make of one path: how much path tracing shows of it, where and how often it is splatted, and which of a
- * sample's paths a pool keeps; against the definitions, averaged over the random numbers. */
+/* Single paths in chains and pools: how much of them path tracing shows, where they are splatted and how often, and which path of a
+ * sample the pool keeps. Expectations over the random numbers are compared with the definitions. */
 #include "test_chain.h"
 
 #include "chain_light.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* A crop window inside the film, and a triangle filter that reaches beyond it: further along x than along y. */
+/* A crop window inside the film, and a triangle filter whose radii differ. */
 enum { WIDTH = 9, X0 = 1, X1 = 7, Y0 = 2, Y1 = 6, COLUMNS = X1 - X0, ROWS = Y1 - Y0 };
 #define RADIUS_X 2.0
 #define RADIUS_Y 1.0
@@ -55,7 +55,7 @@ static Vec3 color_draw(Shown *shown)
     return vec3(octaves(shown, 2.0), octaves(shown, 2.0), octaves(shown, 2.0));
 }
 
-/* Half a pixel less than the filter's radius around the crop window. */
+/* Area of the film positions that filters reach over that of the crop window: radius - 1/2 more on each side. */
 static double reach_factor(void)
 {
     return (COLUMNS + 2.0 * RADIUS_X - 1.0) * (ROWS + 2.0 * RADIUS_Y - 1.0) / (COLUMNS * ROWS);
@@ -100,9 +100,8 @@ static double luminance_of(Vec3 color)
 
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
-/* By path tracing a path would contribute color / plain; of that, times the importance, up to four times the limit is shown. A
- * walk from the camera that begins anywhere on the reach of the film stands for as much more than a pixel; with t = 1 there is
- * none. The rest of the key stays, also of a key that has been marked before. */
+/* Path tracing would contribute color / plain. It shows that, times the importance, up to four times the limit. Camera walks of
+ * chains start with the reach as a factor, which is divided out; paths with t = 1 have none. Depth and s stay in the key. */
 START_TEST(test_key)
 {
     Shown shown;
@@ -129,7 +128,7 @@ START_TEST(test_key)
 }
 END_TEST
 
-/* On average the sums have of a path what they say: below the limit limit / f of it, as rare what path tracing does not show. */
+/* Averaged over u, min(1, limit / f) of a path is below the limit, and what path tracing does not show is rare. */
 START_TEST(test_flags)
 {
     enum { N = 4096 };
@@ -152,7 +151,8 @@ START_TEST(test_flags)
 }
 END_TEST
 
-/* Every pixel gets its filter's part of a visit, of the brightness; what the chain goes after is what all pixels together see. */
+/* A pixel receives visits * brightness * filter(position) on average; f is the luminance times the sum of all pixels' filters times
+ * the importance. */
 START_TEST(test_splat)
 {
     enum { N = 128 };
@@ -187,8 +187,7 @@ START_TEST(test_splat)
 }
 END_TEST
 
-/* Which halves of a path with s vertices from the light and d segments a step of one half changes: s of them have coordinates
- * of the light's, d - s of the camera's. With none, all change. */
+/* With s = 0 the light's half has no coordinates, with s = d the camera's: then a step changes both. */
 START_TEST(test_halves)
 {
     for (uint d = CHAIN_DEPTH_MIN; d < 9; ++d)
@@ -202,7 +201,7 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Large steps propose all strategies of a path alike. */
+/* Large steps propose s = 0 ... d with equal probability. */
 START_TEST(test_large)
 {
     enum { STEPS = 1 << 16 };
@@ -230,8 +229,8 @@ START_TEST(test_large)
 }
 END_TEST
 
-/* Of several lights at infinity one stands for all: it has the luminance of all whatever the number u, and on average their
- * colors; what path tracing would contribute is the light's own, in proportion. */
+/* One light at infinity, drawn with u, stands for all: the luminance is that of all for every u, the expected color is the sum of
+ * all, and color / plain is that of the light drawn. */
 START_TEST(test_environment)
 {
     enum { LIGHTS = 4, N = 4096 };
@@ -286,8 +285,8 @@ START_TEST(test_environment)
 }
 END_TEST
 
-/* A camera's walk of four segments meets a lamp: the contribution has the weight of s = 0 among all strategies, which the walk's
- * delta vertices leave, and the key what path tracing shows of it by the weight of both of its own. */
+/* A camera walk of four segments meets a lamp (s = 0): its weight takes the walk's delta vertices into account, and the key has what
+ * path tracing shows, by the weight of s = 0 and s = 1 together. */
 START_TEST(test_met_lamp)
 {
     enum { D = 4 };
@@ -304,7 +303,7 @@ START_TEST(test_met_lamp)
     frame->mis_exponent = 2;
     frame->only_s = NONE;
     frame->limit = 0.01f;
-    for (uint delta = 0; delta < 2; ++delta) { /* the second time z_2 is one */
+    for (uint delta = 0; delta < 2; ++delta) { /* delta == 1: z_2 scatters by a delta lobe */
         for (uint i = 0; i < D; ++i) {
             float own = octaves(&shown, 0.5), other = octaves(&shown, 0.5);
             full[i * DENSITY_WORDS + DENSITY_OWN] = float_bits(own);
@@ -322,7 +321,7 @@ START_TEST(test_met_lamp)
         DensityView view = {.light = full, .camera = full, .stride = 1, .camera_delta = delta << 2};
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, D + 1, &view, &ends);
         weights_seen[delta] = weights.own;
-        TEST_TRUE(weights.own < 0.9f * weights.plain); /* or what follows says nothing */
+        TEST_TRUE(weights.own < 0.9f * weights.plain); /* else the two could not be told apart below */
         memset(shown.paths, 0, sizeof shown.paths);
         state_store(shown.paths, 1, CHAIN_PROPOSED_KEY, 0, chain_key(D, 0));
         state_store_vec3(shown.paths, 1, BD_BETA, 0, beta);
@@ -347,7 +346,7 @@ END_TEST
 
 /* ---- pools ------------------------------------------------------------------------------------------------------- */
 
-/* Pools visit the pixels of every other cell three times as often. */
+/* Pools visit every other column three times as often. */
 static void visits_set(FrameParams *frame)
 {
     uint all = 0;
@@ -360,21 +359,21 @@ static void visits_set(FrameParams *frame)
     frame->visits[IMPORTANCE_CELLS] = all;
 }
 
-/* Half of the columns are visited three times, so two times is the mean. */
+/* Half of the columns are visited once, the others three times: the mean is two. */
 static double rarity_of(uint pixel)
 {
     return (pixel % WIDTH - X0) % 2 == 0 ? 2.0 : 2.0 / 3.0;
 }
 
-/* What a path counts for: its luminance times importance over the density of the numbers that make it. Only a part of the samples
- * have a walk from the light (s > 1); a film position that the path does not have (t = 1) is uniform. */
+/* Luminance times importance over the density of the numbers that make the path: pool_lights_weight where only samples with a light
+ * walk can (s > 1); film positions have the density of the pixel's filter, or are uniform where the path has none (t = 1). */
 static double worth_of(uint s, uint t, double luminance, double cover, uint pixel)
 {
     return luminance * (s > 1 ? (double)LIGHTS_WEIGHT : 1.0) * (t == 1 ? cover : rarity_of(pixel) / reach_factor());
 }
 
-/* One of the paths of a sample is kept in proportion to what it counts for, with f of a chain there, which knows no roulette. The
- * film is shown of each what is below the limit of f. */
+/* The candidate is a sample's path with probability proportional to its worth; its f is without roulette. The film is shown
+ * min(1, limit / f) of every path. */
 START_TEST(test_candidates)
 {
     enum { PATHS = 8, SAMPLES = 40000 };
@@ -428,9 +427,9 @@ START_TEST(test_candidates)
 }
 END_TEST
 
-/* A sample of a pool begins at its pixel's filter: offsets from the pixel's centre have mean 0 and a triangle's variance, radius
- * squared over 6, along both axes. It counts for as much as its pixel is rarely visited, and roulette goes by that where it is
- * more than one, times what walks from the light count for. */
+/* Film positions of a pool's sample have the mean and variance of its pixel's triangle filter, 0 and radius^2 / 6. Its weight is the
+ * rarity of its pixel over the reach; roulette is scaled by the rarity where that is above one, and by pool_lights_weight where the
+ * sample has a light walk. */
 START_TEST(test_start)
 {
     enum { SAMPLES = 20000 };
@@ -470,7 +469,7 @@ START_TEST(test_start)
             ck_assert_double_eq_tol(sum[a], 0.0, 5.0 * sqrt(variance / SAMPLES));
             ck_assert_double_eq_tol(squares[a] / variance, 1.0, 0.05);
         }
-        /* Throughputs begin with the reach, which roulette leaves out. */
+        /* walk_begin divides by the throughput, which is the reach. */
         double counts = fmax(rarity_of(pixel), 1.0) * (walk ? (double)LIGHTS_WEIGHT : 1.0);
         ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_WEIGHT]), rarity_of(pixel) / reach_factor(), 1e-6);
         ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_ROULETTE_SCALE]) * reach_factor(), counts, 1e-5);

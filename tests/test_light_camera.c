@@ -183,7 +183,7 @@ START_TEST(test_outside_film)
 }
 END_TEST
 
-/* The light's splats go as far around the crop window as the filter of one of its pixels reaches, along either axis. */
+/* A film position is covered if and only if the filter of some pixel of the crop window reaches it. */
 START_TEST(test_reach)
 {
     FrameParams frame = {.crop_x0 = 20, .crop_x1 = 26, .crop_y0 = 30, .crop_y1 = 33};

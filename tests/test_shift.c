@@ -112,8 +112,8 @@ static double area_density(const Kept *kept, double pdf_w)
     return pdf_w * fabs((double)vec3_dot(meeting->ray.d, meeting->surface.ng)) / (double)meeting->distance2;
 }
 
-/* The density of z_2 and z_3 is the product of both per area, of either path; the ratio of the proposal's to the current path's is
- * that of volumes. What cannot be shifted has 0, and a path that cannot makes no step to one that can. */
+/* The density noted is the product of those of z_2 and z_3 per area, and shift_ratio that of the proposal over that of the current
+ * path. A path that cannot be shifted has density 0; none is proposed from there to one that can. */
 START_TEST(test_kept_density)
 {
     Kept kept;
@@ -121,7 +121,7 @@ START_TEST(test_kept_density)
     for (uint path = 0; path < 2; ++path) {
         if (path == 0)
             kept_init(&kept, 0);
-        /* As taking a proposal leaves it: the current path's bank is the other. */
+        /* As if the first path had been accepted. */
         kept.paths[CHAIN_MOVE] = HALF_CAMERA << MOVE_CHANGED | (path == 0 ? 0u : HALF_CAMERA) << MOVE_BANKS;
         kept_walk(&kept, vec3((float)path, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
         expected[path] = area_density(&kept, (double)0.7f);
@@ -158,9 +158,8 @@ START_TEST(test_kept_density)
 }
 END_TEST
 
-/* What z_2 has to be met as: where it was, of the primitive and the instance that it was of. Numbers are 2^-23 apart, and a
- * direction that is drawn with density p by one of two numbers alone goes astray by up to 2^-23 / p of the distance; that is
- * found. A thousandth of the segment away is another place. */
+/* shift_found: the same primitive of the same instance, near the old point. Random numbers are 2^-23 apart, which moves a direction
+ * of density p by up to 2^-23 / p: a point that far off is found. One further away than a thousandth of the segment is not. */
 START_TEST(test_kept_point)
 {
     static const struct {
@@ -194,8 +193,8 @@ START_TEST(test_kept_point)
 }
 END_TEST
 
-/* The numbers that a shift finds draw the direction to where the next vertex is, also where numbers count from the direction to a
- * light; they stand among the coordinates, and the density that is noted is the diffuse lobe's: cosine over pi. */
+/* The numbers that shift_aim finds and stores make walk_scatter draw the direction to the next vertex, also where numbers are relative
+ * to the direction to a light (second run). shift_drawn notes the density of the diffuse lobe, cosine / pi. */
 START_TEST(test_kept_numbers)
 {
     static Scene scene;
