@@ -2,15 +2,23 @@
 
 #include "rays_embree.h"
 
+#include "bvh.h"
 #include "instance_bounds.h"
 #include "primitive.h"
+#include "ray_reach.h"
 #include "state.h"
 #include "triangle_cluster.h"
 
+#ifndef TWINLIGHT_DOUBLE
+#include "bvh_traverse.h"
+#endif
+
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* One Object's hierarchy. */
 typedef struct ObjectRays {
@@ -30,6 +38,8 @@ struct RaysEmbree {
     ObjectRays *objects; /* [0]: the world */
     size_t object_count;
     size_t instance_count;
+    float reach; /* of the origins of rays that Embree is asked about, in the world */
+    Bvh outer; /* for the others; empty where there are none */
     atomic_llong bytes;
     char failure[256]; /* Embree's last complaint */
 };
@@ -226,9 +236,33 @@ static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *
     rtcReleaseGeometry(geometry);
 }
 
+#ifdef TWINLIGHT_DOUBLE /* the host's hierarchy knows floats alone; Embree's boxes suit all rays */
+
+static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
+{
+    (void)scene;
+    (void)error;
+    rays->reach = rays->view.frame->ray_reach;
+    return true;
+}
+
+#define OUTER_WALK(rays, ray, any) hit_none((ray).t_max)
+
+#else
+
+static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
+{
+    rays->reach = ray_reach_inner(&rays->view, (uint)rays->instance_count);
+    return !(rays->reach < rays->view.frame->ray_reach) || bvh_build(scene, &rays->outer, error);
+}
+
+#define OUTER_WALK(rays, ray, any) bvh_walk(&(rays)->view, (rays)->outer.words, (ray), (any))
+
+#endif
+
 static void reaches_set(RaysEmbree *rays)
 {
-    float world = rays->view.frame->ray_reach;
+    float world = rays->reach;
     for (size_t i = 0; i < rays->object_count; ++i)
         rays->objects[i].reach = i == 0 ? world : 0.0f;
     for (size_t i = 0; i < rays->instance_count; ++i) {
@@ -289,18 +323,59 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     return true;
 }
 
-static bool rays_build(RaysEmbree *rays, int threads, Error *error)
+/* What Embree takes to start; and then to build, for each of its threads and for each primitive. */
+#define EMBREE_BYTES ((size_t)128 << 20)
+#define EMBREE_THREAD_BYTES ((size_t)8 << 20)
+#define EMBREE_PRIMITIVE_BYTES ((size_t)200)
+
+/* Where memory ends inside of Embree, it may end the program. So its memory is asked for before, and given back. */
+static bool memory_probe(const RaysEmbree *rays, int threads, Error *error)
+{
+    size_t bytes = (size_t)threads * EMBREE_THREAD_BYTES;
+    for (size_t i = 0; i < rays->object_count; ++i)
+        bytes += EMBREE_PRIMITIVE_BYTES * rays->view.objects[i].primitive_count;
+    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED)
+        return error_memory(error, bytes, "ray queries");
+    munmap(room, bytes);
+    return true;
+}
+
+static void *thread_empty(void *nothing)
+{
+    return nothing;
+}
+
+/* Likewise where there can be no thread at all. */
+static bool thread_probe(Error *error)
+{
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, thread_empty, NULL) == 0)
+        return pthread_join(thread, NULL) == 0;
+    error_set(error, "no thread can be started");
+    return error_fix(error, "end other programs, or have the limit raised: ulimit -u");
+}
+
+static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads, Error *error)
 {
     char config[64];
     snprintf(config, sizeof config, "threads=%d,set_affinity=0", threads);
+    if (!thread_probe(error))
+        return false;
     rays->device = rtcNewDevice(config);
+    if (!rays->device && rtcGetDeviceError(NULL) == RTC_ERROR_OUT_OF_MEMORY)
+        return error_memory(error, EMBREE_BYTES, "Embree");
     if (!rays->device)
         return error_set(error, "Embree cannot be started (error %d)", (int)rtcGetDeviceError(NULL));
+    if (!memory_probe(rays, threads, error))
+        return false;
     rtcSetDeviceErrorFunction(rays->device, embree_error_callback, rays);
     rtcSetDeviceMemoryMonitorFunction(rays->device, embree_memory_callback, rays);
     rays->objects = calloc(rays->object_count + 1, sizeof *rays->objects);
     if (!rays->objects)
         return error_memory(error, rays->object_count * sizeof *rays->objects, "ray queries");
+    if (!outer_build(rays, scene, error))
+        return false;
     reaches_set(rays);
     /* The world last: its instances need their objects' bounds. */
     for (size_t i = rays->object_count; i-- > 0;)
@@ -321,7 +396,7 @@ RaysEmbree *rays_embree_create(const BackendScene *scene, int threads, Error *er
     rays->view = scene_view(scene->frame, scene->geometry, scene->tables, scene->texels);
     rays->object_count = scene->object_count;
     rays->instance_count = scene->instance_count;
-    if (!rays_build(rays, threads, error)) {
+    if (!rays_build(rays, scene, threads, error)) {
         rays_embree_destroy(rays);
         return NULL;
     }
@@ -340,6 +415,7 @@ void rays_embree_destroy(RaysEmbree *rays)
     }
     if (rays->device)
         rtcReleaseDevice(rays->device);
+    bvh_destroy(&rays->outer);
     free(rays->objects);
     free(rays);
 }
@@ -355,9 +431,18 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
+/* Embree's boxes are wide enough for rays that start within reach, and which ray that is decides no bit: both walks find
+ * what the shared primitive test finds. */
+static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
+{
+    return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;
+}
+
 Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
+    if (ray_is_outer(rays, ray))
+        return OUTER_WALK(rays, *ray, false);
     walk_begin(&walk, rays, ray);
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
@@ -369,6 +454,8 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
+    if (ray_is_outer(rays, ray))
+        return OUTER_WALK(rays, *ray, true).primitive != NONE;
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
@@ -408,5 +495,5 @@ uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint c
 size_t rays_embree_bytes(const RaysEmbree *rays)
 {
     long long bytes = atomic_load(&((RaysEmbree *)(uintptr_t)rays)->bytes);
-    return bytes > 0 ? (size_t)bytes : 0;
+    return (bytes > 0 ? (size_t)bytes : 0) + rays->outer.word_count * sizeof *rays->outer.words;
 }

@@ -1,4 +1,6 @@
-/* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. */
+/* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. Where a few primitives or the camera lie so
+ * far out that boxes which suit every ray would be larger than what is in them, Embree's suit those that start among the
+ * others, and the rest take the walk of devices (bvh_traverse.h). */
 #ifndef TWINLIGHT_RAYS_EMBREE_H
 #define TWINLIGHT_RAYS_EMBREE_H
 
@@ -23,7 +25,7 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
                                uint count, uint stride);
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride);
 
-/* Bytes that Embree holds. */
+/* Bytes of the hierarchies. */
 size_t rays_embree_bytes(const RaysEmbree *rays);
 
 #endif

@@ -102,10 +102,13 @@ static void starts_row(FILE *stream, const ChainStatistics *chains, int first, i
     fputs("</tr>\n", stream);
 }
 
+/* From here on groups of chains do not show the same light: the bound of Gelman and Rubin (1992). */
+#define R_HAT_DOUBTFUL 1.1
+
 /* HTML's number of a figure that is 0 where it is not known. */
 static void r_hat_cell(FILE *stream, double r_hat)
 {
-    fputs("<td>", stream);
+    fputs(r_hat > R_HAT_DOUBTFUL ? "<td class=\"warn\">" : "<td>", stream);
     if (isinf(r_hat))
         fputs("∞", stream);
     else

@@ -49,7 +49,8 @@ static void devices_write(const Bench *bench, FILE *stream)
             continue;
         fprintf(stream, "<dt>%s</dt><dd>", bench->options.backends[b].name);
         html_text(stream, found->record.device);
-        fprintf(stream, ", %llu threads</dd>\n", (unsigned long long)found->record.threads);
+        fprintf(stream, ", %llu thread%s</dd>\n", (unsigned long long)found->record.threads,
+                found->record.threads == 1 ? "" : "s");
     }
 }
 
@@ -304,15 +305,16 @@ static bool scene_write(const Bench *bench, int number, FILE *stream, Error *err
 
 static void chain_terms_write(FILE *stream)
 {
-    fputs(
-        "<dt>longest run of rejections</dt><dd>the most proposals that one chain refused in a row, over "
-        "generations: long where chains cannot leave a path</dd>\n"
-        "<dt>different starts</dt><dd>of the paths that chains begin or go on with in every generation, the part "
-        "left when each counts once: small where a few paths are worth more than all others</dd>\n"
-        "<dt>R\u0302</dt><dd>potential scale reduction (Gelman and Rubin 1992; Vehtari et al. 2021) of the two "
-        "halves of the image, of the paths at which their chains end a generation: the largest of log luminance, "
-        "film x and film y. Groups that agree have 1; 1.01 is what 50 independent paths in each show by chance</dd>\n",
-        stream);
+    fputs("<dt>longest run of rejections</dt><dd>the most proposals that one chain refused in a row, over "
+          "generations: long where chains cannot leave a path</dd>\n"
+          "<dt>different starts</dt><dd>of the paths that chains begin or go on with in every generation, the part "
+          "left when each counts once: small where a few paths are worth more than all others</dd>\n"
+          "<dt>R\u0302</dt><dd>potential scale reduction (Gelman and Rubin 1992; Vehtari et al. 2021) of the two "
+          "halves of the image, of the paths at which their chains end a generation: the largest of log luminance, "
+          "film x and film y. Groups that agree have 1; 1.01 is what 50 independent paths in each show by chance; "
+          "above 1.1, "
+          "where it is marked, chains of one half have not been where those of the other have</dd>\n",
+          stream);
 }
 
 static void method_write(const Bench *bench, FILE *stream)

@@ -16,6 +16,7 @@
 #define FLIP(series) (3 + 3 * (series))
 
 #define LEGEND_WIDTH 512
+#define ROW_MOST 5 /* pictures */
 
 typedef struct Pictures {
     const Bench *bench;
@@ -145,7 +146,8 @@ static bool legend_write(const Pictures *pictures, const char *name, const float
     size_t size = 0;
     if (!png_memory(rgb, LEGEND_WIDTH, 1, 0.0f, &bytes, &size, error))
         return false;
-    fprintf(pictures->stream, "<div class=\"legend\">%s<img alt=\"\" src=\"", name);
+    fprintf(pictures->stream,
+            "<div class=\"legend\">%s<img alt=\"colours of %s, from the least to the largest\" src=\"", name, name);
     html_png(pictures->stream, bytes, size);
     fprintf(pictures->stream, "\"/><div>%s</div></div>\n", ticks);
     free(bytes);
@@ -170,7 +172,10 @@ static bool legends_write(const Pictures *pictures, Error *error)
 
 static bool pictures_write(const Pictures *pictures, Error *error)
 {
-    fputs("<div class=\"pictures\">\n<figure>", pictures->stream);
+    /* All in a row up to ROW_MOST, else in two rows: none is left alone in its row. */
+    int count = pictures->scene->series_count + 1, columns = count <= ROW_MOST ? count : (count + 1) / 2;
+    fprintf(pictures->stream, "<div class=\"pictures\" style=\"--n:%d\">\n<figure>",
+            columns < ROW_MOST ? columns : ROW_MOST);
     window_write(pictures, 0, "", true);
     fputs("<figcaption><b>reference</b><br/>", pictures->stream);
     html_text(pictures->stream, pictures->scene->reference.origin);

@@ -111,10 +111,8 @@ static void record_fill(const BenchWorkshop *shop, const Counters *before, const
 static bool image_write(const char *path, const float *rgb, const BenchScene *scene, const BenchTask *task,
                         Error *error)
 {
-    char seed[32];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)task->seed);
-    const ExrAttribute attributes[] = {
-        {"integrator", task->integrator->name}, {"scene", path_file_name(scene->path)}, {"seed", seed}};
+    const ExrAttribute attributes[] = {exr_text("integrator", task->integrator->name),
+                                       exr_text("scene", path_file_name(scene->path)), exr_whole("seed", task->seed)};
     const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
     return exr_write(path, channels, 3, scene->width, scene->height, NULL, attributes,
                      sizeof attributes / sizeof attributes[0], error);

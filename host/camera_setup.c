@@ -3,6 +3,7 @@
 #include "matrix.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool affine_set(const double m[16], Affine *out, Error *error)
 {
@@ -59,19 +60,87 @@ static bool screen_window(const CameraSettings *settings, double film_aspect, do
     return error_fix(error, "give x_min x_max y_min y_max, or leave \"float screenwindow\" out");
 }
 
-bool camera_setup(const CameraSettings *settings, int width, int height, Camera *out, Error *error)
+/* The power of two next to the length of a unit of camera space in the world. */
+static int unit_exponent(const double world_from_camera[16])
+{
+    const double *m = world_from_camera;
+    double determinant =
+        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+    return isnormal(determinant) ? ilogb(cbrt(fabs(determinant))) : 0;
+}
+
+/* Where a Scale makes units of camera space tiny or huge, volumes and squares of them leave the range of floats. So the
+ * camera's own lengths are in units near those of the world, 2^exponent as many: no digit changes. */
+static void unit_change(CameraSettings *settings, int exponent)
+{
+    for (int i = 0; i < 12; ++i) {
+        if (i % 4 < 3)
+            settings->world_from_camera[i] = ldexp(settings->world_from_camera[i], -exponent);
+        settings->camera_from_world[i] = ldexp(settings->camera_from_world[i], exponent);
+    }
+    settings->lens_radius = ldexpf(settings->lens_radius, exponent);
+    settings->focal_distance = ldexpf(settings->focal_distance, exponent);
+}
+
+/* Lenses and distances that a camera can have in the world: coordinates of scenes have the same limit. */
+#define LENGTH_MAX 1e12f
+
+static bool lens_check(const CameraSettings *settings, Error *error)
+{
+    if (settings->lens_radius <= 0.0f || (settings->lens_radius < LENGTH_MAX && settings->focal_distance > 0.0f &&
+                                          settings->focal_distance < 1e6f * LENGTH_MAX))
+        return true;
+    error_set(error, "the camera's lens has a radius of %g and is in focus at %g, in units of the world",
+              (double)settings->lens_radius, (double)settings->focal_distance);
+    return error_fix(error, "set \"float lensradius\" to 0 for a pinhole, or look for a Scale before the Camera "
+                            "directive: camera space is scaled by it");
+}
+
+bool camera_setup(const CameraSettings *given, int width, int height, Camera *out, Error *error)
 {
     double window[4];
-    if (!settings_check(settings, width, height, error) ||
-        !screen_window(settings, (double)width / (double)height, window, error))
+    CameraSettings settings = *given;
+    int exponent = unit_exponent(given->world_from_camera);
+    if (!settings_check(given, width, height, error) ||
+        !screen_window(given, (double)width / (double)height, window, error))
         return false;
-    double scale = 1.0;
-    if (settings->kind == CAMERA_PERSPECTIVE)
-        scale = tan((double)settings->fov * (M_PI / 360.0));
-    *out = (Camera){
-        .kind = settings->kind, .lens_radius = settings->lens_radius, .focal_distance = settings->focal_distance};
+    unit_change(&settings, exponent);
+    if (!lens_check(&settings, error))
+        return false;
+    double scale = ldexp(1.0, exponent);
+    if (settings.kind == CAMERA_PERSPECTIVE)
+        scale = tan((double)settings.fov * (M_PI / 360.0));
+    *out =
+        (Camera){.kind = settings.kind, .lens_radius = settings.lens_radius, .focal_distance = settings.focal_distance};
     for (int i = 0; i < 4; ++i)
         out->screen[i] = (float)(scale * window[i]);
-    return affine_set(settings->world_from_camera, &out->world_from_camera, error) &&
-           affine_set(settings->camera_from_world, &out->camera_from_world, error);
+    return affine_set(settings.world_from_camera, &out->world_from_camera, error) &&
+           affine_set(settings.camera_from_world, &out->camera_from_world, error);
+}
+
+void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 origin, float world_to_camera[16],
+                     float world_to_ndc[16])
+{
+    Matrix view, to_window = matrix_identity(),
+                 move = matrix_translate(-(double)origin.x, -(double)origin.y, -(double)origin.z);
+    memcpy(view.m, settings->camera_from_world, sizeof view.m);
+    Matrix world = matrix_multiply(&view, &move);
+    /* The window's units are 2^exponent as many as those of the settings where it is not a tangent. */
+    double unit = camera->kind == CAMERA_PERSPECTIVE ? 1.0 : ldexp(1.0, -unit_exponent(settings->world_from_camera));
+    const double left = unit * (double)camera->screen[0], right = unit * (double)camera->screen[1],
+                 low = unit * (double)camera->screen[2], high = unit * (double)camera->screen[3];
+    int across = camera->kind == CAMERA_PERSPECTIVE ? 2 : 3; /* what is divided by: z, or 1 */
+    to_window.m[0] = 1.0 / (right - left);
+    to_window.m[5] = 1.0 / (low - high);
+    to_window.m[across] = -left / (right - left);
+    to_window.m[4 + across] = -high / (low - high);
+    if (camera->kind == CAMERA_PERSPECTIVE) {
+        to_window.m[10] = to_window.m[15] = 0.0;
+        to_window.m[11] = to_window.m[14] = 1.0; /* z becomes 1 / z */
+    }
+    Matrix picture = matrix_multiply(&to_window, &world);
+    for (int i = 0; i < 16; ++i) {
+        world_to_camera[i] = (float)world.m[i];
+        world_to_ndc[i] = (float)picture.m[i];
+    }
 }

@@ -2,7 +2,9 @@
 #include "command.h"
 
 #include "bad_chains.h"
+#include "camera_setup.h"
 #include "chain_list.h"
+#include "diagnostics.h"
 #include "frame_name.h"
 #include "interrupt.h"
 #include "log.h"
@@ -102,6 +104,8 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->despeckle = command->despeckle;
     output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
+    camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
+                    output->world_to_ndc);
     return render_output_distinct(output, stats, command->trace, command->dump_bad, error) &&
            render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
            (!stats || render_output_check(stats, error)) &&
@@ -184,12 +188,11 @@ static bool film_render(RenderJob *job, Error *error)
 
 /* ---- after rendering -------------------------------------------------------------------------------------------- */
 
-/* Contributions by number and as a part of all samples. */
-static void contributions_report(const RenderJob *job, uint64_t count, const char *fate)
+/* How many there were, also for every 100 samples. what: "contributions", "rays" ... and what became of them. */
+static void count_report(const RenderJob *job, uint64_t count, const char *what)
 {
     double part = (double)count / (double)(job->result.samples > 0 ? job->result.samples : 1);
-    log_message(LOG_WARNING, "%llu contributions (%.2g for every 100 samples) %s", (unsigned long long)count,
-                100.0 * part, fate);
+    log_message(LOG_WARNING, "%llu (%.2g for every 100 samples) %s", (unsigned long long)count, 100.0 * part, what);
 }
 
 /* What the film's range has cost. */
@@ -197,27 +200,38 @@ static void film_report(const RenderJob *job)
 {
     const Film *film = &job->film;
     size_t full = film_full_pixels(film), pixels = film_pixels(film);
+    size_t infinite = film_infinite_pixels(film, job->output.film_scale);
+    if (infinite > 0)
+        log_message(LOG_WARNING,
+                    "%zu of %zu pixels (%.3g %%) are brighter than a float can say and are infinite in the image: make "
+                    "the lights darker, or the Film's iso lower",
+                    infinite, pixels, 100.0 * (double)infinite / (double)pixels);
     if (film->saturated > 0)
-        contributions_report(job, film->saturated, "were too bright for the film and were clamped");
+        count_report(job, film->saturated, "contributions were too bright for the film and were clamped");
     if (full > 0)
-        log_message(LOG_WARNING, "%zu of %zu pixels (%.2g %%) have come to the film's largest sum and are too dark",
+        log_message(LOG_WARNING, "%zu of %zu pixels (%.3g %%) have come to the film's largest sum and are too dark",
                     full, pixels, 100.0 * (double)full / (double)pixels);
     if ((double)film->vanished > VANISHED_PART * (double)job->result.samples)
-        contributions_report(job, film->vanished, "were too faint for the film and count as black");
+        count_report(job, film->vanished, "contributions were too faint for the film and count as black");
 }
 
 /* What the picture may suffer from. */
 static void diagnostics_report(const RenderJob *job)
 {
+    static const char *const SENTENCES[DIAGNOSTIC_COUNT] = {
+        [DIAGNOSTIC_NOT_FINITE] = "contributions were not finite inside the kernels and count as black",
+        [DIAGNOSTIC_ZERO_DIRECTION] = "rays had no direction and were not traced",
+        [DIAGNOSTIC_RAY_RANGE] = "rays left the range of floats, and their paths were ended",
+        [DIAGNOSTIC_LOST_CHAIN] = "chains could not make their first path again and were given up",
+        [DIAGNOSTIC_REPLAY] = "chains made something else of their path when they made it again",
+    };
     const RenderResult *result = &job->result;
     for (int i = 0; i < result->diagnostic_count; ++i)
         if (result->diagnostics[i] > 0)
-            log_message(LOG_WARNING, "inside the kernels: %s, %llu times", result->diagnostic_names[i],
-                        (unsigned long long)result->diagnostics[i]);
+            count_report(job, result->diagnostics[i], SENTENCES[i]);
     film_report(job);
     if (job->film.not_finite > 0)
-        log_message(LOG_WARNING, "%llu contributions were not finite and count as black",
-                    (unsigned long long)job->film.not_finite);
+        count_report(job, job->film.not_finite, "contributions were not finite and count as black");
 }
 
 static void summary_report(const RenderJob *job)

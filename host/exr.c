@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <inttypes.h>
 #include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -70,6 +71,62 @@ static exr_attr_box2i_t box_make(int x0, int y0, int x1, int y1)
     return box;
 }
 
+ExrAttribute exr_text(const char *name, const char *text)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_TEXT, .text = text};
+}
+
+ExrAttribute exr_whole(const char *name, uint64_t whole)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_WHOLE, .whole = whole};
+}
+
+ExrAttribute exr_real(const char *name, double real)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_REAL, .real = real};
+}
+
+ExrAttribute exr_matrix(const char *name, const float matrix[16])
+{
+    return (ExrAttribute){.name = name, .kind = EXR_MATRIX, .matrix = matrix};
+}
+
+static exr_result_t attribute_set(exr_context_t context, int part, const ExrAttribute *attribute)
+{
+    const char *name = attribute->name;
+    char digits[24];
+    exr_attr_m44f_t matrix;
+    switch (attribute->kind) {
+    case EXR_WHOLE:
+        if (attribute->whole <= INT32_MAX)
+            return exr_attr_set_int(context, part, name, (int32_t)attribute->whole);
+        snprintf(digits, sizeof digits, "%" PRIu64, attribute->whole);
+        return exr_attr_set_string(context, part, name, digits);
+    case EXR_REAL:
+        return exr_attr_set_float(context, part, name, (float)attribute->real);
+    case EXR_MATRIX:
+        for (int i = 0; i < 16; ++i)
+            matrix.m[i] = attribute->matrix[i % 4 * 4 + i / 4];
+        return exr_attr_set_m44f(context, part, name, &matrix);
+    default:
+        return exr_attr_set_string(context, part, name, attribute->text);
+    }
+}
+
+/* Those of Rec. 709 and sRGB. */
+static exr_result_t chromaticities_set(exr_context_t context, int part)
+{
+    const exr_attr_chromaticities_t srgb = {.red_x = 0.64f,
+                                            .red_y = 0.33f,
+                                            .green_x = 0.30f,
+                                            .green_y = 0.60f,
+                                            .blue_x = 0.15f,
+                                            .blue_y = 0.06f,
+                                            .white_x = 0.3127f,
+                                            .white_y = 0.3290f};
+    return exr_attr_set_chromaticities(context, part, "chromaticities", &srgb);
+}
+
 static exr_result_t header_write(exr_context_t context, const ExrWriter *writer, int width, int height, const int *crop,
                                  const ExrAttribute *attributes, size_t attribute_count)
 {
@@ -88,7 +145,9 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer,
                                  writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     for (size_t i = 0; i < attribute_count && result == EXR_ERR_SUCCESS; ++i)
-        result = exr_attr_set_string(context, part, attributes[i].name, attributes[i].value);
+        result = attribute_set(context, part, &attributes[i]);
+    if (result == EXR_ERR_SUCCESS)
+        result = chromaticities_set(context, part);
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
 }
 

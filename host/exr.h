@@ -5,6 +5,7 @@
 #include "error.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 /* One channel ("R", "direct.R"): pixel (x, y) of the data window at data[(y * window width + x) * stride]. */
 typedef struct ExrChannel {
@@ -14,14 +15,31 @@ typedef struct ExrChannel {
     bool half; /* store 16 bits */
 } ExrChannel;
 
-/* A string in the header. */
+typedef enum ExrAttributeKind { EXR_TEXT, EXR_WHOLE, EXR_REAL, EXR_MATRIX } ExrAttributeKind;
+
+/* What the header says besides; made by one of the functions below. */
 typedef struct ExrAttribute {
     const char *name;
-    const char *value;
+    ExrAttributeKind kind;
+    const char *text;
+    uint64_t whole;
+    double real;
+    const float *matrix; /* 16 */
 } ExrAttribute;
 
+ExrAttribute exr_text(const char *name, const char *text);
+
+/* EXR's whole numbers end at 2^31 - 1: a larger one is written as text. */
+ExrAttribute exr_whole(const char *name, uint64_t whole);
+
+/* Written with 32 bits. */
+ExrAttribute exr_real(const char *name, double real);
+
+/* Row-major, for columns: EXR's are for rows, with translations in the fourth row, and so it is written. */
+ExrAttribute exr_matrix(const char *name, const float matrix[16]);
+
 /* Writes `channel_count` channels of the pixels crop[0] <= x < crop[2], crop[1] <= y < crop[3] of a width x height
- * picture (the display window): scanlines, ZIP, sorted by name as the format wants. `crop` may be NULL: everything.
+ * picture (the display window): scanlines, ZIP, sorted by name as the format wants; chromaticities are those of linear sRGB. `crop` may be NULL: everything.
  * Nothing in the file depends on time or machine. Written beside `path` and renamed: an old file stays until the new
  * one is whole. Fails, naming the path, when it cannot be written, and for a channel named twice. */
 bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,

@@ -286,20 +286,36 @@ static double light_unit_of(const Film *film, double unit)
     return samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
 }
 
+/* Value v, three a pixel, of a part of the film. */
+static float value_resolve(const Film *film, FilmPart part, double unit, double light_unit, size_t v)
+{
+    uint32_t count = film->counts[v / 3];
+    double value = count && part != FILM_LIGHT ? (double)film_sum_shown(film->sums[v]) * unit / count : 0.0;
+    if (film->light_sums && part != FILM_OWN)
+        value += (double)film_sum_shown(film->light_sums[v]) * light_unit;
+    return (float)value;
+}
+
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
 {
     const double unit = ldexp((double)scale, film->quantum_exponent);
     const double light_unit = light_unit_of(film, unit);
+    for (size_t v = 0; v < 3 * film_pixels(film); ++v)
+        rgb[v] = value_resolve(film, part, unit, light_unit, v);
+}
+
+size_t film_infinite_pixels(const Film *film, float scale)
+{
+    const double unit = ldexp((double)scale, film->quantum_exponent);
+    const double light_unit = light_unit_of(film, unit);
+    size_t infinite = 0;
     for (size_t i = 0; i < film_pixels(film); ++i) {
-        uint32_t count = film->counts[i];
-        for (size_t c = 0; c < 3; ++c) {
-            int64_t sum = film_sum_shown(film->sums[3 * i + c]);
-            double value = count && part != FILM_LIGHT ? (double)sum * unit / count : 0.0;
-            if (film->light_sums && part != FILM_OWN)
-                value += (double)film_sum_shown(film->light_sums[3 * i + c]) * light_unit;
-            rgb[3 * i + c] = (float)value;
-        }
+        bool finite = true;
+        for (size_t c = 0; c < 3; ++c)
+            finite = finite && isfinite(value_resolve(film, FILM_ALL, unit, light_unit, 3 * i + c));
+        infinite += !finite;
     }
+    return infinite;
 }
 
 void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb)

@@ -83,6 +83,9 @@ int64_t film_sum_rounded(double units);
 /* Pixels of which a sum has come to 2^62 units: they are darker than they should be. */
 size_t film_full_pixels(const Film *film);
 
+/* Pixels of the whole picture, times `scale`, that a float cannot hold. */
+size_t film_infinite_pixels(const Film *film, float scale);
+
 /* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb);

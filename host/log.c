@@ -1,9 +1,10 @@
 #include "log.h"
 
+#include "progress.h"
+
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <unistd.h>
 
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
 static LogLevel log_level = LOG_INFO;
@@ -44,20 +45,36 @@ unsigned long log_warning_count(void)
     return count;
 }
 
+/* The mutex is held. */
+static void line_write(const char *line)
+{
+    if (log_sink)
+        log_sink(line, log_sink_context);
+    else
+        fprintf(stderr, "%s%s\n", stream_is_terminal(stderr) ? "\r\033[K" : "", line);
+}
+
 static void log_write(LogLevel level, const char *where, const char *text)
 {
-    char line[2048];
+    char line[2304]; /* 512 of where, 1536 of text */
     snprintf(line, sizeof line, "%s%s: %s", where, LEVEL_NAMES[level], text);
     text_make_printable(line);
     pthread_mutex_lock(&log_mutex);
     if (level == LOG_WARNING && !log_muted)
         ++log_warnings;
-    if (level <= log_level && !log_muted) {
-        if (log_sink)
-            log_sink(line, log_sink_context);
-        else
-            fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", line);
-    }
+    if (level <= log_level && !log_muted)
+        line_write(line);
+    pthread_mutex_unlock(&log_mutex);
+}
+
+void log_error(const Error *error)
+{
+    char fix[sizeof error->fix + 16];
+    snprintf(fix, sizeof fix, "  fix: %.*s", (int)sizeof error->fix - 1, error->fix);
+    pthread_mutex_lock(&log_mutex);
+    line_write(error->message);
+    if (error->fix[0])
+        line_write(fix);
     pthread_mutex_unlock(&log_mutex);
 }
 

@@ -21,6 +21,9 @@ void log_message(LogLevel level, const char *format, ...) __attribute__((format(
 /* "file:line:column: warning: ..." */
 void log_message_at(LogLevel level, SourcePlace place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/* One of several errors, with what to do; main prints the last. Not muted, and no warning. */
+void log_error(const Error *error);
+
 /* Number of warnings so far. */
 unsigned long log_warning_count(void);
 

@@ -6,6 +6,7 @@
 #include "cmd_compare.h"
 #include "command.h"
 #include "name_table.h"
+#include "startup.h"
 
 #ifdef HAVE_EMBREE
 #include "backend_cpu.h"
@@ -138,7 +139,8 @@ int main(int argc, char **argv)
     const BackendInterface *backends[BACKENDS_MAX];
     BackendTable table = {backends, backends_fill(backends), LEFT_OUT};
     Error error = {0};
-    int status = output_close(command_run(&table, argc, argv, &error), &error);
+    bool ready = startup_prepare(&error);
+    int status = output_close(ready ? command_run(&table, argc, argv, &error) : EXIT_FAILED, &error);
     if (error.message[0])
         error_print(&error, stderr);
     return status;

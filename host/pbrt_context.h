@@ -24,7 +24,7 @@
 #define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
 #define IMPORT_COORDINATE_MAX 1e12 /* of a point in world space: products of three must fit a float */
 #define IMPORT_ERRORS_MAX 20 /* of a scene, shown in one run */
-#define IMPORT_FILM_MAX 65536 /* pixels of a film's side */
+#define IMPORT_FILM_MAX 65535 /* pixels of a film's side */
 
 /* Instead of an index of a material. */
 #define MATERIAL_INTERFACE 0xfffffffeu /* no material: the shape is invisible */

@@ -1,5 +1,7 @@
 #include "pbrt_errors.h"
 
+#include "log.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +22,7 @@ bool errors_note(PbrtImport *im, bool defines)
     if (consequence || again)
         return true;
     if (errors->count > 0)
-        error_print(&errors->latest, stderr);
+        log_error(&errors->latest);
     errors->latest = *im->error;
     if (++errors->count < IMPORT_ERRORS_MAX)
         return true;
@@ -37,6 +39,6 @@ bool errors_end(PbrtImport *im)
     if (!error_is_memory(im->error))
         *im->error = im->errors.latest;
     else
-        error_print(&im->errors.latest, stderr);
+        log_error(&im->errors.latest);
     return false;
 }

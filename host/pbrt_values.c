@@ -160,6 +160,9 @@ bool value_float_param(PbrtImport *im, ParamList *list, const char *name, FloatP
     return !list->failed;
 }
 
+/* No material is further from 1, and squares of eta stay where floats are exact to their last digit. */
+#define ETA_LEAST 0.01f
+
 float value_eta(PbrtImport *im, ParamList *list, const char *name, float fallback)
 {
     const Param *param = param_find(list, name, PARAM_BIT(PARAM_FLOAT) | PARAM_COLORS);
@@ -174,8 +177,9 @@ float value_eta(PbrtImport *im, ParamList *list, const char *name, float fallbac
         if (rgb[0] != rgb[1] || rgb[1] != rgb[2])
             log_message_at(LOG_INFO, param->place, "no dispersion: %s is %g for all colours", name, (double)eta);
     }
-    if (!(eta > 0.0f))
-        param_error(list, name, "the index of refraction \"%s\" must be above 0", name);
+    if (!(eta >= ETA_LEAST && eta <= 1.0f / ETA_LEAST))
+        param_error(list, name, "the index of refraction \"%s\" must be from %g to %g", name, (double)ETA_LEAST,
+                    1.0 / (double)ETA_LEAST);
     return eta;
 }
 

@@ -1,6 +1,7 @@
 #include "progress.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -8,11 +9,17 @@
 #define BAR_MIN 8
 #define BAR_MAX 40
 
+bool stream_is_terminal(FILE *stream)
+{
+    const char *kind = getenv("TERM");
+    return isatty(fileno(stream)) == 1 && kind && kind[0] && strcmp(kind, "dumb") != 0;
+}
+
 void progress_init(Progress *progress, FILE *stream, bool quiet)
 {
     progress->stream = stream;
     progress->quiet = quiet;
-    progress->terminal = isatty(fileno(stream)) == 1;
+    progress->terminal = stream_is_terminal(stream);
     progress->last_shown = 0.0;
     progress->line_open = false;
 }

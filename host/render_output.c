@@ -160,21 +160,23 @@ static void picture_aovs(Picture *picture, const RenderOutput *output)
 static bool exr_output_write(const RenderOutput *output, const Film *film, const Picture *picture,
                              double samples_per_pixel, Error *error)
 {
-    char samples[32], seed[32], depth[32];
-    snprintf(samples, sizeof samples, "%.9g", samples_per_pixel);
-    snprintf(seed, sizeof seed, "%" PRIu64, output->seed);
-    snprintf(depth, sizeof depth, "%d", output->max_depth);
     /* Nothing of time, machine or threads: the same picture is the same file. */
     const ExrAttribute attributes[] = {
-        {"integrator", output->integrator},
-        {"maxDepth", depth},
-        {"renderer", PACKAGE_NAME " " PACKAGE_VERSION},
-        {"samples", samples},
-        {"scene", path_file_name(output->scene_file)},
-        {"seed", seed},
+        exr_text("integrator", output->integrator),
+        exr_whole("maxDepth", (uint64_t)output->max_depth),
+        exr_text("renderer", PACKAGE_NAME " " PACKAGE_VERSION),
+        exr_real("samples", samples_per_pixel),
+        exr_text("scene", path_file_name(output->scene_file)),
+        exr_whole("seed", output->seed),
+        exr_matrix("worldToCamera", output->world_to_camera),
+        exr_matrix("worldToNDC", output->world_to_ndc),
+        exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world"),
     };
+    /* The last one is for a layer that may not be there. */
+    bool depth = output->layers && (output->layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
+    size_t count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1);
     return exr_write(output->exr, picture->channels, picture->count, film->width, film->height, film->crop, attributes,
-                     sizeof attributes / sizeof attributes[0], error);
+                     count, error);
 }
 
 bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)

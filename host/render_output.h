@@ -20,6 +20,7 @@ typedef struct RenderOutput {
     const char *integrator;
     uint64_t seed;
     int max_depth;
+    float world_to_camera[16], world_to_ndc[16]; /* camera_matrices */
 } RenderOutput;
 
 /* Sets the names: the EXR's is `image` with the ending .exr; the PNG's is `png`, or beside the EXR when that is NULL,

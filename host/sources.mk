@@ -112,6 +112,7 @@ libtwinlight_host_la_SOURCES = \
 	host/ply_internal.h \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
+	host/ray_reach.c host/ray_reach.h \
 	host/render.c host/render.h \
 	host/render_layers.c host/render_layers.h \
 	host/render_run.h \
@@ -129,6 +130,7 @@ libtwinlight_host_la_SOURCES = \
 	host/scene_pack.c host/scene_pack.h \
 	host/scene_summary.c host/scene_summary.h \
 	host/ssim.c \
+	host/startup.c host/startup.h \
 	host/stats.c host/stats.h \
 	host/student.c host/student.h \
 	host/svg_chart.c host/svg_chart.h \

@@ -15,6 +15,7 @@
 #define BOTTOM 48.0
 #define LABEL_STEP 16.0
 #define LABELS_MAX 64
+#define NUMBERS_LEAST 3 /* on an axis */
 
 /* An axis in log10 and where it lies on the paper. */
 typedef struct Axis {
@@ -55,36 +56,61 @@ static bool step_has_number(int step, double decades)
     return step == 2 || step == 5 || (decades < 0.9 && (step == 3 || step == 4 || step == 7));
 }
 
-static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical, int step, double value)
+/* digits: of the number beside it; 0: none. */
+static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical, bool fine, double value, int digits)
 {
-    const Axis *axis = vertical ? y : x;
-    double at = place(axis, value);
+    double at = place(vertical ? y : x, value);
     char text[64];
-    fprintf(stream, "<line class=\"%s\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>",
-            step == 1 ? "grid" : "grid fine", vertical ? x->from : at, vertical ? at : y->from, vertical ? x->to : at,
-            vertical ? at : y->to);
-    if (!step_has_number(step, axis->high - axis->low))
+    fprintf(stream, "<line class=\"%s\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>", fine ? "grid fine" : "grid",
+            vertical ? x->from : at, vertical ? at : y->from, vertical ? x->to : at, vertical ? at : y->to);
+    if (digits == 0)
         return;
-    html_number_text(text, sizeof text, value, 1);
+    html_number_text(text, sizeof text, value, digits);
     fprintf(stream, "<text class=\"tick\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n",
             vertical ? x->from - 7.0 : at, vertical ? at + 4.0 : y->from + 17.0, vertical ? "end" : "middle", text);
 }
 
-/* Grid lines at powers of ten and between them, fewer where there are many decades. */
+/* Lines at powers of ten and between them, fewer where there are many decades. Returns how many have numbers; draws none
+ * where `stream` is NULL. */
+static int grid_decades(FILE *stream, const Axis *x, const Axis *y, bool vertical)
+{
+    const Axis *axis = vertical ? y : x;
+    double decades = axis->high - axis->low;
+    int numbers = 0;
+    for (int decade = (int)floor(axis->low); decade <= (int)ceil(axis->high); ++decade)
+        for (int step = 1; step < 10; ++step) {
+            double value = step * pow(10.0, decade);
+            bool wanted = step == 1 || decades < 2.2 || (decades < 4.0 && (step == 2 || step == 5));
+            if (!wanted || log10(value) < axis->low || log10(value) > axis->high)
+                continue;
+            bool number = step_has_number(step, decades);
+            numbers += number;
+            if (stream)
+                grid_line(stream, x, y, vertical, step != 1, value, number ? 1 : 0);
+        }
+    return numbers;
+}
+
+/* About four lines at round values, evenly apart: for an axis of a small part of a decade. */
+static void grid_even(FILE *stream, const Axis *x, const Axis *y, bool vertical)
+{
+    const Axis *axis = vertical ? y : x;
+    double low = pow(10.0, axis->low), high = pow(10.0, axis->high);
+    double apart = (high - low) / 4.0, unit = pow(10.0, floor(log10(apart))), part = apart / unit;
+    double step = unit * (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0);
+    int digits = (int)floor(log10(high)) - (int)floor(log10(step)) + 1;
+    int first = (int)ceil(low / step), last = (int)floor(high / step);
+    for (int k = first; k <= last; ++k)
+        grid_line(stream, x, y, vertical, false, k * step, digits > 1 ? digits : 1);
+}
+
 static void grid_write(FILE *stream, const Axis *x, const Axis *y)
 {
-    for (int vertical = 0; vertical < 2; ++vertical) {
-        const Axis *axis = vertical ? y : x;
-        double decades = axis->high - axis->low;
-        for (int decade = (int)floor(axis->low); decade <= (int)ceil(axis->high); ++decade) {
-            for (int step = 1; step < 10; ++step) {
-                double value = step * pow(10.0, decade);
-                bool wanted = step == 1 || decades < 2.2 || (decades < 4.0 && (step == 2 || step == 5));
-                if (wanted && log10(value) >= axis->low && log10(value) <= axis->high)
-                    grid_line(stream, x, y, vertical == 1, step, value);
-            }
-        }
-    }
+    for (int vertical = 0; vertical < 2; ++vertical)
+        if (grid_decades(NULL, x, y, vertical == 1) < NUMBERS_LEAST)
+            grid_even(stream, x, y, vertical == 1);
+        else
+            grid_decades(stream, x, y, vertical == 1);
 }
 
 /* Shapes differ as well as colours. */

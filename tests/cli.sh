@@ -2,7 +2,8 @@
 # What the tests of the program from outside share: a folder of their own, counted checks, small renderings. Sourced in
 # the build folder; srcdir is the source folder.
 
-program=$(pwd)/twinlight
+build=$(pwd)
+program=$build/twinlight
 # shellcheck disable=SC2034 # for who sources this
 scene=$(cd "${srcdir:-.}" && pwd)/scenes/cornell.pbrt
 work=$(mktemp -d "${TMPDIR:-/tmp}/twinlight-cli.XXXXXX") || exit 99

@@ -183,6 +183,31 @@ START_TEST(test_chart)
 }
 END_TEST
 
+/* An axis of a small part of a decade, of many, and of one value has numbers to read it by, each of another value. */
+START_TEST(test_chart_numbers)
+{
+    static const double RANGES[][2] = {{0.35, 0.47}, {0.41, 0.43}, {0.9, 1.2}, {1e-5, 20.0}, {3.0, 3.0}, {61e3, 69e3}};
+    const double low = RANGES[_i][0], high = RANGES[_i][1];
+    const ChartLine line = {.name = "a", .count = 2, .points = {{1.0, low, low, low}, {1000.0, high, high, high}}};
+    const Chart chart = {.title = "t", .x_label = "x", .y_label = "y", .level_label = "", .lines = &line, .count = 1};
+    char *text, last[32] = "";
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    chart_write(stream, &chart);
+    fclose(stream);
+    int numbers = 0;
+    for (const char *at = text; (at = strstr(at, "text-anchor=\"end\">")) != NULL; ++numbers) {
+        char number[32];
+        at += strlen("text-anchor=\"end\">");
+        snprintf(number, sizeof number, "%.*s", (int)strcspn(at, "<"), at);
+        ck_assert_str_ne(number, last);
+        strcpy(last, number);
+    }
+    ck_assert_msg(numbers >= 3 && numbers <= 14, "%d numbers from %g to %g", numbers, low, high);
+    free(text);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bench");
@@ -195,6 +220,7 @@ int main(void)
     tcase_add_test(tcase, test_text);
     tcase_add_test(tcase, test_records);
     tcase_add_test(tcase, test_chart);
+    tcase_add_loop_test(tcase, test_chart_numbers, 0, 6);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }

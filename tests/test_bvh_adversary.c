@@ -114,6 +114,19 @@ static void add_instances(TestScene *test, TestRandom *random, float scale, Vec3
     }
 }
 
+/* A triangle with a corner so far out that rays from there take another walk on the CPU (ray_reach.h). */
+static void add_far_triangle(TestScene *test, TestRandom *random, float scale)
+{
+    TestMesh mesh = mesh_create(3, 1);
+    mesh_vertex(&mesh, corner_random(random));
+    mesh_vertex(&mesh, corner_random(random));
+    mesh_vertex(&mesh, vec3_scale(random_direction(random), 1.9e6f));
+    mesh_triangle(&mesh, 0, 1, 2);
+    mesh_map(&mesh, scale, vec3_splat(0.0f));
+    test_scene_mesh(test, &mesh, 0);
+    mesh_destroy(&mesh);
+}
+
 static void target_add(Adversary *adversary, uint id, const Instance *instance)
 {
     const SceneView *view = &adversary->test.view;
@@ -170,6 +183,8 @@ static void scene_make(Adversary *adversary, uint number)
         test_scene_quadrics(&adversary->test, random, 5);
     if (number % 4 == 3)
         add_instances(&adversary->test, random, scale, shift);
+    if (number % 8 >= 6)
+        add_far_triangle(&adversary->test, random, scale);
     test_scene_finish(&adversary->test);
     adversary->rays = rays_embree_create(&adversary->test.backend, 1, &error);
     ck_assert_msg(adversary->rays != NULL, "%s", error.message);
@@ -295,12 +310,12 @@ static double hit_outside(const Adversary *adversary, const Ray *ray, const Hit 
     return outside / ((double)FLOAT_EPSILON * ((double)box_largest(&box) + (double)vec3_max_abs(query.o)) + 1e-300);
 }
 
-/* Asks all three; the largest hit_outside goes to *outside. */
+/* Asks all three, which find nothing along a ray that cannot be traced; the largest hit_outside goes to *outside. */
 static void ray_ask(Adversary *adversary, const Ray *ray, double *outside)
 {
     const SceneView *view = &adversary->test.view;
-    Hit brute = brute_force(&adversary->test, ray), embree = rays_embree_closest(adversary->rays, ray),
-        device = bvh_closest(view, adversary->bvh.words, *ray);
+    Hit brute = ray_traceable(ray->o, ray->d) ? brute_force(&adversary->test, ray) : hit_none(ray->t_max),
+        embree = rays_embree_closest(adversary->rays, ray), device = bvh_closest(view, adversary->bvh.words, *ray);
     bool occluded = brute.primitive != NONE;
     bool same = hit_same(&brute, &embree) && hit_same(&brute, &device) &&
                 rays_embree_occluded(adversary->rays, ray) == occluded &&

@@ -263,6 +263,23 @@ result 'pyramid: --unweighted changes nothing' $?
 expect 0 'lights        2' info "$scene"
 expect 0 '"feature_mask"' info --json "$scene"
 
+# One vertex that is far from all others is said.
+far() {
+    {
+        echo 'LookAt 0 -3 2  0 0 0  0 0 1 Camera "perspective" WorldBegin LightSource "infinite" AttributeBegin'
+        for _ in 1 2 3 4 5 6 7 8 9; do
+            echo 'Translate .1 0 0 Shape "sphere" "float radius" .05'
+        done
+        echo "AttributeEnd Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  0 $1 0 ] \"integer indices\" [ 0 1 2 ]"
+    } >far.pbrt
+}
+far 1e6
+expect 0 '1 of the primitives and instances reaches as far as 1e+06' render --resolution=4x4 --spp=1 -o far.exr far.pbrt
+far 10
+expect 0 '' render --resolution=4x4 --spp=1 -o far.exr far.pbrt
+! grep -q 'of the primitives' err
+result 'a vertex that is not far is said to be' $?
+
 # Light that no path can bring is said to be missing, where glass is smooth and the sun a point; not where it is rough.
 pool() {
     printf '%s\n' 'WorldBegin LightSource "distant"' 'Material "diffuse"' \
@@ -430,5 +447,58 @@ result '--time: the statistics say that it was stopped' $?
 awk -F'[:,]' '/"render"/ { used = $2 } END { exit !(used >= 0.9) }' time.json
 result '--time=1s: rendering took less' $?
 file_exists time.exr
+
+# ---- little to work with ------------------------------------------------------------------------------------------
+
+# limited STATUS TEXT LIMIT...: a rendering under ulimit; as bash has it.
+limited() {
+    expected=$1
+    text=$2
+    shift 2
+    # shellcheck disable=SC2016 # for bash to expand
+    bash -c 'program=$1 scene=$2; shift 2; ulimit "$@" && exec "$program" render --spp=1 --resolution=16x16 --no-png -o limited.exr "$scene"' \
+        bash "$program" "$scene" "$@" >out 2>err
+    status=$?
+    [ "$status" -eq "$expected" ] && grep -qF -- "$text" err
+    result "ulimit $*: exit status $status, not $expected, or no \"$text\"" $?
+}
+# A sanitizer needs terabytes of address space, and stack of its own.
+if ! grep -q '^SANITIZE_CFLAGS = .*fsanitize' "$build/Makefile"; then
+    limited 1 'ulimit -s 8192' -s 128
+    limited 0 '' -Ss 128
+    for kilobytes in 185000 190000 195000 200000 210000; do
+        limited 1 'error: ' -v $kilobytes
+    done
+fi
+
+# A log line must not land in the image.
+"$program" render --spp=1 --resolution=16x16 --no-png -o closed.exr far.pbrt 2>&-
+result 'standard error closed: exit status' $?
+"$program" compare closed.exr closed.exr >out 2>err
+result 'standard error closed: the image cannot be read' $?
+
+# ---- what floats cannot hold --------------------------------------------------------------------------------------
+
+bright() {
+    echo "LookAt 0 -3 2  0 0 0  0 0 1 Camera \"perspective\" $1 WorldBegin LightSource \"infinite\" \"rgb L\" [ $2 $2 $2 ]" \
+        'Shape "sphere" "float radius" .5' >bright.pbrt
+}
+bright 'Film "rgb" "float iso" [ 1e22 ]' 1e20
+expect 0 '256 of 256 pixels (100 %) are brighter than a float can say' render --resolution=16x16 --spp=1 --integrator=pt \
+    -o bright.exr bright.pbrt
+bright '"float lensradius" [ 1e20 ] "float focaldistance" [ 3 ]' 1
+expect 1 "the camera's lens has a radius of 1e+20" render --resolution=16x16 --spp=1 --integrator=pt -o bright.exr bright.pbrt
+
+# Camera space may be scaled as one likes.
+for scale in 1 1.1368683772161603e-13 9223372036854775808; do # powers of two: not even a bit changes
+    {
+        echo "Scale $scale $scale $scale"
+        cat "$scene"
+    } >scaled.pbrt
+    render --integrator=bdpt -o scaled$scale.exr scaled.pbrt
+done
+"$program" compare scaled1.exr scaled1.1368683772161603e-13.exr | grep -q '^relMSE  *0$' &&
+    "$program" compare scaled1.exr scaled9223372036854775808.exr | grep -q '^relMSE  *0$'
+result 'the image depends on the scale of camera space' $?
 
 checks_end

@@ -29,8 +29,9 @@ static void picture_fill(float *rgb)
 static bool rgb_write(const char *path, const float *rgb, int width, int height, const int *crop, Error *error)
 {
     const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
-    const ExrAttribute attributes[] = {{"software", "twinlight"}, {"scene", "a b\xc3\xa4"}};
-    return exr_write(path, channels, 3, width, height, crop, attributes, 2, error);
+    const ExrAttribute attributes[] = {exr_whole("seed", 4294967296u), exr_whole("n", 7),
+                                       exr_text("software", "twinlight"), exr_text("scene", "a b\xc3\xa4")};
+    return exr_write(path, channels, 3, width, height, crop, attributes, 4, error);
 }
 
 START_TEST(test_exr_keeps_every_bit)

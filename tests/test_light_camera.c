@@ -2,6 +2,7 @@
 #include "camera.h"
 #include "camera_setup.h"
 #include "light_fixture.h"
+#include "test_files.h"
 #include "test_light.h"
 
 /* pbrt's LookAt and more: a left-handed frame, scaled by 1. Row-major world from camera. */
@@ -170,6 +171,41 @@ START_TEST(test_projection)
 }
 END_TEST
 
+/* What the header of an image says of the camera leads points of its rays to where on the film they were seen, also where
+ * camera space is scaled and the importer has moved the scene. */
+START_TEST(test_matrices)
+{
+    static const double SCALES[] = {1.0, 1e-13, 37.0};
+    const uint kind = _i % 2 ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
+    const double scale = SCALES[_i / 2];
+    const Vec3 origin = vec3(12.0f, -7.0f, 3.0f);
+    CameraSettings settings = settings_placed(kind, 70.0f);
+    for (int i = 0; i < 12; ++i) {
+        settings.camera_from_world[i] *= scale;
+        settings.world_from_camera[i] /= i % 4 < 3 ? scale : 1.0;
+    }
+    Camera camera = make_camera(&settings, 200, 100);
+    float view[16], ndc[16];
+    camera_matrices(&settings, &camera, origin, view, ndc);
+    unsigned state = 5;
+    for (int k = 0; k < 100; ++k) {
+        Vec2 film = vec2(200.0f * (float)test_random_unit(&state), 100.0f * (float)test_random_unit(&state));
+        Ray ray = camera_ray(&camera, film, 200, 100, MIDDLE);
+        Vec3 at = vec3_add(vec3_mad(ray.o, 1.0f + 8.0f * (float)test_random_unit(&state), ray.d), origin);
+        const double p[4] = {(double)at.x, (double)at.y, (double)at.z, 1.0};
+        double q[4] = {0.0}, z = 0.0;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                q[i] += (double)ndc[4 * i + j] * p[j];
+        for (int j = 0; j < 4; ++j)
+            z += (double)view[8 + j] * p[j];
+        ck_assert_double_eq_tol(q[0] / q[3], (double)film.x / 200.0, 2e-5);
+        ck_assert_double_eq_tol(q[1] / q[3], (double)film.y / 100.0, 2e-5);
+        ck_assert(z > 0.0 || (kind == CAMERA_ORTHOGRAPHIC && scale < 1.0)); /* it is 10^13 across */
+    }
+}
+END_TEST
+
 START_TEST(test_outside_film)
 {
     CameraSettings settings = settings_identity(CAMERA_PERSPECTIVE, 90.0f);
@@ -246,6 +282,7 @@ TCase *camera_case(void)
     tcase_add_test(tcase, test_projection);
     tcase_add_test(tcase, test_outside_film);
     tcase_add_test(tcase, test_reach);
+    tcase_add_loop_test(tcase, test_matrices, 0, 6);
     tcase_add_test(tcase, test_bad_settings);
     return tcase;
 }
