@@ -1,6 +1,6 @@
 #include "bidirectional_path.h"
 
-#include <math.h>
+#include "test_util.h"
 
 bool test_path_possible(const TestPath *path, uint set, uint s)
 {
@@ -10,6 +10,37 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
     if (s == 0)
         return path->hittable;
     return !path->delta[t - 1] && !path->delta[t];
+}
+
+/* Compact densities give the same weights: the last two vertices of a side have their own density, those before the ratio of
+ * both. Left out where a ratio is not a normal number. */
+static void compact_check(const DensityView *full, uint set, uint exponent, uint s, uint t, const StrategyEnds *ends,
+                          StrategyWeights expected)
+{
+    uint light[PATH_SEGMENTS_MAX + 1], camera[PATH_SEGMENTS_MAX + 1];
+    DensityView view = *full;
+    view.compact = true;
+    view.light = light;
+    view.camera = camera;
+    view.light_end = s >= 2 ? s - 2 : 0;
+    view.camera_end = t >= 3 ? t - 2 : 1;
+    for (uint i = 0; i < s; ++i) {
+        float own = density_own(full, SIDE_LIGHT, i);
+        light[i] = float_bits(i >= view.light_end ? own : density_other(full, SIDE_LIGHT, i) / own);
+    }
+    for (uint i = 1; i < t; ++i) {
+        float own = density_own(full, SIDE_CAMERA, i);
+        camera[i - 1] = float_bits(i >= view.camera_end ? own : density_other(full, SIDE_CAMERA, i) / own);
+    }
+    for (uint i = 0; s > 1 && i < s; ++i)
+        if (!isnormal(bits_float(light[i])))
+            return;
+    for (uint i = 1; i < t; ++i)
+        if (!isnormal(bits_float(camera[i - 1])))
+            return;
+    const StrategyWeights got = strategy_weights(set, exponent, s, t, &view, ends);
+    TEST_NEAR(got.own, expected.own, 1e-5);
+    TEST_NEAR(got.plain, expected.plain, 1e-5);
 }
 
 /* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left out
@@ -44,7 +75,9 @@ StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent,
     ends.camera_y1 = s > 0 ? path->camera[t] : NAN;
     ends.camera_y2 = s > 1 ? path->camera[t + 1] : NAN;
     ends.own_y0 = s == 1 ? path->light[k] : NAN;
-    return strategy_weights(set, exponent, s, t, &view, &ends);
+    const StrategyWeights full = strategy_weights(set, exponent, s, t, &view, &ends);
+    compact_check(&view, set, exponent, s, t, &ends, full);
+    return full;
 }
 
 float test_path_weight(const TestPath *path, uint set, uint exponent, uint s)

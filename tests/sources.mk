@@ -54,11 +54,16 @@ endif
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
+# Whether the tests see faults that are planted one at a time: mutants.sh -h. About an hour; not a part of any check.
+.PHONY: mutants
+mutants: twinlight$(EXEEXT)
+	$(srcdir)/tests/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
+
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 TEST_CACHE = $(abs_top_builddir)/test-cache
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(TEST_CACHE)'; export XDG_CACHE_HOME;
 clean-local:
-	rm -rf test-cache
+	rm -rf test-cache mutants.work mutants.md
 
 EXTRA_DIST += \
 	tests/analytic.h \
@@ -72,10 +77,15 @@ EXTRA_DIST += \
 	tests/geometry_suites.h \
 	tests/instances.pbrt \
 	tests/light_fixture.h \
+	tests/mutants.md \
+	tests/mutants.sh \
+	tests/mutants.txt \
 	tests/numerics.h \
 	tests/opencl_probe.h \
 	tests/render_fixture.h \
+	tests/test_blend.h \
 	tests/test_bvh.h \
+	tests/test_chain.h \
 	tests/test_emit.h \
 	tests/test_files.h \
 	tests/test_import.h \
@@ -122,6 +132,9 @@ tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
 	tests/test_bidirectional_walks.c \
 	tests/test_bidirectional_weights.c
 
+tests_test_blend_SOURCES = tests/test_blend.c \
+	tests/test_blend_known.c
+
 tests_test_bsdf_SOURCES = tests/test_bsdf.c \
 	tests/test_bsdf_coated.c \
 	tests/test_bsdf_energy.c \
@@ -135,6 +148,9 @@ tests_test_bvh_SOURCES = tests/test_bvh.c \
 	tests/test_bvh_build.c \
 	tests/test_bvh_opencl.c \
 	tests/bvh_scenes.c
+
+tests_test_chain_SOURCES = tests/test_chain.c \
+	tests/test_chain_shown.c
 
 tests_test_emit_SOURCES = tests/test_emit.c \
 	tests/test_emit_area.c \

@@ -3,7 +3,7 @@
 #include "importance.h"
 #include "rng.h"
 
-#include "test_util.h"
+#include "test_blend.h"
 
 #include <string.h>
 
@@ -344,5 +344,6 @@ int main(void)
     tcase_add_test(tcase, test_importance);
     tcase_add_loop_test(tcase, test_visits, 0, 2);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, blend_known_tests());
     return test_run(suite);
 }

@@ -1,6 +1,6 @@
 /* The chain's rule on a target that is known: what begins in proportion to it stays so, under every kind of mutation and
  * with all of them, coordinates that a mutation leaves alone keep their bits, and the film gets one visit for each step. */
-#include "test_util.h"
+#include "test_chain.h"
 
 #include "chain_list.h"
 #include "importance.h"
@@ -400,5 +400,6 @@ int main(void)
     tcase_add_test(tcase, test_stuck);
     tcase_add_test(tcase, test_memory);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, chain_shown_tests());
     return test_run(suite);
 }

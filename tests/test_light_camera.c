@@ -219,6 +219,26 @@ START_TEST(test_outside_film)
 }
 END_TEST
 
+/* A film position is covered if and only if the filter of some pixel of the crop window reaches it. */
+START_TEST(test_reach)
+{
+    FrameParams frame = {.crop_x0 = 20, .crop_x1 = 26, .crop_y0 = 30, .crop_y1 = 33};
+    for (int narrow = 0; narrow < 2; ++narrow) {
+        frame.filter.radius_x = narrow ? 0.75f : 2.5f;
+        frame.filter.radius_y = narrow ? 3.25f : 0.5f;
+        for (int i = 0; i < 200 * 200; ++i) {
+            double x = 15.0 + 16.1 * (i % 200 + 0.5) / 200.0, y = 25.0 + 13.0 * (i / 200 + 0.5) / 200.0;
+            bool reached_x = false, reached_y = false;
+            for (uint pixel = 20; pixel < 26; ++pixel)
+                reached_x = reached_x || fabs(x - pixel - 0.5) < (double)frame.filter.radius_x;
+            for (uint pixel = 30; pixel < 33; ++pixel)
+                reached_y = reached_y || fabs(y - pixel - 0.5) < (double)frame.filter.radius_y;
+            TEST_TRUE(camera_film_covered(&frame, vec2((float)x, (float)y)) == (reached_x && reached_y));
+        }
+    }
+}
+END_TEST
+
 static void assert_refused(CameraSettings settings, const char *word)
 {
     Camera camera;
@@ -261,6 +281,7 @@ TCase *camera_case(void)
     tcase_add_test(tcase, test_double_model);
     tcase_add_test(tcase, test_projection);
     tcase_add_test(tcase, test_outside_film);
+    tcase_add_test(tcase, test_reach);
     tcase_add_loop_test(tcase, test_matrices, 0, 6);
     tcase_add_test(tcase, test_bad_settings);
     return tcase;
