@@ -1,7 +1,7 @@
 #!/bin/sh
 # Who may include whom:
 #   shared/      shared; system headers in platform.h alone (it knows the language)
-#   backend_*/   itself, shared, host/{backend,bvh,error,instance_bounds,log}.h
+#   backend_*/   itself, shared, host/{backend,bvh,error,instance_bounds,log,ray_reach}.h
 #   host/        host, shared; main.c alone may name a backend's header
 # An include that this tree does not resolve is a fault too. config.h, build_commit.h (both made by the build) and
 # <system headers> are free outside shared/.
@@ -27,7 +27,8 @@ allowed() {
     host/*:host/* | host/*:shared/*) return 0 ;;
     backend_*/*:shared/*) return 0 ;;
     backend_*/*:host/backend.h | backend_*/*:host/bvh.h) return 0 ;;
-    backend_*/*:host/error.h | backend_*/*:host/instance_bounds.h | backend_*/*:host/log.h) return 0 ;;
+    backend_*/*:host/error.h | backend_*/*:host/instance_bounds.h | backend_*/*:host/log.h | \
+        backend_*/*:host/ray_reach.h) return 0 ;;
     backend_*/*:backend_*/*) [ "${1%%/*}" = "${2%%/*}" ] ;;
     *) return 1 ;;
     esac
