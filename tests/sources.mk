@@ -54,7 +54,7 @@ endif
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
-# Whether the tests see faults that are planted one at a time: mutants.sh -h. About an hour; not a part of any check.
+# Whether the tests see faults that are planted one at a time: mutants.sh -h. A quarter of an hour; not a part of any check.
 .PHONY: mutants
 mutants: twinlight$(EXEEXT)
 	$(srcdir)/tests/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md

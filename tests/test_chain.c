@@ -192,6 +192,10 @@ START_TEST(test_stationary)
         draw(&toy, t, any_s);
         for (int k = 0; k < STEPS; ++k)
             visits += step(&toy, t);
+        uint proposals = 0;
+        for (uint kind = 0; kind < MUTATION_COUNT; ++kind)
+            proposals += state_load(toy.paths, STRIDE, CHAIN_TALLY + kind, t) & 0xffffu;
+        TEST_TRUE(proposals == STEPS);
         visits += (double)state_load_float(toy.paths, STRIDE, CHAIN_PENDING, t);
         float x[3];
         uint s = chain_key_s(state_load(toy.paths, STRIDE, CHAIN_KEY, t));

@@ -229,6 +229,30 @@ START_TEST(test_large)
 }
 END_TEST
 
+/* Of the steps of the camera's half the part `shifts` are shifts, of whatever set of kinds. */
+START_TEST(test_shifts)
+{
+    enum { STEPS = 1 << 16 };
+    Shown shown;
+    uint vertices[CHAIN_VERTEX_WORDS] = {0}, camera = 0, shifts = 0;
+    shown_init(&shown, 9);
+    shown.light.scene.frame.mutations = 7;
+    shown.light.scene.frame.shifts = 0.5f;
+    state_store(shown.paths, 1, CHAIN_KEY, 0, chain_key(4, 2));
+    state_store_float(shown.paths, 1, CHAIN_LUMINANCE, 0, 1.0f);
+    for (uint i = 0; i < STEPS; ++i) {
+        chain_propose(shown.light.view.frame, shown.paths, vertices, 0);
+        bool of_camera = chain_move(shown.paths, 1, 0, MOVE_MUTATION) == MUTATION_CAMERA;
+        bool shift = chain_move(shown.paths, 1, 0, MOVE_SHIFT) != 0u;
+        TEST_TRUE(of_camera || !shift);
+        camera += of_camera;
+        shifts += shift;
+    }
+    ck_assert_double_eq_tol((double)shifts / camera, 0.5, 5.0 * 0.5 / sqrt(camera));
+    fixture_destroy(&shown.light);
+}
+END_TEST
+
 /* One light at infinity, drawn with u, stands for all: the luminance is that of all for every u, the expected color is the sum of
  * all, and color / plain is that of the light drawn. */
 START_TEST(test_environment)
@@ -488,6 +512,7 @@ TCase *chain_shown_tests(void)
     tcase_add_test(tcase, test_splat);
     tcase_add_test(tcase, test_halves);
     tcase_add_test(tcase, test_large);
+    tcase_add_test(tcase, test_shifts);
     tcase_add_test(tcase, test_environment);
     tcase_add_test(tcase, test_met_lamp);
     tcase_add_test(tcase, test_candidates);

@@ -474,6 +474,25 @@ START_TEST(test_crop)
 }
 END_TEST
 
+/* The parts of a device's buffer (film_view_words) do not overlap, also with an odd number of pixels, and fit film_words. */
+START_TEST(test_buffer)
+{
+    static ulong words[1024];
+    for (uint pixels = 1; pixels < 10; ++pixels) {
+        FilmView view = {.depth_kinds = 3};
+        film_view_words(&view, words, pixels);
+        ck_assert_ptr_eq(view.sums, words);
+        ck_assert(view.saturated >= view.sums + 3 * pixels);
+        ck_assert(view.vanished > view.saturated && view.not_finite > view.vanished);
+        ck_assert((void *)view.counts >= (void *)(view.not_finite + 1));
+        ck_assert((void *)view.light_sums >= (void *)(view.counts + pixels));
+        ck_assert(view.rare_sums >= view.light_sums + 3 * pixels);
+        ck_assert(view.depth_sums >= view.rare_sums + 3 * pixels);
+        ck_assert_ptr_eq(view.depth_sums, words + film_words(pixels, 2));
+    }
+}
+END_TEST
+
 START_TEST(test_quantum)
 {
     const double means[] = {1.0, 0.75, 1.5, 1e-40, 1e30, 0.0, -1.0, NAN, INFINITY};
@@ -550,6 +569,7 @@ int main(void)
     tcase_add_test(tcase, test_vanished);
     tcase_add_test(tcase, test_not_finite_counts_as_zero);
     tcase_add_test(tcase, test_crop);
+    tcase_add_test(tcase, test_buffer);
     tcase_add_test(tcase, test_quantum);
     tcase_add_test(tcase, test_merge_refuses_other_films);
     tcase_add_test(tcase, test_init_refuses);

@@ -132,8 +132,13 @@ START_TEST(test_kept_density)
         ck_assert(kept_meet(&kept, 3));
         TEST_NEAR(shift_density(kept.vertices, 1, 1u - path, 0) / expected[path], 1.0, 1e-6);
     }
-    /* The current path again: both of its vertices are where they are kept. */
+    /* An infinite density is none. */
     Kept again = kept;
+    kept_walk(&again, vec3_splat(0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), FLOAT_INFINITY);
+    kept_meet(&again, 2);
+    ck_assert_float_eq(shift_density(again.vertices, 1, 0, 0), 0.0f);
+    /* The current path again: both of its vertices are where they are kept. */
+    again = kept;
     again.paths[CHAIN_MOVE] =
         HALF_CAMERA << MOVE_CHANGED | HALF_CAMERA << MOVE_BANKS | (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
     kept_walk(&again, vec3(0.0f, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
@@ -236,12 +241,28 @@ START_TEST(test_kept_numbers)
 }
 END_TEST
 
+/* On a surface that the ray meets at a slant, one step of the numbers moves the point by one over the cosine as far. */
+START_TEST(test_kept_slanted)
+{
+    const float cosine = 1e-3f, away = 0x1p-23f / cosine; /* ten times what is allowed across the ray */
+    Kept kept;
+    uint point = shift_point(0, 2);
+    kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);
+    kept_walk(&kept, vec3_splat(0.0f), vec3(0.0f, 0.0f, 1.0f), vec3(sqrtf(1.0f - cosine * cosine), 0.0f, cosine), 1.0f);
+    state_store_vec3(kept.vertices, 1, point, 0, vec3(0.0f, 0.0f, 1.0f + away));
+    kept.vertices[point + SHIFT_INSTANCE] = 7;
+    kept.vertices[point + SHIFT_PRIMITIVE] = 9;
+    ck_assert(kept_meet(&kept, 2));
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("shift");
     TCase *kept = tcase_create("kept");
     tcase_add_test(kept, test_kept_density);
     tcase_add_test(kept, test_kept_point);
+    tcase_add_test(kept, test_kept_slanted);
     tcase_add_loop_test(kept, test_kept_numbers, 0, 2);
     suite_add_tcase(suite, kept);
     TCase *fins = tcase_create("fins");
