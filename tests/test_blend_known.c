@@ -290,8 +290,9 @@ START_TEST(test_importance_known)
 }
 END_TEST
 
-/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, v the root of the mean error of the tiles that its pixels are
- * in times `visited`. Rarity is the mean number of visits over the cell's; that of a tile is the mean over its pixels. */
+/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, VISITS_MOST at most, v the root of `visited` times the mean
+ * error of the tiles that its pixels are in. Rarity is the mean number of visits over the cell's; that of a tile is the mean over
+ * its pixels. */
 START_TEST(test_visits_known)
 {
     Known known;
@@ -300,6 +301,8 @@ START_TEST(test_visits_known)
     double deviation[IMPORTANCE_CELLS], sum = 0.0, rarity[WIDTH * HEIGHT] = {0.0};
     uint visits[IMPORTANCE_CELLS + 1], pixels[IMPORTANCE_CELLS] = {0};
     known_init(&known, 17);
+    for (int s = 0; _i == 1 && s < BLEND_SERIES; ++s)
+        known.blend.known[5].spread[s] = 1e6; /* one tile has nearly all of the error */
     blend_errors(&known.blend, samples, errors);
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell) {
         double mean = 0.0;
@@ -319,14 +322,16 @@ START_TEST(test_visits_known)
         sum += pixels[cell] * deviation[cell] / PIXELS;
     }
     ck_assert(importance_visits(&known.blend, samples, visited, visits, &error));
-    uint all = visits[IMPORTANCE_CELLS], next = 0;
+    uint all = visits[IMPORTANCE_CELLS], next = 0, most = 0;
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell) {
         double each = fmin(rint(4.0 * (0.25 + 0.75 * deviation[cell] / sum)), VISITS_MOST);
+        most = each > most ? (uint)each : most;
         TEST_TRUE(visits[cell] == next);
         next += pixels[cell] * (uint)each;
         TEST_NEAR(importance_rarity(&known.blend, visits, cell), all / (each * PIXELS), 1e-9);
     }
     ck_assert_uint_eq(all, next);
+    ck_assert((most == VISITS_MOST) == (_i == 1));
     importance_tell(visits, &known.blend);
     for (size_t i = 0; i < PIXELS; ++i)
         rarity[blend_tile_of(&known.blend, i)] +=
@@ -348,6 +353,6 @@ TCase *blend_known_tests(void)
     tcase_add_test(tcase, test_errors_known);
     tcase_add_test(tcase, test_plan_known);
     tcase_add_test(tcase, test_importance_known);
-    tcase_add_test(tcase, test_visits_known);
+    tcase_add_loop_test(tcase, test_visits_known, 0, 2);
     return tcase;
 }
