@@ -8,8 +8,8 @@
 #include "bench_tables.h"
 #include "interrupt.h"
 #include "log.h"
+#include "output_check.h"
 #include "output_file.h"
-#include "render_output.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -25,9 +25,28 @@ static void sibling(const Bench *bench, const char *ending, char path[PATH_MAX])
     snprintf(path, PATH_MAX, "%.*s%s", (int)(strlen(output) - strlen(".html")), output, ending);
 }
 
+/* Page and tables can be written, and are neither scenes nor references. */
+static bool outputs_check(const Bench *bench, Error *error)
+{
+    const BenchOptions *options = &bench->options;
+    CommandFile files[2 * BENCH_SCENES_MAX + 3];
+    char tsv[PATH_MAX], json[PATH_MAX];
+    size_t count = 0;
+    sibling(bench, ".tsv", tsv);
+    sibling(bench, ".json", json);
+    for (int i = 0; i < options->scene_count; ++i)
+        files[count++] = (CommandFile){"a scene", options->scenes[i], false};
+    for (int i = 0; i < options->reference_count; ++i)
+        files[count++] = (CommandFile){"a reference", options->references[i], false};
+    files[count++] = (CommandFile){"the report", options->output, true};
+    files[count++] = (CommandFile){"the table", tsv, true};
+    files[count++] = (CommandFile){"the data", json, true};
+    return output_files_check(files, count, "give another name with --output", error);
+}
+
 static bool folder_make(Bench *bench, Error *error)
 {
-    if (!render_output_check(bench->options.output, error))
+    if (!outputs_check(bench, error))
         return false;
     sibling(bench, ".runs", bench->folder);
     return mkdir(bench->folder, 0777) == 0 || errno == EEXIST || error_errno(error, "make the folder", bench->folder);

@@ -4,6 +4,7 @@
 #include "compare_print.h"
 #include "error_image.h"
 #include "option_values.h"
+#include "output_check.h"
 #include "path_name.h"
 #include "rendering_file.h"
 
@@ -107,7 +108,13 @@ static bool pair_compare(const CompareCommand *command, const char *image_path, 
 {
     Rendering image = {0}, reference = {0};
     Comparison comparison = {.image = image_path, .reference = reference_path};
-    bool good = rendering_load(image_path, &image, error) && rendering_load(reference_path, &reference, error) &&
+    const CommandFile files[] = {{"the image", image_path, false},
+                                 {"the reference", reference_path, false},
+                                 {"the error image", command->output, true},
+                                 {"the pictures side by side", command->side_by_side, true}};
+    bool good = output_files_check(files, sizeof files / sizeof files[0],
+                                   "give each its own name, with --output and --side-by-side", error) &&
+                rendering_load(image_path, &image, error) && rendering_load(reference_path, &reference, error) &&
                 rendering_same_size(&image, image_path, &reference, reference_path, error) &&
                 figures_compute(command, &image, &reference, &comparison, error) &&
                 pictures_write(command, &image, &reference, error);

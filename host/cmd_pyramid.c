@@ -5,11 +5,11 @@
 #include "contact_sheet.h"
 #include "interrupt.h"
 #include "log.h"
+#include "output_check.h"
 #include "pbrt_import.h"
 #include "png_write.h"
 #include "render.h"
 #include "render_options.h"
-#include "render_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -129,8 +129,10 @@ static int pyramid_run(const RenderCommand *command, Error *error)
     Scene scene;
     BackendMember backend = {NULL, NULL};
     const BackendOptions options = {.threads = command->threads};
+    const CommandFile files[] = {{"the scene", command->scene, false}, {"the sheet", command->output, true}};
     scene_init(&scene);
-    bool done = render_output_check(command->output, error) && scene_load(command, &scene, error);
+    bool done = output_check(command->output, error) && scene_load(command, &scene, error) &&
+                output_files_check(files, sizeof files / sizeof files[0], "give another name with --output", error);
     if (done) {
         const BackendScene view = scene_backend_view(&scene);
         done = interrupt_install(error) && backend_choices_open(&command->backends, &view, &options, &backend, error) &&

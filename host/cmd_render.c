@@ -7,6 +7,7 @@
 #include "diagnostics.h"
 #include "frame_name.h"
 #include "interrupt.h"
+#include "output_check.h"
 #include "log.h"
 #include "path_name.h"
 #include "pbrt_import.h"
@@ -106,11 +107,14 @@ static bool outputs_name(RenderJob *job, Error *error)
     output->max_depth = job->scene.settings.max_depth;
     camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
                     output->world_to_ndc);
-    return render_output_distinct(output, stats, command->trace, command->dump_bad, error) &&
-           render_output_check(output->exr, error) && (!output->png[0] || render_output_check(output->png, error)) &&
-           (!stats || render_output_check(stats, error)) &&
-           (!command->trace || render_output_check(command->trace, error)) &&
-           (!command->dump_bad || render_output_check(command->dump_bad, error));
+    const CommandFile files[] = {{"the scene", strcmp(command->scene, "-") == 0 ? NULL : command->scene, false},
+                                 {"the image", output->exr, true},
+                                 {"the PNG", output->png[0] ? output->png : NULL, true},
+                                 {"the statistics", stats, true},
+                                 {"the trace", command->trace, true},
+                                 {"the list of chains", command->dump_bad, true}};
+    return output_files_check(files, sizeof files / sizeof files[0],
+                              "give each its own name, with --output, --png, --stats, --trace and --dump-bad", error);
 }
 
 static bool scene_load(RenderJob *job, Error *error)
@@ -346,7 +350,7 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_USAGE;
     if (!names_fill(job, error))
         return EXIT_USAGE;
-    if (command->output && !render_output_check(command->output, error))
+    if (command->output && !output_check(command->output, error))
         return EXIT_FAILED; /* before a scene that may take long to load */
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;

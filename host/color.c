@@ -2,6 +2,7 @@
 
 #include "array.h"
 #include "color_tables.h"
+#include "input_files.h"
 #include "text_number.h"
 
 #include <math.h>
@@ -211,6 +212,7 @@ static bool numbers_read(const char *path, Array *numbers, Error *error)
         error_errno(error, "open the spectrum", path);
         return error_fix(error, "check the name; it is relative to the scene's folder");
     }
+    input_file_note(fileno(file));
     bool good = true;
     for (int number = 1; good && getline(&line, &line_size, file) >= 0; ++number)
         good = line_read(line, (SourcePlace){path, number, 0}, numbers, error);

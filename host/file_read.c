@@ -1,5 +1,7 @@
 #include "file_read.h"
 
+#include "input_files.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -49,6 +51,7 @@ bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *fi
         file_read_error(path, failure, place, error);
         return false;
     }
+    input_file_note(descriptor);
     *file = (FileOpened){descriptor, (size_t)status.st_size, status.st_dev, status.st_ino};
     return true;
 }

@@ -2,6 +2,7 @@
 
 #include "color.h"
 #include "image_formats.h"
+#include "input_files.h"
 #include "path_name.h"
 
 #include <assert.h>
@@ -93,6 +94,7 @@ static FILE *image_open(const char *path, unsigned char header[HEADER_SIZE], siz
         fclose(file);
         return NULL;
     }
+    input_file_note(fileno(file));
     *size = fread(header, 1, HEADER_SIZE, file);
     rewind(file);
     return file;

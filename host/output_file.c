@@ -1,29 +1,28 @@
 #include "output_file.h"
 
+#include "path_name.h"
+#include "temporary_file.h"
+
 #include <errno.h>
 #include <fcntl.h>
-#include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Where `path` leads: symbolic links are followed, so that a rename replaces the file and not the link. */
+/* Where `path` leads: a rename replaces the file and not a symbolic link to it, whether the file is there or not. */
 static bool target_set(OutputFile *file, const char *path, Error *error)
 {
-    if (strlen(path) >= sizeof file->path - 32) {
+    if (!path_target(path, file->path))
+        return error_errno(error, "write", path);
+    if (strlen(file->path) >= sizeof file->path - 32) {
         errno = ENAMETOOLONG;
         return error_errno(error, "write", path);
     }
-    if (!realpath(path, file->path))
-        strcpy(file->path, path);
     return true;
 }
 
 bool output_file_begin(OutputFile *file, const char *path, Error *error)
 {
-    static atomic_uint counter;
     struct stat status;
     *file = (OutputFile){.descriptor = -1};
     if (!target_set(file, path, error))
@@ -40,11 +39,7 @@ bool output_file_begin(OutputFile *file, const char *path, Error *error)
     }
     if (exists && access(file->path, W_OK) != 0)
         return error_errno(error, "write", path);
-    do {
-        snprintf(file->temporary, sizeof file->temporary, "%.*s.%ld-%u~", (int)(sizeof file->temporary - 32),
-                 file->path, (long)getpid(), atomic_fetch_add(&counter, 1u));
-        file->descriptor = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (file->descriptor < 0 && errno == EEXIST);
+    file->descriptor = temporary_file_create(file->path, file->temporary);
     if (file->descriptor < 0) {
         file->temporary[0] = '\0';
         error_errno(error, "write", path);
@@ -53,41 +48,90 @@ bool output_file_begin(OutputFile *file, const char *path, Error *error)
     return true;
 }
 
+/* Has the folder's entry for `path` survive a power failure. Where that is not supported, it is as safe as it gets. */
+static void folder_synchronize(const char *path)
+{
+    char folder[PATH_MAX];
+    path_folder(path, folder);
+    int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0)
+        return;
+    (void)!fsync(descriptor);
+    close(descriptor);
+}
+
+/* Synchronizes before it renames: else a power failure may leave the new name with nothing in it. Closes after it has
+ * renamed: the lock keeps other processes from removing the file. What a close could report, fsync has. */
+static bool temporary_commit(OutputFile *file)
+{
+    if (fsync(file->descriptor) != 0 || rename(file->temporary, file->path) != 0)
+        return false;
+    temporary_file_forget(file->temporary);
+    file->temporary[0] = '\0';
+    folder_synchronize(file->path);
+    close(file->descriptor);
+    return true;
+}
+
 bool output_file_commit(OutputFile *file, Error *error)
 {
-    bool closed = close(file->descriptor) == 0;
-    file->descriptor = -1;
-    if (!closed || (file->temporary[0] && rename(file->temporary, file->path) != 0)) {
+    bool good = file->temporary[0] ? temporary_commit(file) : close(file->descriptor) == 0;
+    if (good || !file->temporary[0])
+        file->descriptor = -1;
+    if (!good)
         error_errno(error, "write", file->path);
-        output_file_cancel(file);
-        return false;
-    }
-    file->temporary[0] = '\0';
-    return true;
+    output_file_cancel(file);
+    return good;
 }
 
 void output_file_cancel(OutputFile *file)
 {
+    if (file->temporary[0]) {
+        unlink(file->temporary);
+        temporary_file_forget(file->temporary);
+    }
     if (file->descriptor >= 0)
         close(file->descriptor);
-    if (file->temporary[0])
-        unlink(file->temporary);
     file->descriptor = -1;
     file->temporary[0] = '\0';
 }
 
-static bool bytes_write(int descriptor, const unsigned char *bytes, size_t size)
+bool output_file_bytes(OutputFile *file, const void *bytes, size_t size)
 {
+    const unsigned char *next = bytes;
     while (size > 0) {
-        ssize_t n = write(descriptor, bytes, size);
+        ssize_t n = write(file->descriptor, next, size);
         if (n < 0 && errno == EINTR)
             continue;
         if (n <= 0)
             return false;
-        bytes += n;
+        next += n;
         size -= (size_t)n;
     }
     return true;
+}
+
+FILE *output_file_stream(OutputFile *file, Error *error)
+{
+    int descriptor = fcntl(file->descriptor, F_DUPFD_CLOEXEC, 0);
+    FILE *stream = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    if (stream)
+        return stream;
+    error_errno(error, "write", file->path);
+    if (descriptor >= 0)
+        close(descriptor);
+    output_file_cancel(file);
+    return NULL;
+}
+
+bool output_file_stream_commit(OutputFile *file, FILE *stream, Error *error)
+{
+    bool failed = ferror(stream) != 0;
+    if (fclose(stream) == 0 && !failed)
+        return output_file_commit(file, error);
+    error_errno(error, "write", file->path);
+    output_file_cancel(file);
+    return false;
 }
 
 bool output_file_write(const char *path, const void *bytes, size_t size, Error *error)
@@ -95,7 +139,7 @@ bool output_file_write(const char *path, const void *bytes, size_t size, Error *
     OutputFile file;
     if (!output_file_begin(&file, path, error))
         return false;
-    bool good = bytes_write(file.descriptor, bytes, size) || error_errno(error, "write", path);
+    bool good = output_file_bytes(&file, bytes, size) || error_errno(error, "write", path);
     good = good && output_file_commit(&file, error);
     output_file_cancel(&file);
     return good;

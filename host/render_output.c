@@ -4,7 +4,6 @@
 
 #include "despeckle.h"
 #include "exr.h"
-#include "output_file.h"
 #include "path_name.h"
 #include "png_write.h"
 
@@ -12,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any case. */
 static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
@@ -35,50 +33,6 @@ bool render_output_name(RenderOutput *output, const char *image, bool want_png, 
     if (!path_with_ending(output->exr, image, ".exr", error))
         return false;
     return !want_png || path_with_ending(output->png, png ? png : output->exr, ".png", error);
-}
-
-bool render_output_check(const char *path, Error *error)
-{
-    struct stat status;
-    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
-        error_set(error, "cannot write %s: it is a folder", path);
-        return error_fix(error, "give the name of a file in it");
-    }
-    OutputFile file = {.descriptor = -1};
-    bool writable = output_file_begin(&file, path, error);
-    output_file_cancel(&file);
-    return writable;
-}
-
-/* Whether two names lead to one file: the same file on disk, or the same name of one that is not there yet. */
-static bool path_same(const char *a, const char *b)
-{
-    struct stat status_a, status_b;
-    if (stat(a, &status_a) == 0 && stat(b, &status_b) == 0)
-        return S_ISREG(status_a.st_mode) && status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
-    while (strncmp(a, "./", 2) == 0)
-        a += 2;
-    while (strncmp(b, "./", 2) == 0)
-        b += 2;
-    return strcmp(a, b) == 0;
-}
-
-bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, const char *bad,
-                            Error *error)
-{
-    const struct {
-        const char *what, *path;
-    } files[] = {
-        {"the scene", output->scene_file}, {"the image", output->exr}, {"the PNG", output->png[0] ? output->png : NULL},
-        {"the statistics", stats},         {"the trace", trace},       {"the list of chains", bad}};
-    for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
-        for (size_t j = 0; j < i; ++j)
-            if (files[i].path && files[j].path && path_same(files[i].path, files[j].path)) {
-                error_set(error, "%s would overwrite %s: %s", files[i].what, files[j].what, files[i].path);
-                return error_fix(error,
-                                 "give each its own name, with --output, --png, --stats, --trace and --dump-bad");
-            }
-    return true;
 }
 
 /* ---- layers ------------------------------------------------------------------------------------------------------ */

@@ -27,13 +27,6 @@ typedef struct RenderOutput {
  * none when !want_png. */
 bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
-/* Fails when scene, image, PNG, statistics, trace and list of bad chains (NULL: none) are not all different files. */
-bool render_output_distinct(const RenderOutput *output, const char *stats, const char *trace, const char *bad,
-                            Error *error);
-
-/* Fails when a file of this name could not be created: its folder is missing or not writable, or it is a folder. */
-bool render_output_check(const char *path, Error *error);
-
 /* Writes both files. `samples_per_pixel` goes to the header. */
 bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error);
 

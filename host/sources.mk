@@ -58,6 +58,7 @@ libtwinlight_host_la_SOURCES = \
 	host/frame_name.c host/frame_name.h \
 	host/hash.h \
 	host/html.c host/html.h \
+	host/input_files.c host/input_files.h \
 	host/image.c host/image.h \
 	host/image_exr.c \
 	host/image_exr_dwa.c \
@@ -84,6 +85,7 @@ libtwinlight_host_la_SOURCES = \
 	host/name_table.c host/name_table.h \
 	host/option_values.c host/option_values.h \
 	host/options.c host/options.h \
+	host/output_check.c host/output_check.h \
 	host/output_file.c host/output_file.h \
 	host/path_name.c host/path_name.h \
 	host/pbrt_context.h \
@@ -137,6 +139,7 @@ libtwinlight_host_la_SOURCES = \
 	host/step_recorder.c host/step_recorder.h \
 	host/text_number.c host/text_number.h \
 	host/text_window.c host/text_window.h \
+	host/temporary_file.c host/temporary_file.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h \

@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "log.h"
+#include "output_file.h"
 #include "timing.h"
 
 #include <stdio.h>
@@ -188,12 +189,10 @@ bool stats_write(const char *path, const RenderStats *stats, Error *error)
         stats_print(stdout, stats); /* main looks for failures */
         return true;
     }
-    FILE *stream = fopen(path, "w");
+    OutputFile file;
+    FILE *stream = output_file_begin(&file, path, error) ? output_file_stream(&file, error) : NULL;
     if (!stream)
-        return error_errno(error, "write", path);
+        return false;
     stats_print(stream, stats);
-    bool failed = ferror(stream) != 0;
-    if (fclose(stream) != 0 || failed)
-        return error_errno(error, "write", path);
-    return true;
+    return output_file_stream_commit(&file, stream, error);
 }

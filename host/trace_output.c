@@ -1,6 +1,7 @@
 #include "trace_output.h"
 
 #include "json.h"
+#include "output_file.h"
 
 #include <stdio.h>
 
@@ -89,12 +90,10 @@ static void trace_print(FILE *stream, const TraceSource *sources, size_t count)
 
 bool trace_write(const char *path, const TraceSource *sources, size_t count, Error *error)
 {
-    FILE *stream = fopen(path, "w");
+    OutputFile file;
+    FILE *stream = output_file_begin(&file, path, error) ? output_file_stream(&file, error) : NULL;
     if (!stream)
-        return error_errno(error, "write", path);
+        return false;
     trace_print(stream, sources, count);
-    bool failed = ferror(stream) != 0;
-    if (fclose(stream) != 0 || failed)
-        return error_errno(error, "write", path);
-    return true;
+    return output_file_stream_commit(&file, stream, error);
 }

@@ -162,6 +162,7 @@ tests_test_emit_SOURCES = tests/test_emit.c \
 	tests/test_emit_splat.c
 
 tests_test_film_SOURCES = tests/test_film.c \
+	tests/test_film_files.c \
 	tests/test_film_output.c
 
 tests_test_geometry_SOURCES = tests/test_geometry.c \

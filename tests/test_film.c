@@ -8,6 +8,7 @@
 #include <string.h>
 
 TCase *film_output_tcase(void);
+TCase *film_files_tcase(void);
 
 static const int CROP_WHOLE[4] = {0, 0, 4, 3};
 
@@ -575,5 +576,6 @@ int main(void)
     tcase_add_test(tcase, test_init_refuses);
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, film_output_tcase());
+    suite_add_tcase(suite, film_files_tcase());
     return test_run(suite);
 }

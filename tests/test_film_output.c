@@ -176,35 +176,6 @@ START_TEST(test_unwritable)
 }
 END_TEST
 
-/* A cancelled file leaves the old one; a link stays a link. */
-START_TEST(test_output_file)
-{
-    OutputFile file;
-    Error error;
-    struct stat status;
-    size_t size;
-    test_file_write(test_path("old"), "old", 3);
-    ck_assert(output_file_begin(&file, test_path("old"), &error));
-    ck_assert_int_eq(write(file.descriptor, "newer", 5), 5);
-    ck_assert_int_eq(test_folder_entries(), 2);
-    output_file_cancel(&file);
-    output_file_cancel(&file);
-    unsigned char *bytes = test_file_read(test_path("old"), &size);
-    ck_assert(size == 3 && memcmp(bytes, "old", 3) == 0);
-    free(bytes);
-    ck_assert_int_eq(symlink("old", test_path("link")), 0);
-    ck_assert(output_file_begin(&file, test_path("link"), &error));
-    ck_assert_int_eq(write(file.descriptor, "newer", 5), 5);
-    ck_assert(output_file_commit(&file, &error));
-    output_file_cancel(&file);
-    bytes = test_file_read(test_path("old"), &size);
-    ck_assert(size == 5 && memcmp(bytes, "newer", 5) == 0);
-    free(bytes);
-    ck_assert(lstat(test_path("link"), &status) == 0 && S_ISLNK(status.st_mode));
-    ck_assert_int_eq(test_folder_entries(), 2);
-}
-END_TEST
-
 START_TEST(test_png)
 {
     const float rgb[] = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, NAN, 0.25f, 0.001f, 0.125f, INFINITY, -INFINITY, 1e-45f};
@@ -246,7 +217,6 @@ TCase *film_output_tcase(void)
     tcase_add_test(tcase, test_exr_crop);
     tcase_add_test(tcase, test_exr_layers);
     tcase_add_test(tcase, test_unwritable);
-    tcase_add_test(tcase, test_output_file);
     tcase_add_test(tcase, test_png);
     tcase_add_test(tcase, test_srgb_function);
     return tcase;
