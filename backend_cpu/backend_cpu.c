@@ -65,7 +65,8 @@ static void thread_run_job(Thread *thread, const Job *job)
         if (chunk >= chunks)
             return;
         uint first = chunk * size, count = items - first < size ? items - first : size;
-        worker_run_chunk(&thread->worker, job, first, count);
+        if (!worker_run_chunk(&thread->worker, job, first, count))
+            return;
         atomic_fetch_add_explicit(&backend->items_done, count, memory_order_relaxed);
     }
 }

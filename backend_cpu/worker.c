@@ -131,6 +131,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
     case STEP_SPLAT:
         if (!job->inspect)
             job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+        worker->splatted = true;
         break;
     }
     return i + 1;
@@ -150,24 +151,42 @@ static void worker_show_state(Worker *worker, const Job *job, uint first, uint c
             job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
 }
 
-void worker_run_chunk(Worker *worker, const Job *job, uint first, uint count)
+/* Whether a stop ends the chunk here: the film shows nothing of it, or is of no use without the whole pass. */
+static bool chunk_dropped(const Worker *worker, const Job *job)
+{
+    return *job->stop && (!worker->splatted || job->sink->whole);
+}
+
+/* The steps of the list; false when they were stopped before the end. */
+static bool worker_run_steps(Worker *worker, const Job *job, uint count)
 {
     void *arguments[BUFFER_COUNT];
+    worker_arguments(worker, job->list, arguments);
+    worker->live_list = LIVE_ANY;
+    worker->splatted = false;
+    for (size_t i = 0; i < job->list->count;) {
+        if (chunk_dropped(worker, job))
+            return false;
+        i = worker_run_step(worker, job, i, arguments, count);
+    }
+    return true;
+}
+
+bool worker_run_chunk(Worker *worker, const Job *job, uint first, uint count)
+{
     worker->frame = *job->frame;
     worker->frame.first_item = job->frame->first_item + first;
     worker->frame.item_count = count;
     worker->frame.stride = CHUNK_STRIDE;
     worker->frame.pass_first = 0;
     worker->frame.pass_stride = job->list->pass_stride;
-    worker_arguments(worker, job->list, arguments);
-    worker->live_list = LIVE_ANY;
     if (job->inspect)
         worker_clear_state(worker, job->list);
-    for (size_t i = 0; i < job->list->count;)
-        i = worker_run_step(worker, job, i, arguments, count);
-    if (job->inspect)
+    bool done = worker_run_steps(worker, job, count);
+    if (done && job->inspect)
         worker_show_state(worker, job, first, count);
-    else if (job->list->words_per_item[BUFFER_SPLATS] > 0)
+    else if (done && job->list->words_per_item[BUFFER_SPLATS] > 0)
         job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
     worker_sum_diagnostics(worker);
+    return done;
 }

@@ -29,6 +29,7 @@ typedef struct Worker {
     uint live[CHUNK_ITEMS]; /* items with a ray when worker_find_live looked last */
     uint live_count;
     LiveList live_list;
+    bool splatted; /* the sink has splats of the chunk */
     char padding[64]; /* no two workers' counters on a cache line */
 } Worker;
 
@@ -49,8 +50,9 @@ void worker_destroy(Worker *worker);
 /* Room for the list's state; false when out of memory. */
 bool worker_reserve(Worker *worker, const StepList *list);
 
-/* Items first ... first + count - 1 of the job, at most CHUNK_ITEMS, for which there is room. */
-void worker_run_chunk(Worker *worker, const Job *job, uint first, uint count);
+/* Items first ... first + count - 1 of the job, at most CHUNK_ITEMS, for which there is room. False when it was stopped
+ * and the chunk was dropped. */
+bool worker_run_chunk(Worker *worker, const Job *job, uint first, uint count);
 
 /* Of a clock that never runs backwards. */
 uint64_t nanoseconds_now(void);

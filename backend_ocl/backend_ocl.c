@@ -176,12 +176,13 @@ static Batch *batch_prepare(Backend *backend, int slot, const FrameParams *frame
 }
 
 static bool batch_start(Backend *backend, int slot, const FrameParams *frame, const StepList *list, uint first,
-                        uint count, Error *error)
+                        uint count, bool *dropped, Error *error)
 {
     Batch *batch = batch_prepare(backend, slot, frame, first, count);
-    if (!batch_launch(&backend->launcher, batch, list, error))
+    if (!batch_launch(&backend->launcher, batch, list, dropped, error))
         return false;
-    adders_push(backend->adders, slot, batch);
+    if (!*dropped)
+        adders_push(backend->adders, slot, batch);
     return true;
 }
 
@@ -196,14 +197,14 @@ static bool device_failed(Backend *backend, Error *error)
 }
 
 static bool batches_run(Backend *backend, const FrameParams *frame, const StepList *list, const atomic_int *stop,
-                        Error *error)
+                        bool *dropped, Error *error)
 {
     uint batch = backend->memory.batch;
-    for (uint first = 0; first < frame->item_count && !*stop;) {
+    for (uint first = 0; first < frame->item_count && !*stop && !*dropped;) {
         uint left = frame->item_count - first, count = left < batch ? left : batch;
         int slot = (int)(backend->next_batch % (uint64_t)backend->slots);
         adders_wait(backend->adders, slot);
-        if (device_failed(backend, error) || !batch_start(backend, slot, frame, list, first, count, error))
+        if (device_failed(backend, error) || !batch_start(backend, slot, frame, list, first, count, dropped, error))
             return false;
         if (backend->slots == 1)
             adders_wait(backend->adders, slot);
@@ -219,10 +220,13 @@ static bool pass_run(Backend *backend, const FrameParams *frame, const StepList 
     Launcher *launcher = &backend->launcher;
     bool splats = list->words_per_item[BUFFER_SPLATS] > 0;
     launcher->adds = splats && backend->film_on_device && sink->sums;
+    launcher->stop = stop;
+    launcher->whole = sink->whole;
     adders_begin(backend->adders, splats && !launcher->adds ? sink : NULL);
+    bool dropped = false;
     bool done = (!launcher->adds || device_film_begin(&backend->memory, sink->sum_words, error)) &&
-                batches_run(backend, frame, list, stop, error);
-    if (!done) { /* a batch that was launched in part writes to the host until the queues are empty */
+                batches_run(backend, frame, list, stop, &dropped, error);
+    if (!done || dropped) { /* a batch that was launched in part writes to the host until the queues are empty */
         clFinish(backend->compute);
         clFinish(backend->copy);
     }
@@ -249,7 +253,8 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
     adders_total(backend->adders, &total);
     if (items_done && (done || !backend->launcher.adds))
         *items_done = total.items;
-    backend->launcher.adds = false; /* for `inspect` */
+    backend->launcher.adds = false; /* for `inspect`, as is the next */
+    backend->launcher.stop = NULL;
     return done;
 }
 

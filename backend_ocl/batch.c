@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The host enqueues no more than so many ray queries before the device has done them: what is enqueued cannot be stopped. */
+#define TRACES_AHEAD 4u
+
 /* A launch in progress. */
 typedef struct Launch {
     Launcher *launcher;
@@ -12,6 +15,9 @@ typedef struct Launch {
     uint turn; /* closest-hit queries so far */
     cl_event counted; /* the latest number of live rays is being read */
     uint idle_turn; /* the turn that found no live ray; 0: none did */
+    size_t traces[TRACES_AHEAD]; /* places of the latest ray queries' events in batch->events, in turn */
+    uint traced; /* ray queries so far */
+    bool splatted; /* the film has splats of the batch, or will have */
 } Launch;
 
 static bool check(Launch *launch, cl_int status, const char *what)
@@ -101,6 +107,19 @@ static bool kernel_enqueue(Launch *launch, unsigned number, uint items, bool tra
                  name);
 }
 
+/* A ray query, when the device is close behind. */
+static bool trace_enqueue(Launch *launch, unsigned number)
+{
+    size_t *place = &launch->traces[launch->traced % TRACES_AHEAD];
+    if (launch->traced >= TRACES_AHEAD &&
+        (!check(launch, clFlush(launch->launcher->compute), "starting commands") ||
+         !check(launch, clWaitForEvents(1, &launch->batch->events[*place].event), "tracing rays")))
+        return false;
+    *place = launch->batch->event_count;
+    ++launch->traced;
+    return kernel_enqueue(launch, number, launch->batch->frame.item_count, true);
+}
+
 /* ---- steps ------------------------------------------------------------------------------------------------------- */
 
 static bool buffer_write(Launch *launch, cl_mem buffer, const void *from, size_t bytes)
@@ -146,14 +165,14 @@ static bool trace_closest(Launch *launch)
                                    &launch->batch->memory->results->live[launch->turn % 2], 0, NULL, &launch->counted),
                "reading the number of rays"))
         return false;
-    return kernel_enqueue(launch, KERNEL_trace_closest, items, true);
+    return trace_enqueue(launch, KERNEL_trace_closest);
 }
 
 static bool trace_shadow(Launch *launch)
 {
     uint items = launch->batch->frame.item_count;
     return kernel_enqueue(launch, KERNEL_count_shadow, (items + COUNT_RAYS - 1) / COUNT_RAYS, false) &&
-           kernel_enqueue(launch, KERNEL_trace_shadow, items, true);
+           trace_enqueue(launch, KERNEL_trace_shadow);
 }
 
 static bool splats_add(Launch *launch)
@@ -191,11 +210,21 @@ static bool turn_was_idle(Launch *launch, bool *idle)
     return true;
 }
 
-static bool steps_enqueue(Launch *launch)
+/* Whether a stop ends the batch here: the film shows nothing of it, or is of no use without the whole pass. */
+static bool stop_wanted(const Launch *launch)
+{
+    const Launcher *launcher = launch->launcher;
+    return launcher->stop && *launcher->stop && (!launch->splatted || launcher->whole);
+}
+
+static bool steps_enqueue(Launch *launch, bool *dropped)
 {
     const StepList *list = launch->list;
     bool idle, done = true;
     for (size_t i = 0; i < list->count && done; ++i) {
+        *dropped = stop_wanted(launch);
+        if (*dropped)
+            return true;
         const Step *step = &list->steps[i];
         switch (step->kind) {
         case STEP_KERNEL:
@@ -209,6 +238,7 @@ static bool steps_enqueue(Launch *launch)
             break;
         case STEP_SPLAT:
             done = launch->launcher->adds ? splats_add(launch) : splats_put_aside(launch);
+            launch->splatted = launch->launcher->adds;
             break;
         case STEP_SKIP_IF_IDLE:
             done = turn_was_idle(launch, &idle);
@@ -277,15 +307,18 @@ static bool results_read(Launch *launch)
     return done;
 }
 
-bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, Error *error)
+bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, bool *dropped, Error *error)
 {
     Launch launch = {.launcher = launcher, .batch = batch, .list = list, .error = error};
     batch->splat_sections = 1;
-    bool done = batch_begin(&launch) && steps_enqueue(&launch) && (!launcher->adds || splats_add(&launch)) &&
-                results_read(&launch);
+    *dropped = false;
+    bool done = batch_begin(&launch) && steps_enqueue(&launch, dropped) &&
+                (*dropped || ((!launcher->adds || splats_add(&launch)) && results_read(&launch)));
     counted_release(&launch);
-    if (done)
+    if (done && !*dropped)
         first_check_adapt(&launch);
+    if (*dropped)
+        batch_drop(batch);
     return done;
 }
 

@@ -6,6 +6,8 @@
 #include "program.h"
 #include "timeline.h"
 
+#include <stdatomic.h>
+
 /* A command whose time counts. */
 typedef struct BatchEvent {
     cl_event event;
@@ -34,12 +36,16 @@ typedef struct Launcher {
     bool records; /* keep the events of every command, not of rays alone */
     size_t group; /* work-items of a work-group */
     uint first_check; /* the turn of the loop at which a batch is first asked whether it has ended early */
+    const atomic_int *stop; /* of the pass: becomes 1 when batches are to end at the next step; NULL: never */
+    bool whole; /* SplatSink.whole */
     uint64_t fail_at; /* number of the batch that fails on purpose, for tests; UINT64_MAX: none */
 } Launcher;
 
 /* Enqueues the whole list for the batch, and the copy of its splats behind it on the second queue. Returns when the last
- * command is enqueued; meanwhile it may wait for the device to say that no path is alive. */
-bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, Error *error);
+ * command is enqueued; meanwhile it may wait for the device to say that no path is alive, or because the device is far
+ * behind. *dropped: a stop has ended the batch before its list did; some of its commands may be under way, and none of its
+ * results are wanted. */
+bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, bool *dropped, Error *error);
 
 /* Waits until everything of the batch has happened. */
 cl_int batch_wait(const Batch *batch);

@@ -147,6 +147,7 @@ typedef struct SplatSink {
     void (*sums)(void *context, ulong *words);
     size_t sum_words;
     void *context;
+    bool whole; /* splats of a pass are of no use unless all items are done */
 } SplatSink;
 
 /* Receives the words of one per-item buffer: `count` items at `stride`, the first of them item `first` of the pass.
@@ -168,8 +169,9 @@ typedef struct BackendInterface {
     Backend *(*open)(const BackendScene *scene, const BackendOptions *options, Error *error);
     void (*close)(Backend *backend);
     /* Runs the list over the pass that `frame` describes and returns when every splat has reached the sink. When
-     * *stop becomes non-zero no new chunk is begun; the items done are still delivered. `items_done` (may be NULL)
-     * gets how many items were delivered, also when the run fails. */
+     * *stop becomes non-zero no new chunk is begun, and those under way end at the next step: without a trace, or, when
+     * the sink has got splats of theirs (STEP_SPLAT) and is not `whole`, at the end of the list. `items_done` (may be
+     * NULL) gets how many items were delivered, also when the run fails. */
     bool (*run)(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                 const atomic_int *stop, uint64_t *items_done, Error *error);
     /* Runs the list, or its beginning, like `run`, on buffers that are zero before, and hands every per-item buffer of

@@ -102,7 +102,7 @@ static bool sheet_fill(const RenderCommand *command, const Scene *scene, const B
             int brighter = 1 << (depth - 2);
             done = strategy_render(command, scene, backend, s, depth + 1 - s, rgb, error);
             snprintf(text, sizeof text, s == 0 ? "s=%u,t=%u x%d" : "s=%u,t=%u", s, depth + 1 - s, brighter);
-            if (done)
+            if (done && !*interrupt_flag()) /* else it may be a part of a picture */
                 contact_sheet_put(sheet, (int)s, (int)depth - 2, rgb, (float)brighter, text);
         }
         log_message(LOG_INFO, "paths of %u segments are done", depth);

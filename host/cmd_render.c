@@ -4,17 +4,17 @@
 #include "bad_chains.h"
 #include "camera_setup.h"
 #include "chain_list.h"
-#include "diagnostics.h"
 #include "frame_name.h"
 #include "interrupt.h"
-#include "output_check.h"
 #include "log.h"
+#include "output_check.h"
 #include "path_name.h"
 #include "pbrt_import.h"
 #include "progress.h"
 #include "render.h"
 #include "render_options.h"
 #include "render_output.h"
+#include "render_report.h"
 #include "render_settings.h"
 #include "render_verify.h"
 #include "scene_advice.h"
@@ -23,20 +23,19 @@
 #include "trace_output.h"
 
 #include <string.h>
+#include <unistd.h>
 
 static const RenderOptionSet OPTIONS = {
     .command = "render",
     .usage = "render [OPTION]... SCENE",
     .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
-    .footer = "SIGINT and SIGTERM end the rendering early; what is there is written and the exit status is 130.\n"
+    .footer = "SIGINT, SIGTERM and SIGHUP end the rendering early: what is there is written, and the exit status\n"
+              "is 130. A second one, a second later or more, ends the program at once.\n"
               "More: man twinlight-render.",
     .output_ending = ".exr",
     .depth_low = 1,
     .depth_high = 65535,
 };
-
-/* The part of all samples that may be too faint for the film without a warning. */
-#define VANISHED_PART 0.01
 
 /* One rendering from command line to files. */
 typedef struct RenderJob {
@@ -51,6 +50,7 @@ typedef struct RenderJob {
     RenderOutput output;
     Progress progress;
     uint64_t samples_done; /* paths, at the latest progress */
+    bool left; /* the files are as they were: nothing was rendered */
     RenderResult result;
     double load, build, rendering, write; /* seconds */
     double start;
@@ -192,52 +192,6 @@ static bool film_render(RenderJob *job, Error *error)
 
 /* ---- after rendering -------------------------------------------------------------------------------------------- */
 
-/* How many there were, also for every 100 samples. what: "contributions", "rays" ... and what became of them. */
-static void count_report(const RenderJob *job, uint64_t count, const char *what)
-{
-    double part = (double)count / (double)(job->result.samples > 0 ? job->result.samples : 1);
-    log_message(LOG_WARNING, "%llu (%.2g for every 100 samples) %s", (unsigned long long)count, 100.0 * part, what);
-}
-
-/* What the film's range has cost. */
-static void film_report(const RenderJob *job)
-{
-    const Film *film = &job->film;
-    size_t full = film_full_pixels(film), pixels = film_pixels(film);
-    size_t infinite = film_infinite_pixels(film, job->output.film_scale);
-    if (infinite > 0)
-        log_message(LOG_WARNING,
-                    "%zu of %zu pixels (%.3g %%) are brighter than a float can say and are infinite in the image: make "
-                    "the lights darker, or the Film's iso lower",
-                    infinite, pixels, 100.0 * (double)infinite / (double)pixels);
-    if (film->saturated > 0)
-        count_report(job, film->saturated, "contributions were too bright for the film and were clamped");
-    if (full > 0)
-        log_message(LOG_WARNING, "%zu of %zu pixels (%.3g %%) have come to the film's largest sum and are too dark",
-                    full, pixels, 100.0 * (double)full / (double)pixels);
-    if ((double)film->vanished > VANISHED_PART * (double)job->result.samples)
-        count_report(job, film->vanished, "contributions were too faint for the film and count as black");
-}
-
-/* What the picture may suffer from. */
-static void diagnostics_report(const RenderJob *job)
-{
-    static const char *const SENTENCES[DIAGNOSTIC_COUNT] = {
-        [DIAGNOSTIC_NOT_FINITE] = "contributions were not finite inside the kernels and count as black",
-        [DIAGNOSTIC_ZERO_DIRECTION] = "rays had no direction and were not traced",
-        [DIAGNOSTIC_RAY_RANGE] = "rays left the range of floats, and their paths were ended",
-        [DIAGNOSTIC_LOST_CHAIN] = "chains could not make their first path again and were given up",
-        [DIAGNOSTIC_REPLAY] = "chains made something else of their path when they made it again",
-    };
-    const RenderResult *result = &job->result;
-    for (int i = 0; i < result->diagnostic_count; ++i)
-        if (result->diagnostics[i] > 0)
-            count_report(job, result->diagnostics[i], SENTENCES[i]);
-    film_report(job);
-    if (job->film.not_finite > 0)
-        count_report(job, job->film.not_finite, "contributions were not finite and count as black");
-}
-
 static void summary_report(const RenderJob *job)
 {
     const RenderResult *result = &job->result;
@@ -248,7 +202,10 @@ static void summary_report(const RenderJob *job)
     progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
     log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
                 result->samples_per_pixel, seconds, samples, rays);
-    log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
+    if (job->left)
+        log_message(LOG_WARNING, "%s is left as it was: there is no sample yet", job->output.exr);
+    else
+        log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
 }
 
 static bool stats_output(const RenderJob *job, Error *error)
@@ -302,9 +259,15 @@ static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, doubl
     return done;
 }
 
+/* Nothing replaces a picture that is there by an empty one. */
 static bool film_write(RenderJob *job, Error *error)
 {
-    return render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
+    job->left = job->result.samples == 0 && access(job->output.exr, F_OK) == 0;
+    if (job->left)
+        return true;
+    bool written = render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
+    progress_end(&job->progress);
+    return written;
 }
 
 /* A rendering that failed on its way has an image all the same, of the samples that were finished. */
@@ -360,8 +323,8 @@ static int job_run(RenderJob *job, Error *error)
         return memory_print(job);
     if (command->verify)
         return job_verify(job, error);
-    if (!outputs_name(job, error) || !bad_chains_begin(&job->bad_chains, command->dump_bad, error) ||
-        !stage_run(backend_build, job, &job->build, error))
+    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error) || !interrupt_install(error) ||
+        !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
         film_rescue(job, error);
@@ -369,7 +332,7 @@ static int job_run(RenderJob *job, Error *error)
     }
     if (!stage_run(film_write, job, &job->write, error))
         return EXIT_FAILED;
-    diagnostics_report(job);
+    render_report(&job->result, &job->film, job->output.film_scale);
     summary_report(job);
     if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !stats_output(job, error)) ||
         (command->trace && !trace_output(job, error)))

@@ -9,7 +9,7 @@
 #define EXIT_OK 0
 #define EXIT_FAILED 1 /* something outside the program was not as it should be */
 #define EXIT_USAGE 2 /* the command line was not understood */
-#define EXIT_STOPPED 130 /* ended early by SIGINT or SIGTERM, output written */
+#define EXIT_STOPPED 130 /* ended early by a signal (interrupt.h), output written */
 
 /* The status of a command whose options did not come to OPTIONS_READ. */
 static inline int options_status(OptionsEnd end)

@@ -276,6 +276,14 @@ size_t film_full_pixels(const Film *film)
     return full;
 }
 
+size_t film_empty_pixels(const Film *film)
+{
+    size_t empty = 0;
+    for (size_t i = 0; i < film_pixels(film); ++i)
+        empty += film->counts[i] == 0;
+    return empty;
+}
+
 /* What a unit of the light's sums is worth. */
 static double light_unit_of(const Film *film, double unit)
 {

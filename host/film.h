@@ -85,6 +85,8 @@ size_t film_full_pixels(const Film *film);
 
 /* Pixels of the whole picture, times `scale`, that a float cannot hold. */
 size_t film_infinite_pixels(const Film *film, float scale);
+/* Pixels that have no sample of their own. */
+size_t film_empty_pixels(const Film *film);
 
 /* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;

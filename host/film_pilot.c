@@ -74,7 +74,6 @@ static double radiance_of_power(const Scene *scene)
 
 bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
-    static const atomic_int never = 0;
     const Integrator *shown = pilot_integrator(integrator);
     FrameParams frame = pilot_frame(run, shown);
     Pilot pilot;
@@ -83,8 +82,8 @@ bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Sc
     if (!shown->list(&frame, &list, error))
         return false;
     pthread_mutex_init(&pilot.mutex, NULL);
-    const SplatSink sink = {.splats = pilot_splats, .context = &pilot};
-    bool done = run->interface->run(run->backend, &frame, &list, &sink, &never, NULL, error);
+    const SplatSink sink = {.splats = pilot_splats, .context = &pilot, .whole = true};
+    bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);
     pthread_mutex_destroy(&pilot.mutex);
     step_list_destroy(&list);
     double mean = pilot_sum(&pilot) / PILOT_ITEMS;

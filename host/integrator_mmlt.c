@@ -99,23 +99,19 @@ static uint chains_first(const Mmlt *mmlt, uint64_t total)
 
 static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
 {
-    static const atomic_int never = 0;
     RenderRun *run = mmlt->run;
     const RenderOptions *options = run->options;
     uint chains = chains_first(mmlt, total);
     while (mmlt->work_done < total) {
-        bool first = mmlt->generation == 0;
-        const atomic_int *stop = first || !options->stop ? &never : options->stop;
         double begin = timing_now();
-        if (!mmlt_generation_run(mmlt, chains, stop, error) ||
+        if (!mmlt_generation_run(mmlt, chains, error) ||
             !render_run_aov(run, mmlt->paths_done * run->crop_pixels, error))
             return false;
         double now = timing_now();
         render_run_report(run, options->samples > 0 ? (double)mmlt->work_done / (double)total : 0.0);
-        if ((options->stop && *options->stop) || (options->seconds > 0.0 && now - run->start >= options->seconds))
+        if (*render_run_stop(run) || (options->seconds > 0.0 && now - run->start >= options->seconds))
             break;
-        if (!render_run_save_if_due(run, error))
-            return false;
+        render_run_save_if_due(run);
         if (!mmlt->options.paper)
             chains = chains_next(mmlt, chains, now - begin, total);
     }

@@ -28,6 +28,7 @@ typedef struct Mmlt {
     ChainOptions options;
     FrameParams paths_frame;
     StepList paths, pool, chains;
+    uint64_t paths_delivered; /* of the generation under way, samples of single pixels */
     uint64_t paths_done; /* whole samples of path tracing, of every pixel */
     double paths_wanted; /* as many, in all */
     double paths_per_step, pool_per_step; /* samples of path tracing and of pools for a step of a chain */
@@ -77,8 +78,14 @@ void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame);
 FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count);
 FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
-/* A pool, and where `count` chains begin (the words of mmlt->chains). *whole: not stopped before its end. */
-bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error);
+/* A small pool before the first, of which only its brightness is kept: so the first generation has a limit as later ones do,
+ * and what it shows can be compared with them. `chains`: of the first generation. *whole becomes false when it was stopped
+ * before its end. */
+bool mmlt_pilot_run(Mmlt *mmlt, uint chains, bool *whole, Error *error);
+
+/* A pool, and where `count` chains begin (the words of mmlt->chains). *whole becomes false when it was stopped before its
+ * end. */
+bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 
 /* Takes down where the latest pool has been. */
 void mmlt_visits_count(Mmlt *mmlt);
@@ -87,7 +94,7 @@ void mmlt_visits_count(Mmlt *mmlt);
 void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);
 
 /* A pool, `count` chains from it, path tracing, and what they show to the film. Counts only as a whole: when it is stopped
- * before its end nothing of it is kept. */
-bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *error);
+ * before its end nothing of it is kept, but of the first the samples of path tracing that were finished. */
+bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
 #endif

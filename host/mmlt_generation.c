@@ -25,7 +25,7 @@ static bool begun_keep(Mmlt *mmlt, uint count, Error *error)
     return true;
 }
 
-static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
     FrameParams frame = mmlt_chain_frame(mmlt);
@@ -35,8 +35,10 @@ static bool chains_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *who
     frame.item_count = count;
     if (run->options->bad_chains && !begun_keep(mmlt, count, error))
         return false;
-    const SplatSink sink = render_run_sink(&mmlt->film);
-    bool done = run->interface->run(run->backend, &frame, &mmlt->chains, &sink, stop, &delivered, error);
+    SplatSink sink = render_run_sink(&mmlt->film);
+    sink.whole = true;
+    bool done =
+        run->interface->run(run->backend, &frame, &mmlt->chains, &sink, render_run_stop(run), &delivered, error);
     *whole = delivered == count;
     if (mmlt->options.paper) /* they go on; their coordinates are there */
         for (uint i = 0; i < count; ++i)
@@ -57,7 +59,7 @@ static void chains_count(Mmlt *mmlt, uint count)
 
 /* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one in the first two
  * generations of either half of the image, from which its variances are known. */
-static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *whole, Error *error)
+static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
     FrameParams *frame = &mmlt->paths_frame;
@@ -67,6 +69,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *
     if (mmlt->generation < 2 * MMLT_HALVES && target < first)
         target = first;
     film_clear(&mmlt->paths_film);
+    mmlt->paths_delivered = 0;
     const SplatSink sink = render_run_sink(&mmlt->paths_film);
     mmlt_generation_frame(mmlt, frame);
     mmlt_frame_film(frame, &mmlt->paths_film);
@@ -76,8 +79,9 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, const atomic_int *stop, bool *
         frame->sample_index = run->options->first_sample + (uint)(mmlt->paths_done + next / run->crop_pixels);
         frame->first_item = (uint)(next % run->crop_pixels);
         frame->item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
-        if (!run->interface->run(run->backend, frame, &mmlt->paths, &sink, stop, &delivered, error))
+        if (!run->interface->run(run->backend, frame, &mmlt->paths, &sink, render_run_stop(run), &delivered, error))
             return false;
+        mmlt->paths_delivered += delivered;
         *whole = delivered == frame->item_count;
     }
     mmlt->paths_done = target > mmlt->paths_done ? target : mmlt->paths_done;
@@ -113,15 +117,15 @@ static bool generation_take(Mmlt *mmlt, Error *error)
            (!layers || render_layers_add(layers, &mmlt->film, mmlt->generation % 2, error));
 }
 
-static bool chains_follow(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
     double begin = timing_now();
     bool anew = !mmlt->options.paper || mmlt->generation == 0;
-    if (anew && !mmlt_seeds_run(mmlt, count, stop, whole, error))
+    if (anew && !mmlt_seeds_run(mmlt, count, whole, error))
         return false;
     double seeded = timing_now();
-    if (*whole && !chains_run(mmlt, count, stop, whole, error))
+    if (*whole && !chains_run(mmlt, count, whole, error))
         return false;
     run->chains.pool_seconds += seeded - begin;
     run->chains.chain_seconds += timing_now() - seeded;
@@ -139,27 +143,61 @@ static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
     return work > 1.0 ? (uint64_t)work : 1;
 }
 
-bool mmlt_generation_run(Mmlt *mmlt, uint count, const atomic_int *stop, Error *error)
+/* All passes of a generation. The first begins with path tracing, after the pilot that says what that leaves out: so a stop
+ * soon finds something to show. Later ones end with it, for it has the importance that comes with the pool. */
+static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
-    RenderRun *run = mmlt->run;
     uint64_t steps = (uint64_t)count * mmlt->options.steps;
-    bool whole = true, chains = run->frame.max_depth >= CHAIN_DEPTH_MIN;
+    bool chains = mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN, first = mmlt->generation == 0;
+    if (first &&
+        ((chains && !mmlt_pilot_run(mmlt, count, whole, error)) || (*whole && !paths_run(mmlt, steps, whole, error))))
+        return false;
+    if (chains && *whole && !chains_follow(mmlt, count, whole, error))
+        return false;
+    return first || !*whole || paths_run(mmlt, steps, whole, error);
+}
+
+/* What a first generation that was stopped has of path tracing, as samples of their pixels alone. Paths that it leaves to
+ * chains are missing. */
+static bool stopped_take(Mmlt *mmlt, Error *error)
+{
+    Film *film = &mmlt->paths_film;
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
+        film->sums[i] =
+            film_sum_rounded((double)film_sum_shown(film->sums[i]) + (double)film_sum_shown(film->light_sums[i]));
+        film->light_sums[i] = 0;
+    }
+    film->light_samples = 0;
+    mmlt->run->done = mmlt->paths_delivered;
+    return film_merge(mmlt->run->film, film, error);
+}
+
+static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
+{
+    mmlt->brightness_sum[mmlt_half(mmlt, mmlt->generation)] += mmlt->brightness;
+    if (mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN && mmlt_population(mmlt)->brightness > 0.0) {
+        chains_count(mmlt, count);
+        mmlt_bad_chains_write(mmlt, count);
+    }
+    mmlt->work_last = work;
+    mmlt->run->done = mmlt->work_done += work;
+}
+
+bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
+{
+    uint64_t steps = (uint64_t)count * mmlt->options.steps;
+    bool whole = true;
     film_clear(&mmlt->film);
-    if ((chains && !chains_follow(mmlt, count, stop, &whole, error)) ||
-        (whole && !paths_run(mmlt, steps, stop, &whole, error)))
+    if (!generation_passes(mmlt, count, &whole, error))
         return false;
     if (whole) {
         mmlt->film.light_samples = steps;
-        uint64_t work = generation_work(mmlt, chains ? steps : 0);
+        uint64_t work = generation_work(mmlt, mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN ? steps : 0);
         if (!generation_take(mmlt, error))
             return false;
-        mmlt->brightness_sum[mmlt_half(mmlt, mmlt->generation)] += mmlt->brightness;
-        if (chains && mmlt_population(mmlt)->brightness > 0.0) {
-            chains_count(mmlt, count);
-            mmlt_bad_chains_write(mmlt, count);
-        }
-        mmlt->work_last = work;
-        run->done = mmlt->work_done += work;
+        generation_count(mmlt, count, work);
+    } else if (mmlt->generation == 0 && !stopped_take(mmlt, error)) {
+        return false;
     }
     ++mmlt->generation;
     return true;

@@ -157,7 +157,7 @@ FrameParams mmlt_chain_frame(Mmlt *mmlt)
     return frame;
 }
 
-static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+static bool pool_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
     FrameParams frame = mmlt_pool_frame(mmlt, count);
@@ -169,8 +169,9 @@ static bool pool_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole
     mmlt->pool.pass_stride = count;
     frame.item_count = count;
     film_clear(&mmlt->pool_film);
-    const SplatSink sink = render_run_sink(&mmlt->pool_film);
-    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, stop, &delivered, error);
+    SplatSink sink = render_run_sink(&mmlt->pool_film);
+    sink.whole = true;
+    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, render_run_stop(run), &delivered, error);
     *whole = delivered == count;
     mmlt->pool_film.light_samples = *whole ? count : 0;
     return done;
@@ -281,21 +282,22 @@ static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
     return parts[PILOT_PARTS / 2];
 }
 
-/* A small pool before the first, of which only its brightness is kept: so the first generation has a limit as later ones do,
- * and what it shows can be compared with them. */
-static bool pilot_run(Mmlt *mmlt, uint count, Error *error)
+bool mmlt_pilot_run(Mmlt *mmlt, uint chains, bool *whole, Error *error)
 {
-    static const atomic_int never = 0;
-    bool whole = true;
+    uint pool_count = pool_size(mmlt, (double)chains * (double)mmlt->options.steps);
+    uint count = pool_count < PILOT_SAMPLES ? pool_count : PILOT_SAMPLES;
+    if (mmlt->options.unblended)
+        return true;
     pool_place(mmlt, count);
-    if (!pool_run(mmlt, count, &never, &whole, error))
+    if (!pool_run(mmlt, count, whole, error))
         return false;
-    mmlt->pilot_brightness = pool_brightness_robust(mmlt, count);
+    if (*whole)
+        mmlt->pilot_brightness = pool_brightness_robust(mmlt, count);
     mmlt->run->chains.pool_samples += count;
     return true;
 }
 
-bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole, Error *error)
+bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     float change[IMPORTANCE_CELLS];
     bool changed = importance_due(mmlt);
@@ -305,11 +307,8 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, const atomic_int *stop, bool *whole,
             return false;
     }
     uint pool_count = pool_size(mmlt, (double)count * (double)mmlt->options.steps);
-    if (mmlt->generation == 0 && !mmlt->options.unblended &&
-        !pilot_run(mmlt, pool_count < PILOT_SAMPLES ? pool_count : PILOT_SAMPLES, error))
-        return false;
     pool_place(mmlt, pool_count);
-    if (!pool_run(mmlt, pool_count, stop, whole, error) ||
+    if (!pool_run(mmlt, pool_count, whole, error) ||
         (*whole && !chains_begin(mmlt, pool_count, changed ? change : NULL, count, error)))
         return false;
     mmlt->run->chains.pool_samples += pool_count;

@@ -5,6 +5,7 @@
 
 #include "diagnostics.h"
 #include "film_pilot.h"
+#include "log.h"
 #include "timing.h"
 
 #include <math.h>
@@ -35,9 +36,15 @@ static void film_sums(void *context, ulong *words)
     film_add_sums(context, words);
 }
 
+const atomic_int *render_run_stop(const RenderRun *run)
+{
+    static const atomic_int never = 0;
+    return run->options->stop ? run->options->stop : &never;
+}
+
 SplatSink render_run_sink(Film *film)
 {
-    return (SplatSink){film_splats, film_sums, film_sum_words(film), film};
+    return (SplatSink){.splats = film_splats, .sums = film_sums, .sum_words = film_sum_words(film), .context = film};
 }
 
 /* The loop of integrators whose items are samples of pixels. */
@@ -62,15 +69,20 @@ void render_run_report(const RenderRun *run, double fraction)
     run->callbacks->progress(run->callbacks->context, &progress);
 }
 
-bool render_run_save_if_due(RenderRun *run, Error *error)
+void render_run_save_if_due(RenderRun *run)
 {
+    Error error = {0};
     if (!run->callbacks || !run->callbacks->save || run->options->save_every <= 0.0 ||
         timing_now() - run->last_save < run->options->save_every)
-        return true;
-    if (!run->callbacks->save(run->callbacks->context, run->film, error))
-        return false;
+        return;
+    bool saved = run->callbacks->save(run->callbacks->context, run->film, &error);
+    /* Once for a row of failures. */
+    if (!saved && !run->save_failed)
+        log_message(LOG_WARNING, "%s; rendering goes on, and saving is tried again", error_text(&error));
+    if (saved && run->save_failed)
+        log_message(LOG_INFO, "the image could be saved again");
+    run->save_failed = !saved;
     run->last_save = timing_now();
-    return true;
 }
 
 bool render_run_aov(RenderRun *run, uint64_t samples, Error *error)
@@ -80,21 +92,17 @@ bool render_run_aov(RenderRun *run, uint64_t samples, Error *error)
            render_layers_aov(run->options->layers, run, every < AOV_SAMPLES ? (uint)every : AOV_SAMPLES, error);
 }
 
-/* One pass of `items` items. The first sample of every pixel is finished even when a stop is wanted, unless the stop
- * is repeated (the signal handler then ends the program): an image without holes is worth a moment. */
+/* One pass of `items` items. */
 static bool pass_run(PassLoop *loop, uint items, Error *error)
 {
-    static const atomic_int never = 0;
     RenderRun *run = loop->run;
-    bool first = loop->next < run->crop_pixels;
     uint64_t delivered = 0;
     run->frame.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
     run->frame.first_item = (uint)(loop->next % run->crop_pixels);
     run->frame.item_count = items;
     run->frame.film_exponent = run->film->quantum_exponent;
     const SplatSink sink = render_run_sink(run->film);
-    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink,
-                             first || !run->options->stop ? &never : run->options->stop, &delivered, error)) {
+    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop(run), &delivered, error)) {
         run->done += delivered; /* they are in the film */
         return false;
     }
@@ -119,16 +127,16 @@ static bool passes_run(PassLoop *loop, Error *error)
     run->start = run->last_save = timing_now();
     while (loop->next < loop->total) {
         double elapsed = timing_now() - run->start;
-        bool whole = loop->next >= run->crop_pixels;
-        if (whole && options->stop && *options->stop)
-            break;
-        if (whole && options->seconds > 0.0 && elapsed >= options->seconds)
+        /* With a time, too, every pixel has a sample: an image without holes is worth a moment. */
+        bool spent = options->seconds > 0.0 && elapsed >= options->seconds && loop->next >= run->crop_pixels;
+        if (spent || *render_run_stop(run))
             break;
         if (!pass_run(loop, pass_items(loop, elapsed), error))
             return false;
         render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
-        if (!render_run_aov(run, run->done, error) || !render_run_save_if_due(run, error))
+        if (!render_run_aov(run, run->done, error))
             return false;
+        render_run_save_if_due(run);
     }
     return true;
 }
@@ -154,7 +162,7 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     run->interface->statistics(run->backend, &result->backend);
     run->interface->diagnostics(run->backend, counters);
     result->chains = run->chains;
-    result->stopped = run->options->stop && *run->options->stop;
+    result->stopped = *render_run_stop(run);
     result->diagnostic_count = 0;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];

@@ -43,7 +43,7 @@ typedef struct RenderOptions {
     FILE *bad_chains; /* gets a line of JSON for every chain that met something not finite; NULL: nobody does */
     struct RenderLayers *layers; /* .wanted says what; filled in besides the film, to be destroyed. NULL: nothing */
     double save_every; /* seconds between calls of `save`; 0: never */
-    const atomic_int *stop; /* becomes 1 by a signal: finish what is begun and return */
+    const atomic_int *stop; /* becomes 1 by a signal: return what is finished, at once; NULL: never */
 } RenderOptions;
 
 typedef struct RenderProgress {
@@ -55,7 +55,8 @@ typedef struct RenderProgress {
 
 typedef struct RenderCallbacks {
     void (*progress)(void *context, const RenderProgress *progress); /* a few times a second; may be NULL */
-    bool (*save)(void *context, const Film *film, Error *error); /* every save_every seconds; may be NULL */
+    /* Every save_every seconds, and again when it fails; may be NULL. */
+    bool (*save)(void *context, const Film *film, Error *error);
     void *context;
 } RenderCallbacks;
 

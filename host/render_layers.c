@@ -105,7 +105,6 @@ static bool aov_list(StepList *list, Error *error)
 
 static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const StepList *list, Error *error)
 {
-    static const atomic_int never = 0;
     FrameParams frame = run->frame;
     const SplatSink sink = render_run_sink(film);
     frame.aov = aov;
@@ -113,7 +112,7 @@ static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const
     frame.sample_index = run->options->first_sample + sample;
     frame.first_item = 0;
     frame.item_count = (uint)run->crop_pixels;
-    return run->interface->run(run->backend, &frame, list, &sink, &never, NULL, error);
+    return run->interface->run(run->backend, &frame, list, &sink, render_run_stop(run), NULL, error);
 }
 
 bool render_layers_aov(RenderLayers *layers, RenderRun *run, unsigned samples, Error *error)

@@ -14,8 +14,12 @@ typedef struct RenderRun {
     uint64_t crop_pixels;
     uint64_t done; /* samples in the film */
     double start, last_save;
+    bool save_failed; /* the last one did */
     ChainStatistics chains;
 } RenderRun;
+
+/* Becomes 1 when the rendering is to end at once (options->stop), or stays 0. */
+const atomic_int *render_run_stop(const RenderRun *run);
 
 /* Adds splats to the film; frame.film_exponent must be its quantum_exponent. */
 SplatSink render_run_sink(Film *film);
@@ -30,7 +34,7 @@ void render_run_report(const RenderRun *run, double fraction);
  * `samples` together, at most AOV_SAMPLES. */
 bool render_run_aov(RenderRun *run, uint64_t samples, Error *error);
 
-/* Calls `save` when it is due; false when that fails. */
-bool render_run_save_if_due(RenderRun *run, Error *error);
+/* Calls `save` when it is due. When that fails there is a warning, and it is tried again when the next one is due. */
+void render_run_save_if_due(RenderRun *run);
 
 #endif

@@ -42,7 +42,7 @@ static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t i
     same = same && list_verify(sides, "path tracing, ", &mmlt.paths_frame, &mmlt.paths, items, stop, error);
     if (same && run->frame.max_depth >= CHAIN_DEPTH_MIN) {
         mmlt.options.pool = count;
-        same = mmlt_seeds_run(&mmlt, count, stop, &whole, error);
+        same = mmlt_pilot_run(&mmlt, count, &whole, error) && (!whole || mmlt_seeds_run(&mmlt, count, &whole, error));
         FrameParams pool = mmlt_pool_frame(&mmlt, mmlt.pool.pass_stride), chains = mmlt_chain_frame(&mmlt);
         same = same && (!whole || list_verify(sides, "a pool, ", &pool, &mmlt.pool, count, stop, error)) &&
                (!whole || !(mmlt_population(&mmlt)->brightness > 0.0) ||

@@ -120,6 +120,7 @@ libtwinlight_host_la_SOURCES = \
 	host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
+	host/render_report.c host/render_report.h \
 	host/render_settings.c host/render_settings.h \
 	host/render_verify.c host/render_verify.h \
 	host/rendering_file.c host/rendering_file.h \
@@ -137,9 +138,9 @@ libtwinlight_host_la_SOURCES = \
 	host/student.c host/student.h \
 	host/svg_chart.c host/svg_chart.h \
 	host/step_recorder.c host/step_recorder.h \
+	host/temporary_file.c host/temporary_file.h \
 	host/text_number.c host/text_number.h \
 	host/text_window.c host/text_window.h \
-	host/temporary_file.c host/temporary_file.h \
 	host/texture_image.c host/texture_image.h \
 	host/timing.c host/timing.h \
 	host/trace_output.c host/trace_output.h \

@@ -41,6 +41,11 @@ expect() {
     fi
 }
 
+# Puts a program in the background of a script: shells have SIGINT ignored there, which the program respects.
+# shellcheck disable=SC2034 # for who sources this
+with_signals='env --default-signal=INT,HUP,PIPE'
+$with_signals true 2>/dev/null || with_signals=
+
 # A small rendering, by path tracing unless an argument says otherwise.
 render() {
     "$program" render --integrator=pt --resolution=16x12 --samples=1 --threads=2 "$@" >out 2>err

@@ -116,7 +116,7 @@ result 'a record that was cut off is taken for whole' $?
 
 # A reference that is given, and a signal: what is finished is reported.
 reference=$(find tiny.runs -name '*-mean.exr')
-"$program" bench --quiet --integrators=pt,bdpt --times=0.1s,60s --runs=1 --resolution=32x24 --max-depth=4 \
+$with_signals "$program" bench --quiet --integrators=pt,bdpt --times=0.1s,60s --runs=1 --resolution=32x24 --max-depth=4 \
     --reference="$reference" -o ended.html "$scene" >out 2>err &
 process=$!
 tries=0

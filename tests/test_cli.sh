@@ -421,7 +421,7 @@ fi
 
 # long_render ARGUMENT...: in the background, process number in $process, ended after three minutes whatever happens.
 long_render() {
-    "$program" render --quiet --resolution=32x32 --time=180s "$@" "$scene" >out 2>err &
+    $with_signals "$program" render --quiet --resolution=32x32 --time=180s "$@" "$scene" >out 2>err &
     process=$!
 }
 

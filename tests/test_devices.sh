@@ -176,7 +176,7 @@ file_missing none.exr
 POCL_MEMORY_LIMIT=1 expect 1 'use --batch=' render --integrator=pt --backend=all --batch=67108864 -o none.exr "$scene"
 file_missing none.exr
 
-"$program" render --quiet --resolution=32x32 --time=180s --save-every=0.2s --backend=all --stats=stop.json -o stop.exr \
+$with_signals "$program" render --quiet --resolution=32x32 --time=180s --save-every=0.2s --backend=all --stats=stop.json -o stop.exr \
     "$scene" >out 2>err &
 process=$!
 wait_for stop.exr

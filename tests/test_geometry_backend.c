@@ -150,6 +150,50 @@ START_TEST(test_stop)
 }
 END_TEST
 
+static atomic_int stop_now;
+
+/* Splats that bring a stop. */
+static void collect_and_stop(void *context, const uint *splats, uint count, uint stride)
+{
+    collect(context, splats, count, stride);
+    stop_now = 1;
+}
+
+/* A stop that comes while a chunk is under way, which has shown a part of itself: it is finished, so that the film has none
+ * by halves, unless the pass is of no use any more. */
+START_TEST(test_stop_in_chunk)
+{
+    static const Step steps[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},
+                                 {.kind = STEP_KERNEL, .kernel = KERNEL_walk_splat},
+                                 {.kind = STEP_SPLAT},
+                                 {.kind = STEP_TRACE_CLOSEST},
+                                 {.kind = STEP_KERNEL, .kernel = KERNEL_walk_splat}};
+    static Collector collector;
+    BackendOptions options = {.threads = 1};
+    Error error = {0};
+    TestScene test;
+    uint64_t done = 99;
+    walk_scene(&test, 1.0f);
+    Backend *backend = backend_cpu()->open(&test.backend, &options, &error);
+    FrameParams frame = *test.backend.frame;
+    StepList list = walk_list();
+    list.steps = steps;
+    list.count = sizeof steps / sizeof *steps;
+    frame.item_count = ITEMS;
+    for (int whole = 0; whole < 2; ++whole) {
+        memset(collector.seen, 0, sizeof collector.seen);
+        stop_now = 0;
+        SplatSink sink = {.splats = collect_and_stop, .context = &collector, .whole = whole == 1};
+        ck_assert(backend_cpu()->run(backend, &frame, &list, &sink, &stop_now, &done, &error));
+        ck_assert_uint_eq(collector.seen[0], whole ? 1 : 2);
+        ck_assert_uint_eq(collector.seen[ITEMS - 1], 0);
+        ck_assert(whole ? done == 0 : done > 0 && done < ITEMS);
+    }
+    backend_cpu()->close(backend);
+    test_scene_destroy(&test);
+}
+END_TEST
+
 /* Counters of all threads are summed and survive from run to run. */
 START_TEST(test_diagnostics)
 {
@@ -355,6 +399,7 @@ TCase *geometry_backend_tcase(void)
     tcase_set_timeout(tcase, 120.0);
     tcase_add_test(tcase, test_same_bits_for_any_threads);
     tcase_add_test(tcase, test_stop);
+    tcase_add_test(tcase, test_stop_in_chunk);
     tcase_add_test(tcase, test_diagnostics);
     tcase_add_test(tcase, test_group_same_bits);
     tcase_add_test(tcase, test_group_member_fails);

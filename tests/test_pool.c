@@ -94,10 +94,9 @@ static void generations_record(Backend *backend, int width, int height, uint poo
                                .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
                                .seed_low = (uint)seed}};
     ck_assert(mmlt_init(&mmlt, &run, &error));
-    static const atomic_int never = 0;
     backend->pilot = true;
     for (uint i = 0; i < generations; ++i)
-        ck_assert_msg(mmlt_generation_run(&mmlt, 16, &never, &error), "%s", error.message);
+        ck_assert_msg(mmlt_generation_run(&mmlt, 16, &error), "%s", error.message);
     mmlt_destroy(&mmlt);
     film_destroy(&film);
 }
