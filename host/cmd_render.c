@@ -97,13 +97,13 @@ static bool outputs_name(RenderJob *job, Error *error)
     const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
     if (!image || !render_output_name(output, image, command->png, command->png_path, error))
         return false;
-    output->film_scale = job->scene.settings.film_scale;
+    output->picture = (PictureSettings){.scale = job->scene.settings.film_scale,
+                                        .despeckle = command->despeckle,
+                                        .layers = job->layers.wanted != 0 ? &job->layers : NULL};
     output->exposure = (float)command->exposure;
     output->scene_file = command->scene;
     output->integrator = command->integrator;
     output->seed = command->seed;
-    output->despeckle = command->despeckle;
-    output->layers = job->layers.wanted != 0 ? &job->layers : NULL;
     output->max_depth = job->scene.settings.max_depth;
     camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
                     output->world_to_ndc);
@@ -145,6 +145,12 @@ static void job_progress(void *context, const RenderProgress *progress)
     progress_update(&job->progress, progress);
 }
 
+static void job_writing(void *context, const char *path, double part)
+{
+    RenderJob *job = context;
+    progress_writing(&job->progress, path, part);
+}
+
 static bool job_save(void *context, const Film *film, Error *error)
 {
     RenderJob *job = context;
@@ -182,8 +188,10 @@ static bool film_render(RenderJob *job, Error *error)
     RenderOptions options = job_options(job);
     RenderCallbacks callbacks = {job_progress, job_save, job};
     progress_init(&job->progress, stderr, command->quiet);
-    bool rendered = interrupt_install(error) &&
-                    film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
+    job->output.writing = job_writing;
+    job->output.writing_context = job;
+    bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
+                    render_output_reserve(&job->output, settings->crop, error) &&
                     render_film(job->integrator, &job->scene, job->backend.interface, job->backend.backend, &options,
                                 false, &callbacks, &job->film, &job->result, error);
     progress_end(&job->progress);
@@ -332,7 +340,7 @@ static int job_run(RenderJob *job, Error *error)
     }
     if (!stage_run(film_write, job, &job->write, error))
         return EXIT_FAILED;
-    render_report(&job->result, &job->film, job->output.film_scale);
+    render_report(&job->result, &job->film, job->output.picture.scale);
     summary_report(job);
     if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !stats_output(job, error)) ||
         (command->trace && !trace_output(job, error)))
@@ -359,6 +367,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
         job.backend.interface->close(job.backend.backend);
     bad_chains_cancel(&job.bad_chains);
     arena_destroy(&job.names);
+    render_output_release(&job.output);
     render_layers_destroy(&job.layers);
     film_destroy(&job.film);
     scene_destroy(&job.scene);

@@ -27,13 +27,13 @@ static const float *median_around(const float *rgb, int width, int height, int x
     return sorted[(count - 1) / 2];
 }
 
-void despeckle(const float *rgb, int width, int height, float threshold, float *out)
+void despeckle(const float *rgb, int width, int height, int first, int rows, float threshold, float *out)
 {
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
+    for (int y = first; y < first + rows; ++y)
+        for (int x = 0; x < width; ++x, out += 3) {
             size_t pixel = 3 * ((size_t)y * (size_t)width + (size_t)x);
             const float *median = median_around(rgb, width, height, x, y);
             bool speck = luminance(rgb + pixel) > threshold * luminance(median);
-            memcpy(out + pixel, speck ? median : rgb + pixel, 3 * sizeof *out);
+            memcpy(out, speck ? median : rgb + pixel, 3 * sizeof *out);
         }
 }

@@ -16,8 +16,8 @@
 
 typedef struct ExrWriter {
     OutputFile file;
+    const ExrPicture *picture;
     const ExrChannel **channels; /* sorted by name */
-    size_t channel_count;
     int width, height; /* of the data window */
     int write_errno; /* of the first write that failed, else 0 */
     char message[256]; /* the library's last complaint */
@@ -127,11 +127,12 @@ static exr_result_t chromaticities_set(exr_context_t context, int part)
     return exr_attr_set_chromaticities(context, part, "chromaticities", &srgb);
 }
 
-static exr_result_t header_write(exr_context_t context, const ExrWriter *writer, int width, int height, const int *crop,
-                                 const ExrAttribute *attributes, size_t attribute_count)
+static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
 {
     int part = 0;
-    exr_attr_box2i_t display = box_make(0, 0, width, height);
+    const ExrPicture *picture = writer->picture;
+    const int *crop = picture->crop;
+    exr_attr_box2i_t display = box_make(0, 0, picture->width, picture->height);
     exr_attr_box2i_t data = box_make(crop[0], crop[1], crop[2], crop[3]);
     exr_attr_v2f_t center = {.x = 0.0f, .y = 0.0f};
     exr_result_t result = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
@@ -140,12 +141,12 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer,
                                               EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
     if (result == EXR_ERR_SUCCESS)
         result = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
-    for (size_t i = 0; i < writer->channel_count && result == EXR_ERR_SUCCESS; ++i)
+    for (size_t i = 0; i < picture->channel_count && result == EXR_ERR_SUCCESS; ++i)
         result = exr_add_channel(context, part, writer->channels[i]->name,
                                  writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
-    for (size_t i = 0; i < attribute_count && result == EXR_ERR_SUCCESS; ++i)
-        result = attribute_set(context, part, &attributes[i]);
+    for (size_t i = 0; i < picture->attribute_count && result == EXR_ERR_SUCCESS; ++i)
+        result = attribute_set(context, part, &picture->attributes[i]);
     if (result == EXR_ERR_SUCCESS)
         result = chromaticities_set(context, part);
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
@@ -159,13 +160,16 @@ static float half_range(float x)
 }
 
 /* Points the encoder's channels at lines y ... of the picture. The packing routine takes contiguous planes only, so
- * the lines are gathered into `plane` (chunk lines x width x channels floats) first. */
+ * the lines are gathered into `plane` first. */
 static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder, float *plane, int y, int lines)
 {
-    size_t width = (size_t)writer->width, count = (size_t)lines * width;
-    for (size_t c = 0; c < writer->channel_count; ++c) {
+    const ExrPicture *picture = writer->picture;
+    size_t width = (size_t)writer->width, count = (size_t)lines * width, first = picture->band ? 0 : (size_t)y * width;
+    if (picture->band)
+        picture->band(picture->context, y, lines);
+    for (size_t c = 0; c < picture->channel_count; ++c) {
         const ExrChannel *channel = writer->channels[c];
-        const float *from = channel->data + (size_t)y * width * channel->stride;
+        const float *from = channel->data + first * channel->stride;
         float *to = plane + c * count;
         for (size_t i = 0; i < count; ++i)
             to[i] = channel->half ? half_range(from[i * channel->stride]) : from[i * channel->stride];
@@ -193,16 +197,15 @@ static exr_result_t chunk_compress(exr_encode_pipeline_t *encoder)
     return result;
 }
 
-static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, int first_line)
+static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, float *plane)
 {
+    int first_line = writer->picture->crop[1];
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
     CompressFunction library = NULL;
     int32_t step = 1;
     bool begun = false;
     exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &step);
-    float *plane = malloc((size_t)step * (size_t)writer->width * writer->channel_count * sizeof *plane);
-    if (!plane)
-        result = EXR_ERR_OUT_OF_MEMORY;
+    assert(step <= EXR_BAND_ROWS);
     for (int y = 0; y < writer->height && result == EXR_ERR_SUCCESS; y += step) {
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(context, 0, first_line + y, &chunk);
@@ -223,20 +226,18 @@ static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer,
             result = exr_encoding_run(context, 0, &encoder);
     }
     exr_encoding_destroy(context, &encoder);
-    free(plane);
     return result;
 }
 
 static bool channels_check(const ExrWriter *writer, const char *path, Error *error)
 {
-    for (size_t i = 1; i < writer->channel_count; ++i)
+    for (size_t i = 1; i < writer->picture->channel_count; ++i)
         if (strcmp(writer->channels[i - 1]->name, writer->channels[i]->name) == 0)
             return error_set(error, "cannot write %s: two channels are named \"%s\"", path, writer->channels[i]->name);
     return true;
 }
 
-static bool exr_write_open(ExrWriter *writer, const char *path, int width, int height, const int *crop,
-                           const ExrAttribute *attributes, size_t attribute_count, Error *error)
+static bool exr_write_open(ExrWriter *writer, const char *path, float *plane, Error *error)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = exr_message;
@@ -245,9 +246,9 @@ static bool exr_write_open(ExrWriter *writer, const char *path, int width, int h
     exr_context_t context = NULL;
     exr_result_t result = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
     if (result == EXR_ERR_SUCCESS)
-        result = header_write(context, writer, width, height, crop, attributes, attribute_count);
+        result = header_write(context, writer);
     if (result == EXR_ERR_SUCCESS)
-        result = chunks_write(context, writer, crop[1]);
+        result = chunks_write(context, writer, plane);
     exr_result_t finished = context ? exr_finish(&context) : EXR_ERR_SUCCESS;
     if (result == EXR_ERR_SUCCESS)
         result = finished;
@@ -260,26 +261,44 @@ static bool exr_write_open(ExrWriter *writer, const char *path, int width, int h
     return error_fix_errno(error, writer->write_errno);
 }
 
+static bool picture_write(ExrWriter *writer, const char *path, float *plane, Error *error)
+{
+    const ExrPicture *picture = writer->picture;
+    for (size_t i = 0; i < picture->channel_count; ++i)
+        writer->channels[i] = &picture->channels[i];
+    qsort(writer->channels, picture->channel_count, sizeof *writer->channels, channel_compare);
+    bool good = channels_check(writer, path, error) && output_file_begin(&writer->file, path, error) &&
+                exr_write_open(writer, path, plane, error) && output_file_commit(&writer->file, error);
+    output_file_cancel(&writer->file);
+    return good;
+}
+
+bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error)
+{
+    const int *crop = picture->crop;
+    ExrWriter writer = {
+        .file = {.descriptor = -1}, .picture = picture, .width = crop[2] - crop[0], .height = crop[3] - crop[1]};
+    size_t bytes = picture->channel_count * EXR_BAND_ROWS * (size_t)writer.width * sizeof *picture->plane;
+    assert(picture->channel_count > 0 && writer.width > 0 && writer.height > 0);
+    float *own = picture->plane ? NULL : malloc(bytes), *plane = picture->plane ? picture->plane : own;
+    writer.channels = calloc(picture->channel_count, sizeof *writer.channels);
+    bool good = writer.channels && plane ? picture_write(&writer, path, plane, error)
+                                         : error_memory(error, bytes, "rows of an EXR file");
+    free(writer.channels);
+    free(own);
+    return good;
+}
+
 bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
                const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error)
 {
     const int whole[4] = {0, 0, width, height};
-    const int *window = crop ? crop : whole;
-    ExrWriter writer = {.file = {.descriptor = -1},
-                        .channel_count = channel_count,
-                        .width = window[2] - window[0],
-                        .height = window[3] - window[1]};
-    assert(channel_count > 0 && writer.width > 0 && writer.height > 0);
-    writer.channels = calloc(channel_count, sizeof *writer.channels);
-    if (!writer.channels)
-        return error_memory(error, channel_count * sizeof *writer.channels, "the channels of an EXR file");
-    for (size_t i = 0; i < channel_count; ++i)
-        writer.channels[i] = &channels[i];
-    qsort(writer.channels, channel_count, sizeof *writer.channels, channel_compare);
-    bool good = channels_check(&writer, path, error) && output_file_begin(&writer.file, path, error) &&
-                exr_write_open(&writer, path, width, height, window, attributes, attribute_count, error) &&
-                output_file_commit(&writer.file, error);
-    output_file_cancel(&writer.file);
-    free(writer.channels);
-    return good;
+    ExrPicture picture = {.channels = channels,
+                          .channel_count = channel_count,
+                          .width = width,
+                          .height = height,
+                          .attributes = attributes,
+                          .attribute_count = attribute_count};
+    memcpy(picture.crop, crop ? crop : whole, sizeof picture.crop);
+    return exr_write_picture(path, &picture, error);
 }

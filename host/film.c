@@ -294,44 +294,51 @@ static double light_unit_of(const Film *film, double unit)
     return samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
 }
 
+FilmScale film_scale_of(const Film *film, float scale)
+{
+    double unit = ldexp((double)scale, film->quantum_exponent);
+    return (FilmScale){unit, light_unit_of(film, unit)};
+}
+
 /* Value v, three a pixel, of a part of the film. */
-static float value_resolve(const Film *film, FilmPart part, double unit, double light_unit, size_t v)
+static float value_resolve(const Film *film, FilmPart part, FilmScale scale, size_t v)
 {
     uint32_t count = film->counts[v / 3];
-    double value = count && part != FILM_LIGHT ? (double)film_sum_shown(film->sums[v]) * unit / count : 0.0;
+    double value = count && part != FILM_LIGHT ? (double)film_sum_shown(film->sums[v]) * scale.own / count : 0.0;
     if (film->light_sums && part != FILM_OWN)
-        value += (double)film_sum_shown(film->light_sums[v]) * light_unit;
+        value += (double)film_sum_shown(film->light_sums[v]) * scale.light;
     return (float)value;
 }
 
-void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
+void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_t first, size_t count, float *rgb)
 {
-    const double unit = ldexp((double)scale, film->quantum_exponent);
-    const double light_unit = light_unit_of(film, unit);
-    for (size_t v = 0; v < 3 * film_pixels(film); ++v)
-        rgb[v] = value_resolve(film, part, unit, light_unit, v);
+    for (size_t v = 0; v < 3 * count; ++v)
+        rgb[v] = value_resolve(film, part, scale, 3 * first + v);
 }
 
 size_t film_infinite_pixels(const Film *film, float scale)
 {
-    const double unit = ldexp((double)scale, film->quantum_exponent);
-    const double light_unit = light_unit_of(film, unit);
+    const FilmScale units = film_scale_of(film, scale);
     size_t infinite = 0;
     for (size_t i = 0; i < film_pixels(film); ++i) {
         bool finite = true;
         for (size_t c = 0; c < 3; ++c)
-            finite = finite && isfinite(value_resolve(film, FILM_ALL, unit, light_unit, 3 * i + c));
+            finite = finite && isfinite(value_resolve(film, FILM_ALL, units, 3 * i + c));
         infinite += !finite;
     }
     return infinite;
 }
 
-void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb)
+void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
 {
-    const double unit = light_unit_of(film, ldexp((double)scale, film->quantum_exponent));
-    const int64_t *sums = film_depth_sums(film, segments, FILM_KIND_LIGHT);
-    for (size_t i = 0; i < 3 * film_pixels(film); ++i)
-        rgb[i] = (float)((double)film_sum_shown(sums[i]) * unit);
+    film_resolve_pixels(film, part, film_scale_of(film, scale), 0, film_pixels(film), rgb);
+}
+
+void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb)
+{
+    const int64_t *sums = film_depth_sums(film, segments, FILM_KIND_LIGHT) + 3 * first;
+    for (size_t i = 0; i < 3 * count; ++i)
+        rgb[i] = (float)((double)film_sum_shown(sums[i]) * scale.light);
 }
 
 void film_resolve(const Film *film, float scale, float *rgb)

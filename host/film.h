@@ -92,8 +92,20 @@ size_t film_empty_pixels(const Film *film);
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb);
 
-/* Of what splats from the light brought that of paths of so many segments. */
-void film_resolve_depth(const Film *film, uint segments, float scale, float *rgb);
+/* What a unit of a film's sums is worth: of those of pixels' own samples, before the division by their number, and of those
+ * of splats from the light. */
+typedef struct FilmScale {
+    double own, light;
+} FilmScale;
+
+/* Of the film as it is: more samples make other units. Looks at all pixels. */
+FilmScale film_scale_of(const Film *film, float scale);
+
+/* Pixels first ... first + count - 1 of film_resolve_part, to rgb[3 * count]. */
+void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_t first, size_t count, float *rgb);
+
+/* The same pixels of what splats from the light brought of paths of so many segments. */
+void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb);
 
 /* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the first
  * is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */

@@ -10,6 +10,15 @@
  * black. Written beside `path` and renamed. Fails, naming the path, when it cannot be written. */
 bool png_write(const char *path, const float *rgb, int width, int height, float exposure_stops, Error *error);
 
+/* Rows of a picture from the top on: 3 floats a pixel, until the next call. */
+typedef struct PngRows {
+    const float *(*row)(void *context, int y);
+    void *context;
+} PngRows;
+
+/* The same from a picture that is made row by row. */
+bool png_write_picture(const char *path, PngRows rows, int width, int height, float exposure_stops, Error *error);
+
 /* The same as the bytes of the file, which the caller frees. Fails when memory is out. */
 bool png_memory(const float *rgb, int width, int height, float exposure_stops, unsigned char **bytes, size_t *size,
                 Error *error);

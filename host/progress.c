@@ -1,5 +1,7 @@
 #include "progress.h"
 
+#include "timing.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,6 +105,26 @@ void progress_update(Progress *progress, const RenderProgress *now)
         fprintf(progress->stream, "%s\n", text);
         progress->last_shown = now->elapsed;
     }
+}
+
+void progress_writing(Progress *progress, const char *path, double part)
+{
+    double now = timing_now();
+    if (!(part > 0.0)) {
+        progress->writing_since = now;
+        progress->writing_told = false;
+    }
+    if (progress->quiet || now - progress->writing_since < PROGRESS_WRITING_SECONDS)
+        return;
+    if (progress->terminal) {
+        int columns = terminal_columns(progress->stream);
+        fprintf(progress->stream, "\rwriting %.*s: %3.0f %%\033[K", columns - 16, path, floor(100.0 * part));
+        fflush(progress->stream);
+        progress->line_open = true;
+    } else if (!progress->writing_told) {
+        fprintf(progress->stream, "writing %s\n", path);
+    }
+    progress->writing_told = true;
 }
 
 void progress_end(Progress *progress)

@@ -13,6 +13,8 @@ typedef struct Progress {
     bool terminal;
     double last_shown; /* elapsed seconds when something was last written */
     bool line_open; /* a line without its end is on the terminal */
+    double writing_since; /* when the file that is being written was begun */
+    bool writing_told; /* a plain line has said so */
 } Progress;
 
 /* Without a terminal, at most one line in this many seconds. */
@@ -23,6 +25,10 @@ bool stream_is_terminal(FILE *stream);
 
 void progress_init(Progress *progress, FILE *stream, bool quiet);
 void progress_update(Progress *progress, const RenderProgress *now);
+
+/* A file is being written, so much of it (0 ... 1) is. Says so when it takes longer than PROGRESS_WRITING_SECONDS. */
+#define PROGRESS_WRITING_SECONDS 1.0
+void progress_writing(Progress *progress, const char *path, double part);
 
 /* Removes the line from the terminal. */
 void progress_end(Progress *progress);

@@ -81,12 +81,12 @@ bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Er
            (!wants(layers, LAYER_VARIANCE) || variance_add(layers, part, error));
 }
 
-void render_layers_variance(const RenderLayers *layers, float scale, float *rgb)
+void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb)
 {
     double square = (double)scale * (double)scale;
-    for (size_t value = 0; value < 3 * layers->own.pixels; ++value)
-        rgb[value] = (float)(square * (pixel_series_variance(&layers->own, value) +
-                                       pixel_series_variance(&layers->light, value)));
+    for (size_t value = 3 * first; value < 3 * (first + count); ++value)
+        rgb[value - 3 * first] = (float)(square * (pixel_series_variance(&layers->own, value) +
+                                                   pixel_series_variance(&layers->light, value)));
 }
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */

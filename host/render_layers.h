@@ -38,8 +38,8 @@ void render_layers_destroy(RenderLayers *layers);
  * saw and of what chains brought. */
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error);
 
-/* rgb[3 x pixels] = the estimated variance of scale x the picture. */
-void render_layers_variance(const RenderLayers *layers, float scale, float *rgb);
+/* rgb[3 x count] = the estimated variance of scale x the picture, in pixels first ... first + count - 1. */
+void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
 struct RenderRun;
 

@@ -2,14 +2,12 @@
 
 #include "config.h"
 
-#include "despeckle.h"
 #include "exr.h"
 #include "path_name.h"
 #include "png_write.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any case. */
@@ -35,85 +33,52 @@ bool render_output_name(RenderOutput *output, const char *image, bool want_png, 
     return !want_png || path_with_ending(output->png, png ? png : output->exr, ".png", error);
 }
 
-/* ---- layers ------------------------------------------------------------------------------------------------------ */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* Everything that goes into the file, in groups of three channels. */
-#define GROUPS_FIXED 10
-#define GROUPS_MAX (GROUPS_FIXED + (int)(SPLAT_DEPTH_MAX + 1u - SPLAT_DEPTH_MIN))
-
-typedef char DepthNames[3][16]; /* "depth03.R" ... */
-
-typedef struct Picture {
-    size_t pixels;
-    float *values;
-    size_t used; /* values */
-    ExrChannel channels[3 * GROUPS_MAX];
-    size_t count;
-    DepthNames depths[SPLAT_DEPTH_MAX + 1];
-} Picture;
-
-/* Room for three values a pixel, which are the channels `red`, `green` and `blue`. */
-static float *picture_rgb(Picture *picture, const char *red, const char *green, const char *blue, bool half)
+bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error)
 {
-    const char *const names[3] = {red, green, blue};
-    float *rgb = picture->values + picture->used;
-    for (size_t c = 0; c < 3; ++c)
-        picture->channels[picture->count++] = (ExrChannel){names[c], rgb + c, 3, half};
-    picture->used += 3 * picture->pixels;
-    return rgb;
+    return picture_memory_init(&output->memory, &output->picture, crop[2] - crop[0], crop[3] - crop[1],
+                               (uint)output->max_depth, error);
 }
 
-static void picture_depths(Picture *picture, const Film *film, float scale)
+void render_output_release(RenderOutput *output)
 {
-    for (uint depth = SPLAT_DEPTH_MIN; depth <= film->depth_last; ++depth) {
-        DepthNames *names = &picture->depths[depth];
-        for (int c = 0; c < 3; ++c)
-            snprintf((*names)[c], sizeof(*names)[c], "depth%02u.%c", depth, "RGB"[c]);
-        film_resolve_depth(film, depth, scale, picture_rgb(picture, (*names)[0], (*names)[1], (*names)[2], false));
-    }
+    picture_memory_destroy(&output->memory);
 }
 
-/* The picture's own layers: of light alone, so everything but the variables. */
-static void picture_parts(Picture *picture, const RenderOutput *output, const Film *film)
+/* A picture on its way to one file. */
+typedef struct Writing {
+    const RenderOutput *output;
+    const char *path;
+    Picture picture;
+} Writing;
+
+/* Row y is about to be made. */
+static void writing_report(const Writing *writing, int y)
 {
-    unsigned wanted = output->layers ? output->layers->wanted : 0;
-    float scale = output->film_scale;
-    if (film->light_samples == 0)
-        return;
-    if ((wanted & LAYER_BIT(LAYER_DIRECT)) != 0)
-        film_resolve_part(film, FILM_OWN, scale, picture_rgb(picture, "direct.R", "direct.G", "direct.B", false));
-    if ((wanted & LAYER_BIT(LAYER_INDIRECT)) != 0)
-        film_resolve_part(film, FILM_LIGHT, scale,
-                          picture_rgb(picture, "indirect.R", "indirect.G", "indirect.B", false));
-    if ((wanted & LAYER_BIT(LAYER_HALVES)) != 0) {
-        const Film *halves = output->layers->halves;
-        film_resolve(&halves[0], scale, picture_rgb(picture, "halfA.R", "halfA.G", "halfA.B", false));
-        film_resolve(&halves[1], scale, picture_rgb(picture, "halfB.R", "halfB.G", "halfB.B", false));
-    }
-    if ((wanted & LAYER_BIT(LAYER_VARIANCE)) != 0)
-        render_layers_variance(output->layers, scale,
-                               picture_rgb(picture, "variance.R", "variance.G", "variance.B", false));
-    picture_depths(picture, film, scale);
+    const RenderOutput *output = writing->output;
+    if (output->writing)
+        output->writing(output->writing_context, writing->path, (double)y / writing->picture.height);
 }
 
-static void picture_aovs(Picture *picture, const RenderOutput *output)
+static void writing_band(void *context, int first, int count)
 {
-    if (!output->layers)
-        return;
-    const RenderLayers *layers = output->layers;
-    if ((layers->wanted & LAYER_BIT(LAYER_ALBEDO)) != 0)
-        film_resolve(&layers->aovs[AOV_ALBEDO], 1.0f, picture_rgb(picture, "albedo.R", "albedo.G", "albedo.B", true));
-    if ((layers->wanted & LAYER_BIT(LAYER_NORMAL)) != 0)
-        film_resolve(&layers->aovs[AOV_NORMAL], 1.0f, picture_rgb(picture, "normal.X", "normal.Y", "normal.Z", true));
-    if ((layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0) {
-        film_resolve(&layers->aovs[AOV_DEPTH], 1.0f, picture_rgb(picture, "Z", "", "", false));
-        picture->count -= 2; /* all three are the same */
-    }
+    Writing *writing = context;
+    writing_report(writing, first);
+    picture_band(&writing->picture, first, count);
 }
 
-static bool exr_output_write(const RenderOutput *output, const Film *film, const Picture *picture,
-                             double samples_per_pixel, Error *error)
+static const float *writing_row(void *context, int y)
 {
+    Writing *writing = context;
+    writing_report(writing, y);
+    return picture_row(&writing->picture, y);
+}
+
+static bool exr_output_write(Writing *writing, const Film *film, double samples_per_pixel, Error *error)
+{
+    const RenderOutput *output = writing->output;
+    const RenderLayers *layers = output->picture.layers;
     /* Nothing of time, machine or threads: the same picture is the same file. */
     const ExrAttribute attributes[] = {
         exr_text("integrator", output->integrator),
@@ -127,30 +92,36 @@ static bool exr_output_write(const RenderOutput *output, const Film *film, const
         exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world"),
     };
     /* The last one is for a layer that may not be there. */
-    bool depth = output->layers && (output->layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
-    size_t count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1);
-    return exr_write(output->exr, picture->channels, picture->count, film->width, film->height, film->crop, attributes,
-                     count, error);
+    bool depth = layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
+    ExrPicture picture = {.channels = writing->picture.channels,
+                          .channel_count = writing->picture.channel_count,
+                          .width = film->width,
+                          .height = film->height,
+                          .attributes = attributes,
+                          .attribute_count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1),
+                          .band = writing_band,
+                          .context = writing,
+                          .plane = output->memory.plane};
+    memcpy(picture.crop, film->crop, sizeof picture.crop);
+    writing->path = output->exr;
+    return exr_write_picture(output->exr, &picture, error);
 }
 
-bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
+static bool png_output_write(Writing *writing, Error *error)
 {
-    int width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
-    Picture picture = {.pixels = film_pixels(film)};
-    size_t groups = GROUPS_FIXED + (film->depth_last >= SPLAT_DEPTH_MIN ? film->depth_last + 1 - SPLAT_DEPTH_MIN : 0);
-    size_t bytes = groups * 3 * picture.pixels * sizeof *picture.values;
-    picture.values = malloc(bytes); /* pages that no layer touches take no memory */
-    if (!picture.values)
-        return error_memory(error, bytes, "the picture");
-    float *rgb = picture_rgb(&picture, "R", "G", "B", false);
-    film_resolve(film, output->film_scale, rgb);
-    picture_parts(&picture, output, film);
-    picture_aovs(&picture, output);
-    if (output->despeckle > 0.0)
-        despeckle(rgb, width, height, (float)output->despeckle,
-                  picture_rgb(&picture, "despeckled.R", "despeckled.G", "despeckled.B", false));
-    bool written = exr_output_write(output, film, &picture, samples_per_pixel, error) &&
-                   (!output->png[0] || png_write(output->png, rgb, width, height, output->exposure, error));
-    free(picture.values);
+    const RenderOutput *output = writing->output;
+    writing->path = output->png;
+    return png_write_picture(output->png, (PngRows){writing_row, writing}, writing->picture.width,
+                             writing->picture.height, output->exposure, error);
+}
+
+bool render_output_write(RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
+{
+    Writing writing = {.output = output};
+    picture_init(&writing.picture, &output->picture, film, &output->memory);
+    picture_memory_lend(&output->memory);
+    bool written = exr_output_write(&writing, film, samples_per_pixel, error) &&
+                   (!output->png[0] || png_output_write(&writing, error));
+    picture_memory_take_back(&output->memory);
     return written;
 }

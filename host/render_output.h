@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_RENDER_OUTPUT_H
 #define TWINLIGHT_RENDER_OUTPUT_H
 
-#include "render_layers.h"
+#include "picture.h"
 #include "scene.h"
 
 #include <limits.h>
@@ -11,10 +11,12 @@
 typedef struct RenderOutput {
     char exr[PATH_MAX];
     char png[PATH_MAX]; /* "": none */
-    float film_scale; /* factor on every pixel */
+    PictureSettings picture;
     float exposure; /* stops, PNG only */
-    double despeckle; /* threshold of the layer `despeckled`; 0: none */
-    const RenderLayers *layers; /* NULL: none */
+    PictureMemory memory;
+    /* Called while a file is written, which part of it is: often, the first time with 0. May be NULL. */
+    void (*writing)(void *context, const char *path, double part);
+    void *writing_context;
     /* What the EXR header says besides the picture. */
     const char *scene_file;
     const char *integrator;
@@ -27,7 +29,12 @@ typedef struct RenderOutput {
  * none when !want_png. */
 bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
+/* Makes room for writing pictures of this crop, before the first sample: so that what is rendered can be written whatever
+ * memory is left then. */
+bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error);
+void render_output_release(RenderOutput *output);
+
 /* Writes both files. `samples_per_pixel` goes to the header. */
-bool render_output_write(const RenderOutput *output, const Film *film, double samples_per_pixel, Error *error);
+bool render_output_write(RenderOutput *output, const Film *film, double samples_per_pixel, Error *error);
 
 #endif

@@ -106,6 +106,7 @@ libtwinlight_host_la_SOURCES = \
 	host/pbrt_state.c host/pbrt_state.h \
 	host/pbrt_textures.c \
 	host/pbrt_values.c host/pbrt_values.h \
+	host/picture.c host/picture.h \
 	host/pixel_order.c host/pixel_order.h \
 	host/pixel_series.c host/pixel_series.h \
 	host/plane_filter.c host/plane_filter.h \

@@ -43,7 +43,8 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
     renderer->quantum_exponent = film.quantum_exponent;
     renderer->have_quantum = true;
     if (renderer->layer_depth > 0)
-        film_resolve_depth(&film, renderer->layer_depth, settings->film_scale, rgb);
+        film_resolve_depth(&film, renderer->layer_depth, film_scale_of(&film, settings->film_scale), 0,
+                           film_pixels(&film), rgb);
     else
         film_resolve(&film, settings->film_scale, rgb);
     render_layers_destroy(&layers);

@@ -229,6 +229,7 @@ script_tests = \
 	tests/test_bench.sh \
 	tests/test_cli.sh \
 	tests/test_devices.sh \
-	tests/test_hostile.sh
+	tests/test_hostile.sh \
+	tests/test_outputs.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

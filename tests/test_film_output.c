@@ -1,11 +1,12 @@
-/* What is written to files: EXR, PNG, and the way that files come into being. */
+/* What is written to files: EXR, PNG, whole and by bands. */
 #include "test_files.h"
 #include "test_util.h"
 
 #include "color.h"
+#include "despeckle.h"
 #include "exr.h"
 #include "image.h"
-#include "output_file.h"
+#include "picture.h"
 #include "platform.h"
 #include "png_write.h"
 
@@ -154,6 +155,48 @@ START_TEST(test_exr_layers)
 }
 END_TEST
 
+/* Bands are what whole pictures are cut into: every row of every layer, at every band's edge. */
+START_TEST(test_bands)
+{
+    enum { ROWS = 2 * EXR_BAND_ROWS + 5 };
+    const int crop[4] = {2, 1, 2 + WIDTH, 1 + ROWS};
+    static float rgb[3 * WIDTH * ROWS], despeckled[3 * WIDTH * ROWS];
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALBEDO)};
+    const PictureSettings settings = {.scale = 4.0f, .despeckle = 1.5, .layers = &layers};
+    PictureMemory memory;
+    Picture picture;
+    Film film;
+    Error error;
+    unsigned state = 5;
+    ck_assert(film_init(&film, WIDTH + 9, ROWS + 9, crop, &error) &&
+              film_init_like(&layers.aovs[AOV_ALBEDO], &film, &error));
+    for (size_t i = 0; i < 3 * WIDTH * ROWS; ++i) {
+        film.sums[i] = 2 * (int64_t)(test_random_unit(&state) * 0x1p31);
+        layers.aovs[AOV_ALBEDO].sums[i] = film.sums[i] / 2;
+        film.counts[i / 3] = layers.aovs[AOV_ALBEDO].counts[i / 3] = (uint32_t)(i / 3 % 4);
+    }
+    film_resolve(&film, 4.0f, rgb);
+    despeckle(rgb, WIDTH, ROWS, 0, ROWS, 1.5f, despeckled);
+    ck_assert_uint_eq(film_empty_pixels(&film), (WIDTH * ROWS + 3) / 4);
+    ck_assert(picture_memory_init(&memory, &settings, WIDTH, ROWS, 5, &error));
+    picture_init(&picture, &settings, &film, &memory);
+    ck_assert_uint_eq(picture.group_count, 3);
+    for (int y = 0; y < ROWS; y += EXR_BAND_ROWS) {
+        int count = ROWS - y < EXR_BAND_ROWS ? ROWS - y : EXR_BAND_ROWS;
+        size_t bytes = 3 * WIDTH * (size_t)count * sizeof *rgb;
+        picture_band(&picture, y, count);
+        ck_assert_mem_eq(picture.channels[0].data, rgb + 3 * WIDTH * y, bytes);
+        ck_assert_mem_eq(picture.groups[2].values, despeckled + 3 * WIDTH * y, bytes);
+        for (int i = 0; i < 3 * WIDTH * count; ++i)
+            ck_assert(picture.groups[1].values[i] == rgb[3 * WIDTH * y + i] / 8.0f);
+    }
+    ck_assert_mem_eq(picture_row(&picture, ROWS - 1), rgb + 3 * WIDTH * (ROWS - 1), 3 * WIDTH * sizeof *rgb);
+    picture_memory_destroy(&memory);
+    film_destroy(&layers.aovs[AOV_ALBEDO]);
+    film_destroy(&film);
+}
+END_TEST
+
 START_TEST(test_unwritable)
 {
     float rgb[3 * WIDTH * HEIGHT] = {0};
@@ -216,6 +259,7 @@ TCase *film_output_tcase(void)
     tcase_add_test(tcase, test_exr_bytes_are_reproducible);
     tcase_add_test(tcase, test_exr_crop);
     tcase_add_test(tcase, test_exr_layers);
+    tcase_add_test(tcase, test_bands);
     tcase_add_test(tcase, test_unwritable);
     tcase_add_test(tcase, test_png);
     tcase_add_test(tcase, test_srgb_function);

@@ -52,7 +52,7 @@ START_TEST(test_despeckle)
     rgb[3 * corner] = 50.0f;
     rgb[3 * inner + 1] = 4.5f; /* luminance 3.5: just over three times as bright */
     rgb[3 * bright + 2] = 9.0f; /* luminance 1.7 */
-    despeckle(rgb, WIDTH, HEIGHT, 3.0f, out);
+    despeckle(rgb, WIDTH, HEIGHT, 0, HEIGHT, 3.0f, out);
     for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
         bool speck = i == corner || i == inner;
         ck_assert_int_eq(memcmp(rgb + 3 * i, out + 3 * i, 3 * sizeof *rgb) != 0, speck);
@@ -189,7 +189,7 @@ START_TEST(test_variance)
                                       .integrator = integrator_mmlt(),
                                       .layers = &layers},
                        &image);
-        render_layers_variance(&layers, 1.0f, variance);
+        render_layers_variance(&layers, 1.0f, 0, layers.own.pixels, variance);
         for (size_t i = 0; i < VALUES; ++i) {
             sum[i] += (double)image.rgb[i];
             square[i] += (double)image.rgb[i] * (double)image.rgb[i];
