@@ -134,13 +134,23 @@ for file in $files; do
 done
 echo "planted: $(echo "$numbers" | wc -l) faults in $(echo "$files" | wc -l) files"
 [ ! "$dry" ] || exit 0
-(cd "$top" && for folder in shared host backend_cpu backend_ocl tests scenes bench man docs m4 build-aux; do
-    [ ! -d $folder ] || cp -pR $folder "$source" || exit 1
-done && find . -maxdepth 1 -type f -exec cp -p {} "$source" \;) || exit 1
+# Later copies take what differs alone, with the time of now: what was built from older text is built again.
+(cd "$top" && {
+    for folder in shared host backend_cpu backend_ocl tests scenes bench man docs m4 build-aux; do
+        [ ! -d $folder ] || find $folder -type f
+    done
+    find . -maxdepth 1 -type f
+} | while read -r file; do
+    mkdir -p "$source/${file%/*}"
+    if [ ! -f "$source/$file" ]; then
+        cp -p "$file" "$source/$file"
+    elif [ ! -f "$planted/$file" ]; then
+        cmp -s "$file" "$source/$file" || cp "$file" "$source/$file"
+    fi || exit 1
+done) || exit 1
 rm -f "$source/config.status" # where the sources were built in place
-# With the times of their own, so that only what has changed is built again.
 for file in $files; do
-    cp -p "$planted/$file" "$source/$file" || exit 1
+    cmp -s "$planted/$file" "$source/$file" || cp "$planted/$file" "$source/$file" || exit 1
 done
 
 # Every unit reads the number, all but one of the variables go when they are linked.

@@ -224,9 +224,23 @@ START_TEST(test_bounds)
 }
 END_TEST
 
+/* Spots that shine nearly everywhere: also next to the edge, directions are unit vectors. */
+START_TEST(test_wide_spots)
+{
+    for (int k = 1; k < 20000; ++k)
+        for (int j = 1; j < 5; ++j) {
+            Light spot = {.kind = LIGHT_SPOT, .direction = {0.0f, 0.0f, 1.0f}, .cos_total = -1.0f};
+            spot.cos_falloff = -1.0f + (float)k * 0x1p-24f;
+            Vec3 w = spot_emit_direction(&spot, vec2(1.0f - (float)j * 0x1p-24f, 0.3f));
+            TEST_NEAR(vec3_length(w), 1.0, 1e-5);
+        }
+}
+END_TEST
+
 TCase *emit_direction_case(void)
 {
     TCase *tcase = tcase_create("other lights");
+    tcase_add_test(tcase, test_wide_spots);
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, test_directions, 0, DISTANT);
     tcase_add_loop_test(tcase, test_records, 0, LIGHT_CASES);

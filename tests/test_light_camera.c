@@ -239,6 +239,31 @@ START_TEST(test_reach)
 }
 END_TEST
 
+/* Far from the origin a camera sees a point where one at the origin sees the same point beside it: places and differences are whole
+ * numbers of floats here, so that nothing is rounded before it is turned. */
+START_TEST(test_far)
+{
+    CameraSettings settings = settings_placed(CAMERA_PERSPECTIVE, 90.0f);
+    const double place[3] = {0x1p20, -0x1p19, 0x1p20};
+    Camera cameras[2];
+    for (int far = 0; far < 2; ++far) {
+        for (int i = 0; i < 3; ++i)
+            settings.world_from_camera[4 * i + 3] = far ? place[i] : 0.0;
+        test_matrix_inverse(settings.world_from_camera, settings.camera_from_world);
+        cameras[far] = make_camera(&settings, 100, 100);
+    }
+    FrameParams near_frame = whole_film(&cameras[0], 100, 100), far_frame = whole_film(&cameras[1], 100, 100);
+    for (int i = 0; i < 1000; ++i) {
+        Vec3 p = vec3((float)(i % 10) - 4.0f, (float)(i / 10 % 10) - 5.0f, (float)(i / 100) + 1.0f);
+        Vec3 moved = vec3(p.x + (float)place[0], p.y + (float)place[1], p.z + (float)place[2]);
+        CameraConnection near_one, far_one;
+        bool seen = camera_connect(&near_frame, p, MIDDLE, &near_one);
+        ck_assert(camera_connect(&far_frame, moved, MIDDLE, &far_one) == seen);
+        TEST_TRUE(!seen || (near_one.film.x == far_one.film.x && near_one.film.y == far_one.film.y));
+    }
+}
+END_TEST
+
 static void assert_refused(CameraSettings settings, const char *word)
 {
     Camera camera;
@@ -282,6 +307,7 @@ TCase *camera_case(void)
     tcase_add_test(tcase, test_projection);
     tcase_add_test(tcase, test_outside_film);
     tcase_add_test(tcase, test_reach);
+    tcase_add_test(tcase, test_far);
     tcase_add_loop_test(tcase, test_matrices, 0, 6);
     tcase_add_test(tcase, test_bad_settings);
     return tcase;
