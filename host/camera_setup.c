@@ -63,9 +63,9 @@ static bool screen_window(const CameraSettings *settings, double film_aspect, do
 /* The power of two next to the length of a unit of camera space in the world. */
 static int unit_exponent(const double world_from_camera[16])
 {
-    const double *m = world_from_camera;
-    double determinant =
-        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+    Matrix matrix;
+    memcpy(matrix.m, world_from_camera, sizeof matrix.m);
+    double determinant = matrix_determinant(&matrix);
     return isnormal(determinant) ? ilogb(cbrt(fabs(determinant))) : 0;
 }
 
