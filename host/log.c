@@ -1,10 +1,11 @@
 #include "log.h"
 
-#include "progress.h"
-
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 static pthread_mutex_t log_mutex = PTHREAD_MUTEX_INITIALIZER;
 static LogLevel log_level = LOG_INFO;
@@ -14,6 +15,12 @@ static void (*log_sink)(const char *line, void *context);
 static void *log_sink_context;
 
 static const char *const LEVEL_NAMES[] = {"warning", "info"};
+
+bool stream_is_terminal(FILE *stream)
+{
+    const char *kind = getenv("TERM");
+    return isatty(fileno(stream)) == 1 && kind && kind[0] && strcmp(kind, "dumb") != 0;
+}
 
 void log_level_set(LogLevel level)
 {

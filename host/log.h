@@ -4,6 +4,9 @@
 
 #include "error.h"
 
+/* Whether the stream is a terminal that understands ANSI's escape codes: one with TERM=dumb, or without TERM, does not. */
+bool stream_is_terminal(FILE *stream);
+
 typedef enum LogLevel {
     LOG_WARNING, /* the picture may not be what the scene asks for */
     LOG_INFO /* something was understood in a way worth knowing */

@@ -1,21 +1,15 @@
 #include "progress.h"
 
+#include "log.h"
 #include "timing.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #define BAR_MIN 8
 #define BAR_MAX 40
-
-bool stream_is_terminal(FILE *stream)
-{
-    const char *kind = getenv("TERM");
-    return isatty(fileno(stream)) == 1 && kind && kind[0] && strcmp(kind, "dumb") != 0;
-}
 
 void progress_init(Progress *progress, FILE *stream, bool quiet)
 {

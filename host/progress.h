@@ -20,9 +20,6 @@ typedef struct Progress {
 /* Without a terminal, at most one line in this many seconds. */
 #define PROGRESS_PLAIN_SECONDS 10.0
 
-/* Whether the stream is a terminal that understands ANSI's escape codes: one with TERM=dumb, or without TERM, does not. */
-bool stream_is_terminal(FILE *stream);
-
 void progress_init(Progress *progress, FILE *stream, bool quiet);
 void progress_update(Progress *progress, const RenderProgress *now);
 
