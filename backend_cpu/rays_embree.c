@@ -246,7 +246,12 @@ static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *erro
     return true;
 }
 
-#define OUTER_WALK(rays, ray, any) hit_none((ray).t_max)
+static Hit outer_walk(const RaysEmbree *rays, const Ray *ray, bool any)
+{
+    (void)rays;
+    (void)any;
+    return hit_none(ray->t_max); /* no ray is an outer one */
+}
 
 #else
 
@@ -256,7 +261,10 @@ static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *erro
     return !(rays->reach < rays->view.frame->ray_reach) || bvh_build(scene, &rays->outer, error);
 }
 
-#define OUTER_WALK(rays, ray, any) bvh_walk(&(rays)->view, (rays)->outer.words, (ray), (any))
+static Hit outer_walk(const RaysEmbree *rays, const Ray *ray, bool any)
+{
+    return bvh_walk(&rays->view, rays->outer.words, *ray, any);
+}
 
 #endif
 
@@ -323,8 +331,7 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     return true;
 }
 
-/* What Embree takes to start; and then to build, for each of its threads and for each primitive. */
-#define EMBREE_BYTES ((size_t)128 << 20)
+/* What Embree takes to build, for each of its threads and for each primitive. */
 #define EMBREE_THREAD_BYTES ((size_t)8 << 20)
 #define EMBREE_PRIMITIVE_BYTES ((size_t)200)
 
@@ -363,10 +370,12 @@ static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads,
     if (!thread_probe(error))
         return false;
     rays->device = rtcNewDevice(config);
-    if (!rays->device && rtcGetDeviceError(NULL) == RTC_ERROR_OUT_OF_MEMORY)
-        return error_memory(error, EMBREE_BYTES, "Embree");
-    if (!rays->device)
-        return error_set(error, "Embree cannot be started (error %d)", (int)rtcGetDeviceError(NULL));
+    if (!rays->device) {
+        int code = (int)rtcGetDeviceError(NULL);
+        error_set(error, "Embree cannot be started (error %d%s)", code,
+                  code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "");
+        return error_fix(error, "use a machine with more memory, or raise the limit of address space: ulimit -v");
+    }
     if (!memory_probe(rays, threads, error))
         return false;
     rtcSetDeviceErrorFunction(rays->device, embree_error_callback, rays);
@@ -442,7 +451,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
     if (ray_is_outer(rays, ray))
-        return OUTER_WALK(rays, *ray, false);
+        return outer_walk(rays, ray, false);
     walk_begin(&walk, rays, ray);
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return walk.best;
@@ -455,7 +464,7 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
     if (ray_is_outer(rays, ray))
-        return OUTER_WALK(rays, *ray, true).primitive != NONE;
+        return outer_walk(rays, ray, true).primitive != NONE;
     if (rays->object_count == 0 || !rays->objects[0].scene || !ray_traceable(ray->o, ray->d))
         return false;
     walk_begin(&walk, rays, ray);
