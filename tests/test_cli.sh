@@ -466,8 +466,14 @@ limited() {
 if ! grep -q '^SANITIZE_CFLAGS = .*fsanitize' "$build/Makefile"; then
     limited 1 'ulimit -s 8192' -s 128
     limited 0 '' -Ss 128
+    # Where memory ends depends on the machine; that it does so with a message does not.
     for kilobytes in 185000 190000 195000 200000 210000; do
-        limited 1 'error: ' -v $kilobytes
+        # shellcheck disable=SC2016 # for bash to expand
+        bash -c 'ulimit -v $3 && exec "$1" render --spp=1 --resolution=16x16 --no-png -o limited.exr "$2"' \
+            bash "$program" "$scene" $kilobytes >out 2>err
+        status=$?
+        [ $status -eq 0 ] || { [ $status -eq 1 ] && grep -q 'error: ' err; }
+        result "$kilobytes KiB of address space: exit status $status, or no error" $?
     done
 fi
 
