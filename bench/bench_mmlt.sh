@@ -17,7 +17,7 @@ twinlight=$1
 shift
 
 backends=cpu
-if "$twinlight" devices --json | grep -q '"index": *0'; then
+if ! "$twinlight" devices --json | grep -q '"opencl": *\[\]'; then
     backends='cpu opencl'
 fi
 
