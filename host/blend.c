@@ -1,4 +1,5 @@
-#include "blend_learn.h"
+#include "blend.h"
+
 #include "film_sum.h"
 
 #include <math.h>
@@ -205,15 +206,17 @@ static void films_join(Blend *blend, Film *const films[])
     into->saturated += full;
 }
 
-bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error)
+bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], const atomic_int *stop,
+                      Error *error)
 {
     size_t pixels = film_pixels(films[BLEND_CHAINS]), values = pixels + blend_tile_count(blend);
     double *ratios = malloc(blend_tile_count(blend) * sizeof *ratios);
     float *picture = malloc(values * sizeof *picture);
     if (ratios && picture) {
-        blend_films_learn(blend, films, picture, picture + pixels);
+        blend_films_learn(blend, films, picture, picture + pixels, stop);
         films_join(teacher, films);
-        blend_spreads_update(blend, ratios);
+        if (!*stop)
+            blend_spreads_update(blend, ratios);
     } else {
         error_memory(error, values * sizeof *picture, "a generation's pictures");
     }

@@ -12,36 +12,7 @@
 #ifndef TWINLIGHT_BLEND_H
 #define TWINLIGHT_BLEND_H
 
-#include "film.h"
-#include "pixel_series.h"
-
-#define BLEND_TILE 8 /* pixels a side */
-
-typedef enum BlendStream { BLEND_CHAINS, BLEND_POOL, BLEND_PATHS, BLEND_STREAMS } BlendStream;
-
-/* Series of pictures more: what chains see that pools do not show, and that path tracing does not. */
-#define BLEND_EXCESS BLEND_STREAMS
-#define BLEND_RARE (BLEND_STREAMS + 1)
-#define BLEND_SERIES (BLEND_STREAMS + 2)
-
-typedef struct BlendTile {
-    double spread[BLEND_SERIES]; /* variance of one sample, summed over the pixels */
-    double direct; /* the same of direct light */
-    double light, indirect; /* sums of luminances */
-    double share[BLEND_STREAMS]; /* of the latest generation */
-} BlendTile;
-
-typedef struct Blend {
-    int size[2], tiles[2];
-    PixelSeries pixels[BLEND_SERIES], sums[BLEND_SERIES]; /* luminances of pixels, and summed over tiles */
-    PixelSeries direct; /* of pixels */
-    double *rarity; /* of a tile: by how much more rarely pools visit it than if they visited all alike */
-    double *gaps; /* of a tile: that less what a pool has visited of a pixel, where it is less, summed over pools */
-    BlendTile *known; /* a tile */
-    bool ready[BLEND_SERIES]; /* the stream's variances are there */
-    double share[BLEND_STREAMS]; /* of the latest generation, mean over the tiles */
-    int shown; /* 1 + the stream that has all of it in generations that have samples of it; 0: as is best */
-} Blend;
+#include "blend_learn.h"
 
 /* The work of so many samples of every stream, in samples of path tracing: with typical times of the CPU backend, not
  * those of the machine, so that the image does not depend on it. */
@@ -55,8 +26,9 @@ void blend_destroy(Blend *blend);
  * film of the paths has direct light in `sums`, that of the chains what pools do not show, and in rare_sums what path tracing
  * does not. Makes the film of the chains the blend of all, with that direct light, in the
  * shares that `teacher` has learnt, then teaches `blend` what they were. Both may be the same where generations know
- * nothing of each other. */
-bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], Error *error);
+ * nothing of each other. Once *stop is 1 nothing more is learnt: no generation follows. */
+bool blend_generation(Blend *blend, Blend *teacher, Film *const films[BLEND_STREAMS], const atomic_int *stop,
+                      Error *error);
 
 /* Relative square error of a tile's pixels from so many samples of every stream, direct light left out. Zeros before enough is
  * known. */

@@ -75,15 +75,18 @@ static void series_learn(Blend *blend, int s, const Film *film, const int64_t *s
         blend->gaps[i] += fmax(blend->rarity[i] - samples / (double)pixels, 0.0);
 }
 
-void blend_films_learn(Blend *blend, Film *const films[], float *picture, float *tiles)
+void blend_films_learn(Blend *blend, Film *const films[], float *picture, float *tiles, const atomic_int *stop)
 {
-    for (int s = 0; s < BLEND_STREAMS; ++s)
+    const Film *chains = films[BLEND_CHAINS], *paths = films[BLEND_PATHS];
+    for (int s = 0; s < BLEND_STREAMS && !*stop; ++s)
         if (films[s]->light_samples > 0)
             series_learn(blend, s, films[s], films[s]->light_sums, picture, tiles);
-    series_learn(blend, BLEND_EXCESS, films[BLEND_CHAINS], films[BLEND_CHAINS]->sums, picture, tiles);
-    series_learn(blend, BLEND_RARE, films[BLEND_CHAINS], films[BLEND_CHAINS]->rare_sums, picture, tiles);
-    if (films[BLEND_PATHS]->light_samples > 0)
-        series_learn(blend, BLEND_SERIES, films[BLEND_PATHS], films[BLEND_PATHS]->sums, picture, tiles);
+    if (!*stop)
+        series_learn(blend, BLEND_EXCESS, chains, chains->sums, picture, tiles);
+    if (!*stop)
+        series_learn(blend, BLEND_RARE, chains, chains->rare_sums, picture, tiles);
+    if (!*stop && paths->light_samples > 0)
+        series_learn(blend, BLEND_SERIES, paths, paths->sums, picture, tiles);
 }
 
 /* ---- variances ---------------------------------------------------------------------------------------------------- */

@@ -92,6 +92,16 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
+/* For the other half, whose turn it is. */
+static void plan_renew(Mmlt *mmlt, const Blend *blend)
+{
+    BlendPlan plan = blend_plan(blend);
+    if (plan.paths_per_step > 0.0) {
+        mmlt->paths_per_step = plan.paths_per_step;
+        mmlt->pool_per_step = fmax(plan.pool_per_step, POOL_PER_STEP);
+    }
+}
+
 /* What the generation showed, to the picture and the layers. */
 static bool generation_take(Mmlt *mmlt, Error *error)
 {
@@ -104,14 +114,12 @@ static bool generation_take(Mmlt *mmlt, Error *error)
             return false;
     } else {
         int half = mmlt_half(mmlt, mmlt->generation);
+        const atomic_int *stop = render_run_stop(mmlt->run);
         mmlt_visits_count(mmlt);
-        if (!blend_generation(&mmlt->blends[half], &mmlt->blends[1 - half], streams, error))
+        if (!blend_generation(&mmlt->blends[half], &mmlt->blends[1 - half], streams, stop, error))
             return false;
-        BlendPlan plan = blend_plan(&mmlt->blends[half]); /* for the other half, whose turn it is */
-        if (plan.paths_per_step > 0.0) {
-            mmlt->paths_per_step = plan.paths_per_step;
-            mmlt->pool_per_step = fmax(plan.pool_per_step, POOL_PER_STEP);
-        }
+        if (!*stop)
+            plan_renew(mmlt, &mmlt->blends[half]);
     }
     return film_merge(mmlt->run->film, &mmlt->film, error) &&
            (!layers || render_layers_add(layers, &mmlt->film, mmlt->generation % 2, error));

@@ -10,6 +10,8 @@
 #define SIDE 32
 #define PIXELS ((size_t)SIDE * SIDE)
 
+static const atomic_int never = 0; /* a stop */
+
 typedef struct Streams {
     Film films[BLEND_STREAMS];
     Blend blend;
@@ -61,7 +63,7 @@ static double generation(Streams *streams)
     Film *const films[BLEND_STREAMS] = {&streams->films[0], &streams->films[1], &streams->films[2]};
     Error error = {0};
     double sum = 0.0;
-    ck_assert(blend_generation(&streams->blend, &streams->blend, films, &error));
+    ck_assert(blend_generation(&streams->blend, &streams->blend, films, &never, &error));
     for (size_t i = 0; i < 3 * PIXELS; ++i)
         sum += (double)films[BLEND_CHAINS]->light_sums[i];
     return sum * 0x1p-30 / 3.0 / (double)films[BLEND_CHAINS]->light_samples;

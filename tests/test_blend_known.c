@@ -12,6 +12,8 @@
 #define PIXELS ((size_t)WIDTH * HEIGHT)
 #define ROUNDS 40
 
+static const atomic_int never = 0; /* a stop */
+
 /* The part that pools have of the time of pools and chains together where both are all that counts (test_plan in test_blend.c). */
 #define POOL_PART 0.45
 
@@ -128,7 +130,7 @@ START_TEST(test_shares_known)
     }
     if (_i == 2)
         others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
-    ck_assert(blend_generation(&pupil.blend, &teacher.blend, films, &error));
+    ck_assert(blend_generation(&pupil.blend, &teacher.blend, films, &never, &error));
     double work = (double)pupil.film.light_samples / PIXELS;
     TEST_NEAR(work * PIXELS, blend_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
