@@ -8,7 +8,7 @@
  *   one program differ by, which the same seed takes away. */
 #include "bench_util.h"
 
-#include "image.h"
+#include "image_read.h"
 #include "metrics.h"
 #include "student.h"
 

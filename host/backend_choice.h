@@ -3,7 +3,7 @@
 #define TWINLIGHT_BACKEND_CHOICE_H
 
 #include "backend_group.h"
-#include "command.h"
+#include "backend_table.h"
 
 typedef struct BackendChoice {
     const BackendInterface *interface;

@@ -2,7 +2,9 @@
 #ifndef TWINLIGHT_BENCH_OPTIONS_H
 #define TWINLIGHT_BENCH_OPTIONS_H
 
+#include "backend_table.h"
 #include "bench.h"
+#include "options.h"
 
 /* Strings are borrowed from argv. */
 OptionsEnd bench_options_parse(BenchOptions *options, const BackendTable *backends, int argc, char **argv,

@@ -3,10 +3,8 @@
 #define TWINLIGHT_CHAIN_SEEDS_H
 
 #include "error.h"
+#include "render_job.h"
 #include "platform.h"
-
-/* How chains lie in memory: by depth and strategy, by depth, or as they were drawn. */
-typedef enum ChainOrder { CHAIN_ORDER_STRATEGY, CHAIN_ORDER_DEPTH, CHAIN_ORDER_NONE } ChainOrder;
 
 /* Chooses `count` of the `candidates` paths by systematic resampling over the sum of all weights: one of weight w is
  * taken floor or ceil of count w / sum times, count w / sum on average over offset, uniform in [0, 1). keys: chain_key of

@@ -2,6 +2,7 @@
 
 #include "pixel_order.h"
 #include "state.h"
+#include "step_recorder.h"
 #include "vec.h"
 
 #include <math.h>

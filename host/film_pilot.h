@@ -2,7 +2,9 @@
 #ifndef TWINLIGHT_FILM_PILOT_H
 #define TWINLIGHT_FILM_PILOT_H
 
+#include "integrator.h"
 #include "render_run.h"
+#include "scene.h"
 
 /* The number of the pilot's samples, which no image reaches. */
 #define PILOT_SAMPLE 0xffff0000u

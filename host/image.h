@@ -1,11 +1,11 @@
-/* Pictures read from files: PNG (8 and 16 bit), JPEG, TGA and Radiance HDR by stb_image, OpenEXR by OpenEXRCore, PFM by
- * hand. */
+/* A picture in memory, and what decoders of files make it with. */
 #ifndef TWINLIGHT_IMAGE_H
 #define TWINLIGHT_IMAGE_H
 
 #include "error.h"
 
 #include <stddef.h>
+#include <stdio.h>
 
 /* No file with more pixels than this, or a side longer than this, is read. Fuzzers are built with fewer, to be fast. */
 #ifndef IMAGE_PIXELS_MAX
@@ -21,16 +21,7 @@ typedef struct Image {
     void *data;
 } Image;
 
-/* Reads `path`; the kind of file is told by its content, TGA (which has no signature) by its ending. Of an EXR the
- * first part's data window and the channels R G B [A] or Y (or the only channel) are read. As in pbrt, the alpha of
- * TGA and of grey pictures is dropped. Fails, naming the path, for what cannot be opened, is damaged, truncated, too large
- * or of another kind. */
-bool image_read(const char *path, Image *image, Error *error);
 void image_destroy(Image *image);
-
-/* Reads the channels LAYER.R, LAYER.G and LAYER.B of an EXR, layers as `twinlight render` writes them (render_layers.h).
- * *found: whether it has them; false, with an empty image, for every other kind of file. */
-bool image_read_layer(const char *path, const char *layer, Image *image, bool *found, Error *error);
 
 /* Element i of the data (pixel * channels + channel) as stored: byte / 255, or the float. */
 float image_value(const Image *image, size_t i);
@@ -39,8 +30,21 @@ float image_value(const Image *image, size_t i);
  * sRGB decoded. */
 bool image_linear_rgb(const Image *image, float **rgb, Error *error);
 
-/* Both at once: the file's pixels as linear RGB, *width x *height x 3, in a new array that the caller frees. On failure
- * *rgb is NULL. */
-bool image_read_rgb(const char *path, float **rgb, int *width, int *height, Error *error);
+/* ---- for decoders ------------------------------------------------------------------------------------------------- */
+
+/* "cannot read PATH: WHY" */
+bool image_error(Error *error, const char *path, const char *why);
+
+/* A picture's size as its file says it. `density`: pixels that a byte of such a file can hold at most, so that a short
+ * one that announces much is refused before memory is taken. */
+typedef struct ImageSize {
+    long long width, height, density;
+} ImageSize;
+
+/* Fails when a picture of this size is empty, beyond IMAGE_PIXELS_MAX or more than the file can hold. */
+bool image_size_check(FILE *file, const char *path, ImageSize size, Error *error);
+
+/* Sets the members and allocates zeroed float data after image_size_check. */
+bool image_allocate_float(FILE *file, const char *path, ImageSize size, int channels, Image *image, Error *error);
 
 #endif

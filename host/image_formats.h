@@ -16,19 +16,4 @@ bool image_read_exr_dwa(const char *path, Image *image, Error *error);
 bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error);
 bool image_read_stb(FILE *file, const char *path, StbKind kind, bool sixteen_bits, Image *image, Error *error);
 
-/* "cannot read PATH: WHY" */
-bool image_error(Error *error, const char *path, const char *why);
-
-/* A picture's size as its file says it. `density`: pixels that a byte of such a file can hold at most, so that a short
- * one that announces much is refused before memory is taken. */
-typedef struct ImageSize {
-    long long width, height, density;
-} ImageSize;
-
-/* Fails when a picture of this size is empty, beyond IMAGE_PIXELS_MAX or more than the file can hold. */
-bool image_size_check(FILE *file, const char *path, ImageSize size, Error *error);
-
-/* Sets the members and allocates zeroed float data after image_size_check. */
-bool image_allocate_float(FILE *file, const char *path, ImageSize size, int channels, Image *image, Error *error);
-
 #endif

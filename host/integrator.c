@@ -1,14 +1,7 @@
 #include "integrator.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-void step_list_destroy(StepList *list)
-{
-    free((void *)(uintptr_t)list->steps);
-    *list = (StepList){0};
-}
 
 const Integrator *integrator_find(const char *name, Error *error)
 {

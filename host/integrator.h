@@ -19,8 +19,6 @@ typedef struct Integrator {
     bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 
-void step_list_destroy(StepList *list);
-
 const Integrator *integrator_pt(void);
 const Integrator *integrator_ibpt(void);
 const Integrator *integrator_bdpt(void);

@@ -9,6 +9,7 @@
 
 #include "bd_fields.h"
 #include "render_layers.h"
+#include "step_recorder.h"
 #include "timing.h"
 
 #include <math.h>
@@ -105,7 +106,7 @@ static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
     while (mmlt->work_done < total) {
         double begin = timing_now();
         if (!mmlt_generation_run(mmlt, chains, error) ||
-            !render_run_aov(run, mmlt->paths_done * run->crop_pixels, error))
+            !render_layers_sample(run, mmlt->paths_done * run->crop_pixels, error))
             return false;
         double now = timing_now();
         render_run_report(run, options->samples > 0 ? (double)mmlt->work_done / (double)total : 0.0);

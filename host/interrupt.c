@@ -1,6 +1,6 @@
 #include "interrupt.h"
 
-#include "command.h"
+#include "exit_status.h"
 #include "temporary_file.h"
 
 #include <errno.h>

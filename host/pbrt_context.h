@@ -5,8 +5,9 @@
 #include "box.h"
 #include "matrix.h"
 #include "name_table.h"
-#include "pbrt_import.h"
+#include "pbrt_import_options.h"
 #include "pbrt_params.h"
+#include "scene.h"
 #include "texture_image.h"
 
 #include <sys/types.h>
@@ -155,50 +156,8 @@ typedef struct PbrtImport {
     float shutter_open, shutter_close;
 } PbrtImport;
 
-/* What is not supported: an error that says what, or with --lenient a counted warning that states the substitute.
- * Returns whether to go on. `fix` may be NULL. */
-bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix);
-
-/* "error: unknown KIND "name"" with the nearest of `known` or all of them as the fix. Returns false. */
-bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
-                    size_t count);
-
-/* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
-bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
-
-/* A transform to the world of the file becomes one to that of the scene, which lies elsewhere by im->offset. */
-void import_matrix_move(const PbrtImport *im, Matrix *matrix);
-
-/* The inverse of a transform. A singular one is an error, and one that does not fit a float. */
-bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
-
-/* The transform to the scene's world and its inverse. Of the camera, before WorldBegin, nothing is moved. */
-bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
-
 /* A file name of the scene as a path: as it is when absolute, else inside the scene's directory. NULL on no memory. */
 const char *import_path(PbrtImport *im, const char *name);
-
-/* Directives that take a name and parameters; the parameters are in im->params. */
-bool import_shape(PbrtImport *im, const char *kind);
-bool import_texture(PbrtImport *im, const char *name, SourcePlace name_place, const char *type, const char *kind);
-bool import_material(PbrtImport *im, const char *kind);
-bool import_named_material(PbrtImport *im, const char *name, SourcePlace name_place);
-bool import_light(PbrtImport *im, const char *kind);
-bool import_camera(PbrtImport *im, const char *kind);
-bool import_film(PbrtImport *im, const char *kind);
-bool import_filter(PbrtImport *im, const char *kind);
-bool import_integrator(PbrtImport *im, const char *kind);
-bool import_sampler(PbrtImport *im, const char *kind);
-bool import_accelerator(PbrtImport *im, const char *kind);
-bool import_option(PbrtImport *im, const char *name, const Token *value);
-
-/* Objects and instances. */
-bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_place);
-bool import_object_end(PbrtImport *im);
-bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_place);
-
-/* At WorldBegin: what depends on several directives before it. */
-bool import_settings_finish(PbrtImport *im);
 
 /* The list of the current directive: its parameters, then the attributes of `target` (-1: none). */
 void import_list(PbrtImport *im, ParamList *list, const char *owner, int target);

@@ -3,6 +3,7 @@
 #include "log.h"
 #include "pbrt_errors.h"
 #include "pbrt_parser.h"
+#include "pbrt_readers.h"
 #include "pbrt_state.h"
 
 #include <string.h>

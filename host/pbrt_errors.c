@@ -1,9 +1,40 @@
 #include "pbrt_errors.h"
 
 #include "log.h"
+#include "name_table.h"
+#include "scene_format.h"
 
 #include <stdio.h>
 #include <string.h>
+
+bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix)
+{
+    if (im->options.lenient) {
+        ++im->scene->counts.substitutions;
+        log_message_at(LOG_WARNING, place, "%s is not supported; instead: %s", what, substitute);
+        return true;
+    }
+    error_at(im->error, place, "%s is not supported", what);
+    if (fix)
+        return error_fix(im->error, "%s; or use --lenient (%s)", fix, substitute);
+    return error_fix(im->error, "use --lenient (%s)", substitute);
+}
+
+bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
+                    size_t count)
+{
+    const char *nearest = name_nearest(name, known, count);
+    char list[400] = "";
+    size_t used = 0;
+    error_at(im->error, place, "unknown %s \"%s\"", kind, name);
+    if (scene_format_is_v3(kind, name))
+        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade, which is pbrt-v4's");
+    if (nearest)
+        return error_fix(im->error, "did you mean \"%s\"?", nearest);
+    for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", known[i]);
+    return error_fix(im->error, "use %s", list);
+}
 
 void errors_missing(PbrtImport *im)
 {

@@ -2,6 +2,8 @@
 #include "film.h"
 #include "filter_setup.h"
 #include "log.h"
+#include "pbrt_errors.h"
+#include "pbrt_readers.h"
 #include "pbrt_state.h"
 
 #include <math.h>

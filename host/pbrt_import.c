@@ -2,7 +2,6 @@
 
 #include "file_read.h"
 #include "log.h"
-#include "pbrt_context.h"
 #include "pbrt_directives.h"
 #include "pbrt_errors.h"
 #include "pbrt_parser.h"
@@ -14,92 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix)
-{
-    if (im->options.lenient) {
-        ++im->scene->counts.substitutions;
-        log_message_at(LOG_WARNING, place, "%s is not supported; instead: %s", what, substitute);
-        return true;
-    }
-    error_at(im->error, place, "%s is not supported", what);
-    if (fix)
-        return error_fix(im->error, "%s; or use --lenient (%s)", fix, substitute);
-    return error_fix(im->error, "use --lenient (%s)", substitute);
-}
-
-bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
-                    size_t count)
-{
-    const char *nearest = name_nearest(name, known, count);
-    char list[400] = "";
-    size_t used = 0;
-    error_at(im->error, place, "unknown %s \"%s\"", kind, name);
-    if (scene_format_is_v3(kind, name))
-        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade, which is pbrt-v4's");
-    if (nearest)
-        return error_fix(im->error, "did you mean \"%s\"?", nearest);
-    for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", known[i]);
-    return error_fix(im->error, "use %s", list);
-}
-
-bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
-{
-    *ctm = im->state.ctm[0];
-    if (matrix_equal(&im->state.ctm[0], &im->state.ctm[1]))
-        return true;
-    return import_unsupported(im, place, "motion (a transform that differs between StartTime and EndTime)",
-                              "everything stays where it is at StartTime", NULL);
-}
-
-void import_matrix_move(const PbrtImport *im, Matrix *matrix)
-{
-    matrix->m[3] -= (double)im->offset.x;
-    matrix->m[7] -= (double)im->offset.y;
-    matrix->m[11] -= (double)im->offset.z;
-}
-
-bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse)
-{
-    if (!matrix_inverse(matrix, inverse)) {
-        error_at(im->error, place, "the current transform cannot be inverted");
-        return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
-    }
-    if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
-        return true;
-    error_at(im->error, place, "the current transform or its inverse is beyond the range of a float");
-    return error_fix(im->error, "look for a Scale or Transform with huge or tiny numbers");
-}
-
-bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
-{
-    if (!import_ctm(im, place, ctm))
-        return false;
-    if (im->in_world)
-        import_matrix_move(im, ctm);
-    return import_inverse(im, place, ctm, inverse);
-}
-
-const char *import_path(PbrtImport *im, const char *name)
-{
-    size_t directory = strlen(im->directory), length = strlen(name);
-    if (name[0] == '/' || directory == 0)
-        return arena_text(&im->arena, name, length, im->error);
-    char *path = arena_alloc(&im->arena, directory + length + 2, im->error);
-    if (path)
-        snprintf(path, directory + length + 2, "%s%s%s", im->directory, im->directory[directory - 1] == '/' ? "" : "/",
-                 name);
-    return path;
-}
-
-void import_list(PbrtImport *im, ParamList *list, const char *owner, int target)
-{
-    param_list_init(list, owner, im->place, im->error);
-    param_list_add_buffer(list, &im->params);
-    if (target >= 0)
-        param_list_add_set(list, im->state.attributes[target], true);
-}
 
 static void import_init(PbrtImport *im, const ImportOptions *options, Scene *scene, Error *error)
 {

@@ -2,12 +2,8 @@
 #ifndef TWINLIGHT_PBRT_IMPORT_H
 #define TWINLIGHT_PBRT_IMPORT_H
 
+#include "pbrt_import_options.h"
 #include "scene.h"
-
-typedef struct ImportOptions {
-    bool lenient; /* what is not supported is replaced, with a warning that says by what, instead of refused */
-    bool all_errors; /* goes on behind errors, up to IMPORT_ERRORS_MAX, and prints all but the last */
-} ImportOptions;
 
 /* Reads the file `path`; names in it are relative to its folder. `scene` must come from scene_init; scene_finish is
  * left to the caller. On an error `scene` holds some part of the file and is good for scene_destroy only; the message

@@ -3,6 +3,9 @@
  * brought to luminance 1 before "scale", "power" or "illuminance" apply. */
 #include "light_setup.h"
 #include "log.h"
+#include "pbrt_errors.h"
+#include "pbrt_readers.h"
+#include "pbrt_state.h"
 #include "pbrt_values.h"
 #include "warp.h"
 

@@ -1,6 +1,7 @@
 /* Material, MakeNamedMaterial, and the material in force for a shape. */
 #include "log.h"
 #include "pbrt_errors.h"
+#include "pbrt_readers.h"
 #include "pbrt_values.h"
 
 #include <stdio.h>

@@ -1,6 +1,7 @@
 #include "pbrt_mesh.h"
 
 #include "log.h"
+#include "pbrt_errors.h"
 #include "ply.h"
 
 #include <stdio.h>

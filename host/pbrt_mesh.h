@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_PBRT_MESH_H
 #define TWINLIGHT_PBRT_MESH_H
 
-#include "pbrt_shapes.h"
+#include "pbrt_shape_add.h"
 
 /* Reads the mesh's parameters from `list`, finishes the list and adds the mesh. */
 bool mesh_read(PbrtImport *im, const char *kind, ParamList *list, const ShapeContext *context);

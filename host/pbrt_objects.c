@@ -1,6 +1,7 @@
 /* ObjectBegin, ObjectEnd and ObjectInstance. */
-#include "pbrt_shapes.h"
 #include "pbrt_errors.h"
+#include "pbrt_readers.h"
+#include "pbrt_shape_add.h"
 #include "pbrt_state.h"
 
 #include <string.h>

@@ -2,6 +2,8 @@
  * does not use. */
 #include "log.h"
 #include "pbrt_context.h"
+#include "pbrt_errors.h"
+#include "pbrt_readers.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -135,3 +135,42 @@ bool state_area_light(PbrtImport *im, const char *kind)
     im->state.area_light = light;
     return true;
 }
+
+/* ---- the current transform --------------------------------------------------------------------------------------- */
+
+bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
+{
+    *ctm = im->state.ctm[0];
+    if (matrix_equal(&im->state.ctm[0], &im->state.ctm[1]))
+        return true;
+    return import_unsupported(im, place, "motion (a transform that differs between StartTime and EndTime)",
+                              "everything stays where it is at StartTime", NULL);
+}
+
+void import_matrix_move(const PbrtImport *im, Matrix *matrix)
+{
+    matrix->m[3] -= (double)im->offset.x;
+    matrix->m[7] -= (double)im->offset.y;
+    matrix->m[11] -= (double)im->offset.z;
+}
+
+bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse)
+{
+    if (!matrix_inverse(matrix, inverse)) {
+        error_at(im->error, place, "the current transform cannot be inverted");
+        return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+    }
+    if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
+        return true;
+    error_at(im->error, place, "the current transform or its inverse is beyond the range of a float");
+    return error_fix(im->error, "look for a Scale or Transform with huge or tiny numbers");
+}
+
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
+{
+    if (!import_ctm(im, place, ctm))
+        return false;
+    if (im->in_world)
+        import_matrix_move(im, ctm);
+    return import_inverse(im, place, ctm, inverse);
+}

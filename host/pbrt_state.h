@@ -27,4 +27,16 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
 /* AreaLightSource "kind" and the parameters in im->params. */
 bool state_area_light(PbrtImport *im, const char *kind);
 
+/* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
+bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
+
+/* A transform to the world of the file becomes one to that of the scene, which lies elsewhere by im->offset. */
+void import_matrix_move(const PbrtImport *im, Matrix *matrix);
+
+/* The inverse of a transform. A singular one is an error, and one that does not fit a float. */
+bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
+
+/* The transform to the scene's world and its inverse. Of the camera, before WorldBegin, nothing is moved. */
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
+
 #endif

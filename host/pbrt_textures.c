@@ -1,6 +1,9 @@
 /* Texture directives: expressions become postfix programs, constants are folded. */
 #include "log.h"
 #include "path_name.h"
+#include "pbrt_errors.h"
+#include "pbrt_readers.h"
+#include "pbrt_state.h"
 #include "pbrt_values.h"
 
 #include <stdio.h>

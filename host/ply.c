@@ -1,7 +1,8 @@
-#include "ply_internal.h"
+#include "ply.h"
 
 #include "array.h"
 #include "file_read.h"
+#include "ply_header.h"
 #include "text_number.h"
 
 #include <stdlib.h>

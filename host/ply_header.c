@@ -1,6 +1,7 @@
-#include "ply_internal.h"
+#include "ply_header.h"
 
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 

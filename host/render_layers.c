@@ -2,10 +2,12 @@
 
 #include "kernel_list.h"
 #include "path_state.h"
-#include "render_run.h"
 #include "step_recorder.h"
 
 #include <stdlib.h>
+
+/* Samples of a pixel's AOVs at most. */
+#define AOV_SAMPLES 16u
 
 static bool wants(const RenderLayers *layers, Layer layer)
 {
@@ -115,15 +117,18 @@ static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const
     return run->interface->run(run->backend, &frame, list, &sink, render_run_stop(run), NULL, error);
 }
 
-bool render_layers_aov(RenderLayers *layers, RenderRun *run, unsigned samples, Error *error)
+bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
 {
+    RenderLayers *layers = run->options->layers;
+    uint64_t wanted = samples / run->crop_pixels;
     StepList list;
-    if (layers->aov_samples >= samples || (layers->wanted & LAYERS_AOV) == 0)
+    wanted = wanted < AOV_SAMPLES ? wanted : AOV_SAMPLES;
+    if (!layers || layers->aov_samples >= wanted || (layers->wanted & LAYERS_AOV) == 0)
         return true;
     if (!aov_list(&list, error))
         return false;
     bool done = true;
-    for (; done && layers->aov_samples < samples; ++layers->aov_samples)
+    for (; done && layers->aov_samples < wanted; ++layers->aov_samples)
         for (uint aov = 0; done && aov < AOV_COUNT; ++aov)
             done = !wants(layers, layer_of(aov)) ||
                    aov_run(&layers->aovs[aov], run, aov, layers->aov_samples, &list, error);

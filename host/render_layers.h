@@ -4,6 +4,7 @@
 
 #include "film.h"
 #include "pixel_series.h"
+#include "render_run.h"
 #include "scene_types.h"
 
 typedef enum Layer {
@@ -41,9 +42,8 @@ bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Er
 /* rgb[3 x count] = the estimated variance of scale x the picture, in pixels first ... first + count - 1. */
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
-struct RenderRun;
-
-/* Takes the variables' samples up to `samples` of every pixel. */
-bool render_layers_aov(RenderLayers *layers, struct RenderRun *run, unsigned samples, Error *error);
+/* Takes samples of the AOVs that the run's layers want, if it has any: as many of a pixel as it has of light when all have
+ * `samples` together, at most 16, for AOVs are nearly free of noise. */
+bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error);
 
 #endif

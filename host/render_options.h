@@ -3,6 +3,7 @@
 #define TWINLIGHT_RENDER_OPTIONS_H
 
 #include "backend_choice.h"
+#include "options.h"
 #include "render_layers.h"
 #include "render.h"
 

@@ -2,7 +2,9 @@
 #ifndef TWINLIGHT_RENDER_RUN_H
 #define TWINLIGHT_RENDER_RUN_H
 
-#include "render.h"
+#include "backend.h"
+#include "chain_statistics.h"
+#include "render_job.h"
 
 typedef struct RenderRun {
     const BackendInterface *interface;
@@ -26,13 +28,6 @@ SplatSink render_run_sink(Film *film);
 
 /* Calls `progress`. fraction: of the samples wanted; 0 where their number is not limited. */
 void render_run_report(const RenderRun *run, double fraction);
-
-/* Samples of a pixel's variables; those are nearly free of noise. */
-#define AOV_SAMPLES 16u
-
-/* Takes samples of the variables that are wanted (render_layers.h): as many of a pixel as it has of light, when all have
- * `samples` together, at most AOV_SAMPLES. */
-bool render_run_aov(RenderRun *run, uint64_t samples, Error *error);
 
 /* Calls `save` when it is due. When that fails there is a warning, and it is tried again when the next one is due. */
 void render_run_save_if_due(RenderRun *run);

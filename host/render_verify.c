@@ -3,6 +3,7 @@
 #include "film.h"
 #include "log.h"
 #include "mmlt.h"
+#include "step_recorder.h"
 #include "verify.h"
 
 #include <limits.h>

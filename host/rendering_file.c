@@ -1,7 +1,7 @@
 #include "rendering_file.h"
 
 #include "exr.h"
-#include "image.h"
+#include "image_read.h"
 
 #include <stdlib.h>
 

@@ -7,6 +7,7 @@ libtwinlight_host_la_SOURCES = \
 	host/bad_chains.c host/bad_chains.h \
 	host/backend_choice.c host/backend_choice.h \
 	host/backend_group.c host/backend_group.h \
+	host/backend_table.h \
 	host/bench.h \
 	host/bench_analysis.c host/bench_analysis.h \
 	host/bench_chains.c \
@@ -49,6 +50,7 @@ libtwinlight_host_la_SOURCES = \
 	host/distribution_build.c host/distribution_build.h \
 	host/error.c host/error.h \
 	host/error_image.c host/error_image.h \
+	host/exit_status.h \
 	host/exr.c host/exr.h \
 	host/file_read.c host/file_read.h \
 	host/film.c host/film.h \
@@ -64,6 +66,7 @@ libtwinlight_host_la_SOURCES = \
 	host/image_exr_dwa.c \
 	host/image_formats.h \
 	host/image_pfm.c \
+	host/image_read.c host/image_read.h \
 	host/image_stb.c \
 	host/instance_bounds.h \
 	host/integrator.c host/integrator.h \
@@ -88,11 +91,12 @@ libtwinlight_host_la_SOURCES = \
 	host/output_check.c host/output_check.h \
 	host/output_file.c host/output_file.h \
 	host/path_name.c host/path_name.h \
-	host/pbrt_context.h \
+	host/pbrt_context.c host/pbrt_context.h \
 	host/pbrt_directives.c host/pbrt_directives.h \
 	host/pbrt_errors.c host/pbrt_errors.h \
 	host/pbrt_film_camera.c \
 	host/pbrt_import.c host/pbrt_import.h \
+	host/pbrt_import_options.h \
 	host/pbrt_lexer.c host/pbrt_lexer.h \
 	host/pbrt_lights.c \
 	host/pbrt_materials.c \
@@ -102,7 +106,9 @@ libtwinlight_host_la_SOURCES = \
 	host/pbrt_param_list.c \
 	host/pbrt_params.c host/pbrt_params.h \
 	host/pbrt_parser.c host/pbrt_parser.h \
-	host/pbrt_shapes.c host/pbrt_shapes.h \
+	host/pbrt_readers.h \
+	host/pbrt_shape_add.c host/pbrt_shape_add.h \
+	host/pbrt_shapes.c \
 	host/pbrt_state.c host/pbrt_state.h \
 	host/pbrt_textures.c \
 	host/pbrt_values.c host/pbrt_values.h \
@@ -111,14 +117,14 @@ libtwinlight_host_la_SOURCES = \
 	host/pixel_series.c host/pixel_series.h \
 	host/plane_filter.c host/plane_filter.h \
 	host/ply.c host/ply.h \
-	host/ply_header.c \
-	host/ply_internal.h \
+	host/ply_header.c host/ply_header.h \
 	host/png_write.c host/png_write.h \
 	host/progress.c host/progress.h \
 	host/ray_reach.c host/ray_reach.h \
 	host/render.c host/render.h \
+	host/render_job.h \
 	host/render_layers.c host/render_layers.h \
-	host/render_run.h \
+	host/render_run.c host/render_run.h \
 	host/render_options.c host/render_options.h \
 	host/render_output.c host/render_output.h \
 	host/render_report.c host/render_report.h \

@@ -59,3 +59,9 @@ StepList recorder_list(const Recorder *recorder, uint path_words, const StateFie
     list.words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
     return list;
 }
+
+void step_list_destroy(StepList *list)
+{
+    free((void *)(uintptr_t)list->steps);
+    *list = (StepList){0};
+}

@@ -24,4 +24,6 @@ void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned e
  * splats. What else an integrator keeps it adds to words_per_item. */
 StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count);
 
+void step_list_destroy(StepList *list);
+
 #endif

@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_TEXTURE_IMAGE_H
 #define TWINLIGHT_TEXTURE_IMAGE_H
 
-#include "image.h"
+#include "image_read.h"
 #include "scene.h"
 
 /* How the numbers of an 8- or 16-bit file become linear. Float files (EXR, HDR, PFM) are linear. */

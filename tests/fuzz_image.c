@@ -1,7 +1,7 @@
 /* The image readers against arbitrary bytes, and what a scene makes of what they read. */
 #include "fuzz.h"
 
-#include "image.h"
+#include "image_read.h"
 #include "log.h"
 #include "texture_image.h"
 

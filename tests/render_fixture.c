@@ -1,7 +1,7 @@
 #include "render_fixture.h"
 
 #include "backend_cpu.h"
-#include "image.h"
+#include "image_read.h"
 #include "pbrt_import.h"
 
 #include <check.h>

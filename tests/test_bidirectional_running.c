@@ -2,6 +2,8 @@
  * numbers make the same paths, so pictures may differ by rounding alone. */
 #include "bidirectional.h"
 
+#include "step_recorder.h"
+
 static void picture(const BidirectionalScene *scene, const Integrator *integrator, bool balance, RenderedImage *image)
 {
     RenderSetup setup = {.text = bidirectional_text(scene),

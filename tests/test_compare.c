@@ -5,7 +5,7 @@
 #include "display_error.h"
 #include "error_image.h"
 #include "exr.h"
-#include "image.h"
+#include "image_read.h"
 #include "rendering_file.h"
 #include "student.h"
 #include "z_test.h"

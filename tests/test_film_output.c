@@ -5,7 +5,7 @@
 #include "color.h"
 #include "despeckle.h"
 #include "exr.h"
-#include "image.h"
+#include "image_read.h"
 #include "picture.h"
 #include "platform.h"
 #include "png_write.h"

@@ -2,7 +2,7 @@
 #include "test_util.h"
 
 #include "error_image.h"
-#include "image.h"
+#include "image_read.h"
 #include "metrics.h"
 
 #define TOLERANCE 1e-12

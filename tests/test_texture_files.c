@@ -3,7 +3,7 @@
 #include "test_util.h"
 
 #include "exr.h"
-#include "image.h"
+#include "image_read.h"
 
 #include <ImfCRgbaFile.h>
 #include <openexr.h>

@@ -3,6 +3,7 @@
 #include "verify_fixture.h"
 
 #include "backend_cpu.h"
+#include "step_recorder.h"
 #include "kernel_list.h"
 #include "path_state.h"
 

@@ -1,6 +1,7 @@
 #include "verify_fixture.h"
 
 #include "backend_cpu.h"
+#include "step_recorder.h"
 #include "test_util.h"
 
 /* ---- pairs ------------------------------------------------------------------------------------------------------- */

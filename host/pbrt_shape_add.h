@@ -1,6 +1,6 @@
 /* Shapes on their way into the scene. */
-#ifndef TWINLIGHT_PBRT_SHAPES_H
-#define TWINLIGHT_PBRT_SHAPES_H
+#ifndef TWINLIGHT_PBRT_SHAPE_ADD_H
+#define TWINLIGHT_PBRT_SHAPE_ADD_H
 
 #include "pbrt_context.h"
 

@@ -1,8 +1,10 @@
-/* Between the reader of a PLY file's header and that of its body. */
-#ifndef TWINLIGHT_PLY_INTERNAL_H
-#define TWINLIGHT_PLY_INTERNAL_H
+/* The header of a PLY file: which elements its body has, and what their properties are for. */
+#ifndef TWINLIGHT_PLY_HEADER_H
+#define TWINLIGHT_PLY_HEADER_H
 
-#include "ply.h"
+#include "error.h"
+
+#include <stddef.h>
 
 typedef enum PlyType {
     PLY_NONE,
