@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_BACKEND_CPU_H
 #define TWINLIGHT_BACKEND_CPU_H
 
-#include "backend.h"
+#include "backend/backend.h"
 
 const BackendInterface *backend_cpu(void);
 

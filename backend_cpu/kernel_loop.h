@@ -17,9 +17,9 @@
 #define STRIDE_IS_KNOWN(frame) ((frame) != NULL)
 #endif
 
-#include "backend.h"
-#include "kernel_list.h"
-#include "scene_view.h"
+#include "backend/backend.h"
+#include "layout/kernel_list.h"
+#include "layout/scene_view.h"
 
 #include <assert.h>
 

@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_KERNEL_SCENE_H
 #define TWINLIGHT_KERNEL_SCENE_H
 
-#include "backend.h"
+#include "backend/backend.h"
 
 typedef struct KernelScene KernelScene;
 

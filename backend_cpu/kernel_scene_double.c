@@ -5,8 +5,8 @@
 #endif
 #include "kernel_scene.h"
 
-#include "scene_view.h"
-#include "struct_members.h"
+#include "layout/scene_view.h"
+#include "layout/struct_members.h"
 
 #include <stdlib.h>
 

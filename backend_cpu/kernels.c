@@ -12,8 +12,8 @@
 
 #include "kernel_loop.h"
 
-#include "aov.cl"
-#include "pt.cl"
+#include "kernels/aov.cl"
+#include "kernels/pt.cl"
 
 KERNEL_LIST_PATHS(KERNEL_LOOP)
 

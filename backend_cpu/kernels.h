@@ -2,9 +2,9 @@
 #ifndef TWINLIGHT_KERNELS_H
 #define TWINLIGHT_KERNELS_H
 
-#include "platform.h"
+#include "math/platform.h"
 
-/* Runs kernel `kernel` (KERNEL_* of kernel_list.h) for items[0] ... items[count - 1], or without `items` for 0 ... count - 1.
+/* Runs kernel `kernel` (KERNEL_* of layout/kernel_list.h) for items[0] ... items[count - 1], or without `items` for 0 ... count - 1.
  * `buffers`: by BufferId. */
 void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count);
 

@@ -2,8 +2,8 @@
  * minutes to inline everything, as kernels.c does; configure tells it to inline more than it would choose itself. */
 #include "kernel_loop.h"
 
-#include "bd_connect.cl"
-#include "bd_walk.cl"
-#include "ibpt.cl"
+#include "kernels/bd_connect.cl"
+#include "kernels/bd_walk.cl"
+#include "kernels/ibpt.cl"
 
 KERNEL_LIST_BIDIRECTIONAL(KERNEL_LOOP)

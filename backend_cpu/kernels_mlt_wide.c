@@ -3,6 +3,6 @@
 #define KERNEL_LOOP_NAME(name) kernel_wide_##name
 #include "kernel_loop.h"
 
-#include "mlt.cl"
+#include "kernels/mlt.cl"
 
 KERNEL_LIST_CHAINS(KERNEL_LOOP)

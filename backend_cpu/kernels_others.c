@@ -2,9 +2,9 @@
 #define KERNEL_ANY_STRIDE
 #include "kernel_loop.h"
 
-#include "count.cl"
-#include "film_add.cl"
-#include "trace.cl"
-#include "walk.cl"
+#include "kernels/count.cl"
+#include "kernels/film_add.cl"
+#include "kernels/trace.cl"
+#include "kernels/walk.cl"
 
 KERNEL_LIST_OTHERS(KERNEL_LOOP)

@@ -2,15 +2,15 @@
 
 #include "rays_embree.h"
 
-#include "bvh.h"
-#include "instance_bounds.h"
-#include "primitive.h"
-#include "ray_reach.h"
-#include "state.h"
+#include "backend/bvh.h"
+#include "backend/instance_bounds.h"
+#include "backend/ray_reach.h"
+#include "geometry/primitive.h"
+#include "layout/state.h"
 #include "triangle_cluster.h"
 
 #ifndef TWINLIGHT_DOUBLE
-#include "bvh_traverse.h"
+#include "geometry/bvh_traverse.h"
 #endif
 
 #include <pthread.h>

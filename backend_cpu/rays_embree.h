@@ -1,11 +1,11 @@
 /* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. Where a few primitives or the camera lie so
  * far out that boxes which suit every ray would be larger than what is in them, Embree's suit those that start among the
- * others, and the rest take the walk of devices (bvh_traverse.h). */
+ * others, and the rest take the walk of devices (geometry/bvh_traverse.h). */
 #ifndef TWINLIGHT_RAYS_EMBREE_H
 #define TWINLIGHT_RAYS_EMBREE_H
 
-#include "backend.h"
-#include "path_types.h"
+#include "backend/backend.h"
+#include "layout/path_types.h"
 
 typedef struct RaysEmbree RaysEmbree;
 
@@ -19,7 +19,7 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray);
 /* Whether anything lies within the ray. */
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray);
 
-/* The same over state buffers (state.h) at `stride`: of `count` items, those that `items` lists or, where it is NULL, the
+/* The same over state buffers (layout/state.h) at `stride`: of `count` items, those that `items` lists or, where it is NULL, the
  * first. Rays with t_max <= 0 are not traced; what is returned is the number of the others. */
 uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, const uint *items,
                                uint count, uint stride);

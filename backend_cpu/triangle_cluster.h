@@ -7,9 +7,9 @@
 
 #include <embree3/rtcore.h> /* before any shared header: its floats are floats in every build */
 
-#include "box.h"
-#include "error.h"
-#include "primitive.h"
+#include "base/error.h"
+#include "geometry/box.h"
+#include "geometry/primitive.h"
 
 #define CLUSTER_LANES 4
 

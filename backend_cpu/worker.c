@@ -1,8 +1,8 @@
 #include "worker.h"
 
-#include "kernel_list.h"
 #include "kernels.h"
-#include "state.h"
+#include "layout/kernel_list.h"
+#include "layout/state.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #define TWINLIGHT_WORKER_H
 
 #include "chunk.h"
-#include "diagnostics.h"
 #include "kernel_scene.h"
+#include "layout/diagnostics.h"
 #include "rays_embree.h"
 
 #include <stdatomic.h>

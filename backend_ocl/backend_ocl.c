@@ -1,10 +1,10 @@
 #include "backend_ocl.h"
 
-#include "bvh.h"
+#include "backend/bvh.h"
+#include "base/log.h"
 #include "device_film.h"
 #include "film_adders.h"
 #include "inspect.h"
-#include "log.h"
 #include "pass_data.h"
 
 #include <stdio.h>

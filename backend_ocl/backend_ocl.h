@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_BACKEND_OCL_H
 #define TWINLIGHT_BACKEND_OCL_H
 
-#include "backend.h"
+#include "backend/backend.h"
 
 const BackendInterface *backend_ocl(void);
 

@@ -1,4 +1,4 @@
-/* The film's sums on a device with 64-bit integer atomics: kernels add splats there (shared/film_add.cl), and the host
+/* The film's sums on a device with 64-bit integer atomics: kernels add splats there (shared/kernels/film_add.cl), and the host
  * gets the sums at the end of a pass instead of every splat. A pass that fails leaves nothing in the host's film. */
 #ifndef TWINLIGHT_DEVICE_FILM_H
 #define TWINLIGHT_DEVICE_FILM_H

@@ -5,9 +5,9 @@
 
 #include "devices.h"
 
-#include "bvh.h"
-#include "diagnostics.h"
-#include "state.h"
+#include "backend/bvh.h"
+#include "layout/diagnostics.h"
+#include "layout/state.h"
 
 /* Batches under way: one computed, one copied, one added to the film. */
 #define BATCH_SLOTS 3

@@ -1,6 +1,6 @@
 #include "devices.h"
 
-#include "log.h"
+#include "base/log.h"
 #include "rounding_probe.h"
 
 #include <stdio.h>

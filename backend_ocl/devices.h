@@ -4,7 +4,7 @@
 
 #include "ocl_status.h"
 
-#include "backend.h"
+#include "backend/backend.h"
 
 #define OCL_DEVICES_MAX 64
 
@@ -26,7 +26,7 @@ size_t ocl_devices_find(OclDevice *devices, size_t capacity);
  * where it is less. A probe takes a fraction of a second; unless `anew`, what an earlier one found is taken. */
 void ocl_device_probe(OclDevice *device, bool anew);
 
-/* The interface's list (backend.h). */
+/* The interface's list (backend/backend.h). */
 size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all);
 
 /* The device that --device=`choice` means: a number, or a part of the name in any case that fits one device; NULL: the

@@ -6,7 +6,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #endif
 
-#include "error.h"
+#include "base/error.h"
 
 #include <CL/cl.h>
 

@@ -1,6 +1,6 @@
 #include "program.h"
 
-#include "log.h"
+#include "base/log.h"
 #include "program_cache.h"
 #include "program_source.h"
 #include "timeline.h"
@@ -20,7 +20,7 @@ const char *ocl_kernel_name(unsigned kernel)
 }
 
 /* No option here lets a device compute other bits: what OpenCL calls fast is all off by default, and fused products are
- * switched off in platform.h. */
+ * switched off in math/platform.h. */
 void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size)
 {
     snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,

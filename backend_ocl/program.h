@@ -5,8 +5,8 @@
 
 #include "devices.h"
 
-#include "kernel_list.h"
-#include "scene_types.h"
+#include "layout/kernel_list.h"
+#include "layout/scene_types.h"
 
 #include <stdbool.h>
 
@@ -29,7 +29,7 @@ void ocl_program_options(const OclDevice *device, uint features, char *options, 
 bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error);
 void ocl_program_destroy(OclProgram *program);
 
-/* The kernel of this number (kernel_list.h); NULL on failure. */
+/* The kernel of this number (layout/kernel_list.h); NULL on failure. */
 cl_kernel ocl_program_kernel(OclProgram *program, unsigned kernel, Error *error);
 
 const char *ocl_kernel_name(unsigned kernel);

@@ -4,7 +4,7 @@
 #ifndef TWINLIGHT_PROGRAM_SOURCE_H
 #define TWINLIGHT_PROGRAM_SOURCE_H
 
-#include "error.h"
+#include "base/error.h"
 
 /* The folder of the kernels' sources: $TWINLIGHT_KERNELS, or where they were installed, or the sources that the program
  * was built from. */

@@ -5,7 +5,7 @@
 #include "program_source.h"
 #include "timeline.h"
 
-#include "rounding.cl"
+#include "kernels/rounding.cl"
 
 #include <limits.h>
 #include <stdio.h>
@@ -156,7 +156,7 @@ bool rounding_probe_run(const OclDevice *device, bool anew, RoundingProbe *probe
     char options[OCL_OPTIONS_SIZE], path[PATH_MAX];
     ProbeDevice opened = {0};
     memset(probe, 0, sizeof *probe);
-    char *source = program_source_read(program_source_folder(), "rounding.cl", error);
+    char *source = program_source_read(program_source_folder(), "kernels/rounding.cl", error);
     if (!source)
         return false;
     ocl_program_options(device, 0, options, sizeof options);

@@ -11,7 +11,7 @@ typedef struct RoundingProbe {
     char first[128]; /* the first of those, in words */
 } RoundingProbe;
 
-/* Builds rounding.cl with the kernels' options and compares what it gives. What was found is kept with built programs
+/* Builds kernels/rounding.cl with the kernels' options and compares what it gives. What was found is kept with built programs
  * (program_cache.h) and taken from there unless `anew`. False with an error when the device cannot be asked. */
 bool rounding_probe_run(const OclDevice *device, bool anew, RoundingProbe *probe, Error *error);
 

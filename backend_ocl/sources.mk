@@ -17,6 +17,6 @@ libtwinlight_ocl_la_SOURCES = \
 	backend_ocl/program_source.c backend_ocl/program_source.h \
 	backend_ocl/rounding_probe.c backend_ocl/rounding_probe.h \
 	backend_ocl/timeline.c backend_ocl/timeline.h
-libtwinlight_ocl_la_CPPFLAGS = $(AM_CPPFLAGS) -DKERNELS_INSTALLED='"$(shareddir)"' \
+libtwinlight_ocl_la_CPPFLAGS = $(AM_CPPFLAGS) -DKERNELS_INSTALLED='"$(pkgdatadir)/shared"' \
 	-DKERNELS_BUILD='"$(abs_top_srcdir)/shared"' -DPROGRAM_FOLDER='"$(bindir)"'
 libtwinlight_ocl_la_LIBADD = $(OPENCL_LIBS)

@@ -4,7 +4,7 @@
 
 #include "ocl_status.h"
 
-#include "backend.h"
+#include "backend/backend.h"
 
 #include <pthread.h>
 

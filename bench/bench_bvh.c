@@ -4,15 +4,15 @@
  *   opencl   the same on an OpenCL CPU device (one that computes in this process, as PoCL does).
  * Output: one line a scene, kind and path, tab-separated. Every path answers the same rays, step by step of the
  * integrator; answers that differ are counted. Usage: bench_bvh SHARED_FOLDER SCENE.pbrt ... */
+#include "backend/bvh.h"
 #include "bench_util.h"
-#include "bvh.h"
-#include "kernel_list.h"
 #include "kernels.h"
-#include "opencl_probe.h"
-#include "path_state.h"
-#include "pbrt_import.h"
+#include "layout/kernel_list.h"
+#include "path/path_state.h"
+#include "pbrt/import.h"
 #include "rays_embree.h"
-#include "scene.h"
+#include "scene/scene.h"
+#include "support/opencl_probe.h"
 
 #include <math.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static void device_open(Bench *bench, const char *shared)
     snprintf(options, sizeof options,
              "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DTWINLIGHT_FEATURES=0x%xu -I%s",
              bench->frame.features, shared);
-    bench->probe = opencl_probe_open("#include \"trace.cl\"\n", options, message, sizeof message, &absent);
+    bench->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!bench->probe) {
         printf("# no OpenCL: %s\n", message);
         return;

@@ -4,15 +4,15 @@
  *   native   Embree's own triangles.
  * Output: one line a scene, kind and path, tab-separated. `ratio` is time relative to `user`.
  * Usage: bench_rays [RAYS] */
-#include "backend.h"
+#include "backend/backend.h"
 #include "bench_util.h"
+#include "geometry/ray.h"
+#include "geometry/surface.h"
+#include "layout/state.h"
+#include "math/rng.h"
+#include "math/warp.h"
 #include "rays_embree.h"
-#include "ray.h"
-#include "rng.h"
-#include "scene.h"
-#include "state.h"
-#include "surface.h"
-#include "warp.h"
+#include "scene/scene.h"
 
 #include <embree3/rtcore.h>
 

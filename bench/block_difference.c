@@ -8,9 +8,9 @@
  *   one program differ by, which the same seed takes away. */
 #include "bench_util.h"
 
-#include "image_read.h"
-#include "metrics.h"
-#include "student.h"
+#include "base/student.h"
+#include "compare/metrics.h"
+#include "image/read.h"
 
 #include <math.h>
 #include <string.h>

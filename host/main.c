@@ -2,11 +2,11 @@
  * backend. */
 #include "config.h"
 
-#include "build_info.h"
-#include "cmd_compare.h"
-#include "command.h"
-#include "name_table.h"
-#include "startup.h"
+#include "base/build_info.h"
+#include "base/name_table.h"
+#include "base/startup.h"
+#include "command/cmd_compare.h"
+#include "command/command.h"
 
 #ifdef HAVE_EMBREE
 #include "backend_cpu.h"

@@ -1,9 +1,9 @@
 /* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, a pane of
  * uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
-#include "color.h"
-#include "exr.h"
-#include "png_write.h"
-#include "warp.h"
+#include "image/color.h"
+#include "image/exr.h"
+#include "image/png_write.h"
+#include "math/warp.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,15 +2,15 @@
 #ifndef TWINLIGHT_KERNELS_CL
 #define TWINLIGHT_KERNELS_CL
 
-#include "aov.cl"
-#include "bd_connect.cl"
-#include "bd_walk.cl"
-#include "count.cl"
-#include "film_add.cl"
-#include "ibpt.cl"
-#include "mlt.cl"
-#include "pt.cl"
-#include "trace.cl"
-#include "walk.cl"
+#include "kernels/aov.cl"
+#include "kernels/bd_connect.cl"
+#include "kernels/bd_walk.cl"
+#include "kernels/count.cl"
+#include "kernels/film_add.cl"
+#include "kernels/ibpt.cl"
+#include "kernels/mlt.cl"
+#include "kernels/pt.cl"
+#include "kernels/trace.cl"
+#include "kernels/walk.cl"
 
 #endif

@@ -29,9 +29,8 @@ compile() {
 check() {
     check_status=0
     check_kernels=
-    for check_file in "$1"/*.h "$1"/*.cl; do
-        [ -f "$check_file" ] || continue
-        check_name=$(basename "$check_file")
+    for check_name in $(cd "$1" && find . -name '*.h' -o -name '*.cl' | sed 's/^\.\///' | sort); do
+        check_file=$1/$check_name
         if ! compile "$1" "#include \"$check_name\""; then
             echo "$check_file: does not compile as OpenCL C 1.2"
             check_status=1
@@ -53,7 +52,7 @@ check() {
 # The check itself must be able to fail: texts that are C11 but not OpenCL C 1.2, or that do not stand alone.
 planted() {
     plant=$(mktemp -d) || exit 99
-    cp "$srcdir/shared/platform.h" "$plant/"
+    cp -r "$srcdir/shared/math" "$plant"
     printf '%s\n' "$2" >"$plant/$1"
     if check "$plant" >/dev/null 2>&1; then
         echo "self-test: a planted fault passed as OpenCL C: $2"
@@ -67,7 +66,7 @@ planted bad.h '#include <math.h>'
 planted bad.h 'static inline float f(float x) { return sinf(x); }'
 planted bad.h 'static inline float f(Vec3 a) { return a.x; }'
 planted bad.h 'static inline float f(void) { float half = 0.5f; return half; }'
-planted bad.cl '#include "platform.h"
+planted bad.cl '#include "math/platform.h"
 __kernel void k(__global float *a) { float *b = a; b[0] = 1.0f; }'
 check "$srcdir/shared" || status=1
 exit $status

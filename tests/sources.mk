@@ -1,4 +1,4 @@
-# One Check program per area; each lists every unit of the area that can be wrong. A program of one file needs no list.
+# One Check program per area; each lists every unit of the area that can be wrong.
 LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) \
 	$(CHECK_LIBS) $(MPFR_LIBS) -lm
 
@@ -46,7 +46,7 @@ endif
 # The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
 EFFORT = 8
 LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
-	tests/test_scenes tests/test_hostile.sh
+	tests/test_scenes tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
 endif
@@ -57,7 +57,7 @@ check-long:
 # Whether the tests see faults that are planted one at a time: mutants.sh -h. A quarter of an hour; not a part of any check.
 .PHONY: mutants
 mutants: twinlight$(EXEEXT)
-	$(srcdir)/tests/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
+	$(srcdir)/tests/mutants/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
 
 # Kernels that one test program has had built serve the next, and the user's own cache is left alone.
 TEST_CACHE = $(abs_top_builddir)/test-cache
@@ -66,170 +66,188 @@ clean-local:
 	rm -rf test-cache mutants.work mutants.md
 
 EXTRA_DIST += \
-	tests/analytic.h \
-	tests/bidirectional.h \
-	tests/bidirectional_path.h \
-	tests/bsdf_cases.h \
-	tests/bvh_scenes.h \
-	tests/cli.sh \
-	tests/filter_cases.h \
-	tests/geometry_fixture.h \
-	tests/geometry_suites.h \
+	tests/support/analytic.h \
+	tests/support/bidirectional.h \
+	tests/path/bidirectional_path.h \
+	tests/support/bsdf_cases.h \
+	tests/geometry/bvh_scenes.h \
+	tests/support/cli.sh \
+	tests/support/filter_cases.h \
+	tests/support/geometry_fixture.h \
+	tests/geometry/geometry_suites.h \
 	tests/instances.pbrt \
-	tests/light_fixture.h \
-	tests/mutants.md \
-	tests/mutants.sh \
-	tests/mutants.txt \
-	tests/numerics.h \
-	tests/opencl_probe.h \
-	tests/render_fixture.h \
-	tests/test_blend.h \
-	tests/test_bvh.h \
-	tests/test_chain.h \
-	tests/test_emit.h \
-	tests/test_files.h \
-	tests/test_import.h \
-	tests/test_light.h \
-	tests/test_math.h \
-	tests/test_opencl.h \
-	tests/test_matrix.h \
-	tests/test_util.h \
-	tests/verify_fixture.h \
-	tests/platform_probe.cl
+	tests/support/light_fixture.h \
+	tests/mutants/mutants.md \
+	tests/mutants/mutants.sh \
+	tests/mutants/mutants.txt \
+	tests/support/numerics.h \
+	tests/support/opencl_probe.h \
+	tests/support/render_fixture.h \
+	tests/mmlt/test_blend.h \
+	tests/geometry/test_bvh.h \
+	tests/mmlt/test_chain.h \
+	tests/light/test_emit.h \
+	tests/support/test_files.h \
+	tests/pbrt/test_import.h \
+	tests/light/test_light.h \
+	tests/math/test_math.h \
+	tests/backend/test_opencl.h \
+	tests/support/test_matrix.h \
+	tests/support/test_util.h \
+	tests/support/verify_fixture.h \
+	tests/math/platform_probe.cl
 
 if HAVE_OPENCL
-OPENCL_PROBE = tests/opencl_probe.c
+OPENCL_PROBE = tests/support/opencl_probe.c
 else
-OPENCL_PROBE = tests/opencl_probe_absent.c
+OPENCL_PROBE = tests/support/opencl_probe_absent.c
 endif
 
 # What several programs share.
 tests_libfixtures_la_SOURCES = \
-	tests/analytic_fixture.c \
-	tests/bidirectional_groups.c \
-	tests/bidirectional_scenes.c \
-	tests/geometry_fixture.c \
-	tests/render_fixture.c \
-	tests/verify_fixture.c \
+	tests/support/analytic_fixture.c \
+	tests/support/bidirectional_groups.c \
+	tests/support/bidirectional_scenes.c \
+	tests/support/geometry_fixture.c \
+	tests/support/render_fixture.c \
+	tests/support/verify_fixture.c \
 	$(OPENCL_PROBE)
 
-tests_test_analytic_SOURCES = tests/test_analytic.c \
-	tests/test_analytic_area.c \
-	tests/test_analytic_bumps.c \
-	tests/test_analytic_camera.c \
-	tests/test_analytic_environment.c \
-	tests/test_analytic_glass.c \
-	tests/test_analytic_instances.c \
-	tests/test_analytic_lights.c \
-	tests/test_analytic_opaque.c \
-	tests/test_analytic_textures.c
+tests_test_aim_SOURCES = tests/light/test_aim.c
+tests_test_bench_SOURCES = tests/bench/test_bench.c
+tests_test_chain_population_SOURCES = tests/mmlt/test_chain_population.c
+tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
+tests_test_chain_statistics_SOURCES = tests/mmlt/test_chain_statistics.c
+tests_test_compare_SOURCES = tests/compare/test_compare.c
+tests_test_group_SOURCES = tests/backend/test_group.c
+tests_test_layers_SOURCES = tests/render/test_layers.c
+tests_test_metrics_SOURCES = tests/compare/test_metrics.c
+tests_test_options_SOURCES = tests/command/test_options.c
+tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
+tests_test_pool_SOURCES = tests/mmlt/test_pool.c
+tests_test_reference_SOURCES = tests/render/test_reference.c
+tests_test_render_SOURCES = tests/render/test_render.c
+tests_test_scenes_SOURCES = tests/render/test_scenes.c
+tests_test_shift_SOURCES = tests/mmlt/test_shift.c
+tests_test_verify_SOURCES = tests/render/test_verify.c
 
-tests_test_bidirectional_SOURCES = tests/test_bidirectional.c \
-	tests/bidirectional_path.c \
-	tests/test_bidirectional_film.c \
-	tests/test_bidirectional_running.c \
-	tests/test_bidirectional_strategies.c \
-	tests/test_bidirectional_walks.c \
-	tests/test_bidirectional_weights.c
+tests_test_analytic_SOURCES = tests/render/test_analytic.c \
+	tests/render/test_analytic_area.c \
+	tests/render/test_analytic_bumps.c \
+	tests/render/test_analytic_camera.c \
+	tests/render/test_analytic_environment.c \
+	tests/render/test_analytic_glass.c \
+	tests/render/test_analytic_instances.c \
+	tests/render/test_analytic_lights.c \
+	tests/render/test_analytic_opaque.c \
+	tests/render/test_analytic_textures.c
 
-tests_test_blend_SOURCES = tests/test_blend.c \
-	tests/test_blend_known.c
+tests_test_bidirectional_SOURCES = tests/path/test_bidirectional.c \
+	tests/path/bidirectional_path.c \
+	tests/path/test_bidirectional_film.c \
+	tests/path/test_bidirectional_running.c \
+	tests/path/test_bidirectional_strategies.c \
+	tests/path/test_bidirectional_walks.c \
+	tests/path/test_bidirectional_weights.c
 
-tests_test_bsdf_SOURCES = tests/test_bsdf.c \
-	tests/test_bsdf_coated.c \
-	tests/test_bsdf_energy.c \
-	tests/test_bsdf_formulas.c \
-	tests/test_bsdf_identities.c \
-	tests/test_bsdf_inverse.c \
-	tests/test_bsdf_sampling.c
+tests_test_blend_SOURCES = tests/mmlt/test_blend.c \
+	tests/mmlt/test_blend_known.c
 
-tests_test_bvh_SOURCES = tests/test_bvh.c \
-	tests/test_bvh_adversary.c \
-	tests/test_bvh_build.c \
-	tests/test_bvh_opencl.c \
-	tests/bvh_scenes.c
+tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \
+	tests/bsdf/test_bsdf_coated.c \
+	tests/bsdf/test_bsdf_energy.c \
+	tests/bsdf/test_bsdf_formulas.c \
+	tests/bsdf/test_bsdf_identities.c \
+	tests/bsdf/test_bsdf_inverse.c \
+	tests/bsdf/test_bsdf_sampling.c
 
-tests_test_chain_SOURCES = tests/test_chain.c \
-	tests/test_chain_shown.c
+tests_test_bvh_SOURCES = tests/geometry/test_bvh.c \
+	tests/geometry/test_bvh_adversary.c \
+	tests/geometry/test_bvh_build.c \
+	tests/geometry/test_bvh_opencl.c \
+	tests/geometry/bvh_scenes.c
 
-tests_test_emit_SOURCES = tests/test_emit.c \
-	tests/test_emit_area.c \
-	tests/test_emit_camera.c \
-	tests/test_emit_direction.c \
-	tests/test_emit_distance.c \
-	tests/test_emit_image.c \
-	tests/test_emit_power.c \
-	tests/test_emit_splat.c
+tests_test_chain_SOURCES = tests/mmlt/test_chain.c \
+	tests/mmlt/test_chain_shown.c
 
-tests_test_film_SOURCES = tests/test_film.c \
-	tests/test_film_files.c \
-	tests/test_film_output.c
+tests_test_emit_SOURCES = tests/light/test_emit.c \
+	tests/light/test_emit_area.c \
+	tests/light/test_emit_camera.c \
+	tests/light/test_emit_direction.c \
+	tests/light/test_emit_distance.c \
+	tests/light/test_emit_image.c \
+	tests/light/test_emit_power.c \
+	tests/light/test_emit_splat.c
 
-tests_test_geometry_SOURCES = tests/test_geometry.c \
-	tests/test_geometry_backend.c \
-	tests/test_geometry_quadrics.c \
-	tests/test_geometry_rays.c
+tests_test_film_SOURCES = tests/film/test_film.c \
+	tests/film/test_film_files.c \
+	tests/film/test_film_output.c
 
-tests_test_import_SOURCES = tests/test_import.c \
-	tests/test_import_bad.c \
-	tests/test_import_files.c \
-	tests/test_import_lights.c \
-	tests/test_import_limits.c \
-	tests/test_import_materials.c \
-	tests/test_import_params.c \
-	tests/test_import_ply.c \
-	tests/test_import_settings.c \
-	tests/test_import_shapes.c \
-	tests/test_import_text.c \
-	tests/test_import_textures.c \
-	tests/test_import_transform.c
+tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
+	tests/geometry/test_geometry_backend.c \
+	tests/geometry/test_geometry_quadrics.c \
+	tests/geometry/test_geometry_rays.c
 
-tests_test_light_SOURCES = tests/test_light.c \
-	tests/test_light_area.c \
-	tests/test_light_camera.c \
-	tests/test_light_environment.c \
-	tests/test_light_filter.c \
-	tests/test_light_irradiance.c \
-	tests/test_light_mis.c \
-	tests/test_light_select.c
+tests_test_import_SOURCES = tests/pbrt/test_import.c \
+	tests/pbrt/test_import_bad.c \
+	tests/pbrt/test_import_files.c \
+	tests/pbrt/test_import_lights.c \
+	tests/pbrt/test_import_limits.c \
+	tests/pbrt/test_import_materials.c \
+	tests/pbrt/test_import_params.c \
+	tests/pbrt/test_import_ply.c \
+	tests/pbrt/test_import_settings.c \
+	tests/pbrt/test_import_shapes.c \
+	tests/pbrt/test_import_text.c \
+	tests/pbrt/test_import_textures.c \
+	tests/pbrt/test_import_transform.c
 
-tests_test_math_SOURCES = tests/test_math.c \
-	tests/test_math_alias.c \
-	tests/test_math_distribution2d.c \
-	tests/test_math_elementary.c \
-	tests/test_math_elementary_pairs.c \
-	tests/test_math_rng.c \
-	tests/test_math_sphere_maps.c \
-	tests/test_math_warp.c
+tests_test_light_SOURCES = tests/light/test_light.c \
+	tests/light/test_light_area.c \
+	tests/light/test_light_camera.c \
+	tests/light/test_light_environment.c \
+	tests/light/test_light_filter.c \
+	tests/light/test_light_irradiance.c \
+	tests/light/test_light_mis.c \
+	tests/light/test_light_select.c
 
-tests_test_mmlt_SOURCES = tests/test_mmlt.c \
-	tests/test_mmlt_shown.c
+tests_test_math_SOURCES = tests/math/test_math.c \
+	tests/math/test_math_alias.c \
+	tests/math/test_math_distribution2d.c \
+	tests/math/test_math_elementary.c \
+	tests/math/test_math_elementary_pairs.c \
+	tests/math/test_math_rng.c \
+	tests/math/test_math_sphere_maps.c \
+	tests/math/test_math_warp.c
 
-tests_test_numerics_SOURCES = tests/test_numerics.c \
-	tests/test_numerics_film.c \
-	tests/test_numerics_lights.c \
-	tests/test_numerics_scale.c
+tests_test_mmlt_SOURCES = tests/mmlt/test_mmlt.c \
+	tests/mmlt/test_mmlt_shown.c
 
-tests_test_opencl_SOURCES = tests/test_opencl.c \
-	tests/test_opencl_bits.c \
-	tests/test_opencl_devices.c \
-	tests/test_opencl_inspect.c \
-	tests/test_opencl_pipeline.c \
-	tests/test_opencl_program.c
+tests_test_numerics_SOURCES = tests/render/test_numerics.c \
+	tests/render/test_numerics_film.c \
+	tests/render/test_numerics_lights.c \
+	tests/render/test_numerics_scale.c
 
-tests_test_texture_SOURCES = tests/test_texture.c \
-	tests/test_texture_color.c \
-	tests/test_texture_files.c \
-	tests/test_texture_image.c
+tests_test_opencl_SOURCES = tests/backend/test_opencl.c \
+	tests/backend/test_opencl_bits.c \
+	tests/backend/test_opencl_devices.c \
+	tests/backend/test_opencl_inspect.c \
+	tests/backend/test_opencl_pipeline.c \
+	tests/backend/test_opencl_program.c
+
+tests_test_texture_SOURCES = tests/image/test_texture.c \
+	tests/image/test_texture_color.c \
+	tests/image/test_texture_files.c \
+	tests/image/test_texture_image.c
 
 # Rules of the tree itself, and the whole program from outside.
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_opencl.sh \
-	tests/test_bench.sh \
-	tests/test_cli.sh \
-	tests/test_devices.sh \
-	tests/test_hostile.sh \
-	tests/test_outputs.sh
+	tests/bench/test_bench.sh \
+	tests/command/test_cli.sh \
+	tests/command/test_devices.sh \
+	tests/command/test_hostile.sh \
+	tests/command/test_outputs.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

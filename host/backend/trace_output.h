@@ -1,0 +1,20 @@
+/* The --trace file: what ran when, as chrome://tracing and Perfetto read it. */
+#ifndef TWINLIGHT_BACKEND_TRACE_OUTPUT_H
+#define TWINLIGHT_BACKEND_TRACE_OUTPUT_H
+
+#include "backend/backend.h"
+
+/* What one device did. */
+typedef struct TraceSource {
+    const BackendSpan *spans;
+    size_t count;
+    uint64_t dropped; /* not recorded */
+    BackendStatistics statistics;
+} TraceSource;
+
+/* Writes the spans as Chrome's JSON object format ("Trace Event Format": complete events, microseconds). Every source
+ * is a process with a row for the device's kernels, one for copies, and one for each host thread that added to the
+ * film. */
+bool trace_write(const char *path, const TraceSource *sources, size_t count, Error *error);
+
+#endif

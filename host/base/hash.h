@@ -1,0 +1,19 @@
+/* Keys of what does not change. */
+#ifndef TWINLIGHT_BASE_HASH_H
+#define TWINLIGHT_BASE_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define HASH_START 0xcbf29ce484222325u
+
+/* FNV-1a of 64 bits (Fowler, Noll, Vo) continued from `hash`, which is HASH_START or an earlier result. */
+static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
+{
+    const unsigned char *p = bytes;
+    for (size_t i = 0; i < size; ++i)
+        hash = (hash ^ p[i]) * 0x100000001b3u;
+    return hash;
+}
+
+#endif

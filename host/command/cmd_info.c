@@ -1,0 +1,64 @@
+/* `twinlight info`: what a scene holds. */
+#include "command/command.h"
+
+#include "base/json.h"
+#include "base/log.h"
+#include "pbrt/import.h"
+#include "scene/scene.h"
+#include "scene/summary.h"
+
+typedef struct InfoCommand {
+    bool json;
+    bool lenient;
+} InfoCommand;
+
+enum { OPTION_JSON, OPTION_LENIENT };
+
+static const OptionSpec SPECS[] = {
+    [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
+};
+
+static const OptionTable TABLE = {
+    "info", "info [OPTION]... SCENE",       "Prints what SCENE, a file in pbrt-v4's text format, holds.",
+    SPECS,  sizeof SPECS / sizeof SPECS[0], NULL,
+};
+
+static bool option_set(void *context, int index, const char *value, Error *error)
+{
+    InfoCommand *command = context;
+    (void)value;
+    (void)error;
+    bool *flags[] = {&command->json, &command->lenient};
+    *flags[index] = true;
+    return true;
+}
+
+static int info_print(const InfoCommand *command, const char *path, Error *error)
+{
+    Scene scene;
+    scene_init(&scene);
+    bool loaded = pbrt_load(path, command->lenient, &scene, error);
+    if (loaded) {
+        SceneSummary summary;
+        scene_summary(&scene, &summary);
+        if (command->json)
+            scene_summary_json(&scene, &summary, path, stdout);
+        else
+            scene_summary_text(&scene, &summary, path, stdout);
+    }
+    scene_destroy(&scene);
+    return loaded ? EXIT_OK : EXIT_FAILED;
+}
+
+int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    InfoCommand command = {0};
+    const char *scene;
+    int first = 0;
+    (void)backends;
+    OptionsEnd end = options_parse(&TABLE, argc, argv, option_set, &command, &first, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
+    return options_scene(&TABLE, argc, argv, first, &scene, error) ? info_print(&command, scene, error) : EXIT_USAGE;
+}

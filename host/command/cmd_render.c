@@ -1,0 +1,375 @@
+/* `twinlight render`: scene in, picture out. */
+#include "command/command.h"
+
+#include "backend/trace_output.h"
+#include "base/frame_name.h"
+#include "base/interrupt.h"
+#include "base/log.h"
+#include "base/path_name.h"
+#include "base/timing.h"
+#include "command/output_check.h"
+#include "command/render_options.h"
+#include "command/render_output.h"
+#include "command/render_settings.h"
+#include "command/render_verify.h"
+#include "mmlt/bad_chains.h"
+#include "mmlt/chain_list.h"
+#include "pbrt/import.h"
+#include "render/progress.h"
+#include "render/render.h"
+#include "render/report.h"
+#include "render/stats.h"
+#include "scene/advice.h"
+#include "scene/camera_setup.h"
+
+#include <string.h>
+#include <unistd.h>
+
+static const RenderOptionSet OPTIONS = {
+    .command = "render",
+    .usage = "render [OPTION]... SCENE",
+    .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
+    .footer = "SIGINT, SIGTERM and SIGHUP end the rendering early: what is there is written, and the exit status\n"
+              "is 130. A second one, a second later or more, ends the program at once.\n"
+              "More: man twinlight-render.",
+    .output_ending = ".exr",
+    .depth_low = 1,
+    .depth_high = 65535,
+};
+
+/* One rendering from command line to files. */
+typedef struct RenderJob {
+    RenderCommand *command;
+    Arena names; /* of files, with the frame's number */
+    const Integrator *integrator;
+    Scene scene;
+    Film film;
+    RenderLayers layers;
+    BadChains bad_chains;
+    BackendMember backend;
+    RenderOutput output;
+    Progress progress;
+    uint64_t samples_done; /* paths, at the latest progress */
+    bool left; /* the files are as they were: nothing was rendered */
+    RenderResult result;
+    double load, build, rendering, write; /* seconds */
+    double start;
+} RenderJob;
+
+/* ---- before rendering ------------------------------------------------------------------------------------------- */
+
+/* Puts the frame's number into the names of the command line. */
+static bool names_fill(RenderJob *job, Error *error)
+{
+    RenderCommand *command = job->command;
+    const char **names[] = {&command->output, &command->png_path, &command->stats, &command->trace, &command->dump_bad};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+        if (!*names[i] || !frame_name_has(*names[i]))
+            continue;
+        if (command->frame < 0) {
+            error_set(error, "%s has a place for the number of a frame, and none is given", *names[i]);
+            return error_fix(error, "add --frame=N");
+        }
+        *names[i] = frame_name_fill(&job->names, *names[i], command->frame, error);
+        if (!*names[i])
+            return false;
+    }
+    return true;
+}
+
+/* The image's name: the command line's, or the scene's Film's, which may have a place for the frame too. */
+static const char *image_name(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const char *film = path_file_name(job->scene.settings.output);
+    if (command->output)
+        return command->output;
+    if (!film[0])
+        return strcmp(command->scene, "-") == 0 ? "stdin" : path_file_name(command->scene);
+    return command->frame < 0 ? film : frame_name_fill(&job->names, film, command->frame, error);
+}
+
+static bool outputs_name(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    RenderOutput *output = &job->output;
+    const char *image = image_name(job, error);
+    const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
+    if (!image || !render_output_name(output, image, command->png, command->png_path, error))
+        return false;
+    output->picture = (PictureSettings){.scale = job->scene.settings.film_scale,
+                                        .despeckle = command->despeckle,
+                                        .layers = job->layers.wanted != 0 ? &job->layers : NULL};
+    output->exposure = (float)command->exposure;
+    output->scene_file = command->scene;
+    output->integrator = command->integrator;
+    output->seed = command->seed;
+    output->max_depth = job->scene.settings.max_depth;
+    camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
+                    output->world_to_ndc);
+    const CommandFile files[] = {{"the scene", strcmp(command->scene, "-") == 0 ? NULL : command->scene, false},
+                                 {"the image", output->exr, true},
+                                 {"the PNG", output->png[0] ? output->png : NULL, true},
+                                 {"the statistics", stats, true},
+                                 {"the trace", command->trace, true},
+                                 {"the list of chains", command->dump_bad, true}};
+    return output_files_check(files, sizeof files / sizeof files[0],
+                              "give each its own name, with --output, --png, --stats, --trace and --dump-bad", error);
+}
+
+static bool scene_load(RenderJob *job, Error *error)
+{
+    if (!pbrt_load(job->command->scene, job->command->lenient, &job->scene, error))
+        return false;
+    scene_advise(&job->scene);
+    return true;
+}
+
+static bool backend_build(RenderJob *job, Error *error)
+{
+    const BackendScene view = scene_backend_view(&job->scene);
+    const RenderCommand *command = job->command;
+    const BackendOptions options = {.threads = command->threads,
+                                    .batch = command->batch,
+                                    .film_on_device = command->film && strcmp(command->film, "device") == 0,
+                                    .record_spans = command->trace != NULL};
+    return backend_choices_open(&command->backends, &view, &options, &job->backend, error);
+}
+
+/* ---- rendering -------------------------------------------------------------------------------------------------- */
+
+static void job_progress(void *context, const RenderProgress *progress)
+{
+    RenderJob *job = context;
+    job->samples_done = progress->samples;
+    progress_update(&job->progress, progress);
+}
+
+static void job_writing(void *context, const char *path, double part)
+{
+    RenderJob *job = context;
+    progress_writing(&job->progress, path, part);
+}
+
+static bool job_save(void *context, const Film *film, Error *error)
+{
+    RenderJob *job = context;
+    return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
+}
+
+static RenderOptions job_options(RenderJob *job)
+{
+    const RenderCommand *command = job->command;
+    const SceneSettings *settings = &job->scene.settings;
+    RenderOptions options = {
+        .samples = (unsigned)command->samples,
+        .seconds = command->seconds,
+        .max_depth = settings->max_depth,
+        .chains = command->chains,
+        .bad_chains = job->bad_chains.stream,
+        .layers = job->layers.wanted != 0 ? &job->layers : NULL,
+        .balance = command->balance,
+        .only_strategy = command->only_strategy,
+        .strategy = {command->strategy[0], command->strategy[1]},
+        .unweighted = command->unweighted,
+        .seed = command->seed,
+        .save_every = command->save_every,
+        .stop = interrupt_flag(),
+    };
+    if (options.samples == 0 && options.seconds == 0.0)
+        options.samples = (unsigned)settings->samples;
+    return options;
+}
+
+static bool film_render(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const SceneSettings *settings = &job->scene.settings;
+    RenderOptions options = job_options(job);
+    RenderCallbacks callbacks = {job_progress, job_save, job};
+    progress_init(&job->progress, stderr, command->quiet);
+    job->output.writing = job_writing;
+    job->output.writing_context = job;
+    bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
+                    render_output_reserve(&job->output, settings->crop, error) &&
+                    render_film(job->integrator, &job->scene, job->backend.interface, job->backend.backend, &options,
+                                false, &callbacks, &job->film, &job->result, error);
+    progress_end(&job->progress);
+    return rendered;
+}
+
+/* ---- after rendering -------------------------------------------------------------------------------------------- */
+
+static void summary_report(const RenderJob *job)
+{
+    const RenderResult *result = &job->result;
+    char seconds[24], samples[24], rays[24];
+    double per_second = result->seconds > 0.0 ? 1.0 / result->seconds : 0.0;
+    progress_time(result->seconds, seconds, sizeof seconds);
+    progress_rate((double)result->samples * per_second, samples, sizeof samples);
+    progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
+    log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
+                result->samples_per_pixel, seconds, samples, rays);
+    if (job->left)
+        log_message(LOG_WARNING, "%s is left as it was: there is no sample yet", job->output.exr);
+    else
+        log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
+}
+
+static bool stats_output(const RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    const RenderStats stats = {
+        .scene_file = command->scene,
+        .scene = &job->scene,
+        .film = &job->film,
+        .integrator = command->integrator,
+        .backend = command->backends.name,
+        .seed = command->seed,
+        .exr = job->output.exr,
+        .png = job->output.png,
+        .result = &job->result,
+        .load = job->load,
+        .build = job->build,
+        .render = job->rendering,
+        .write = job->write,
+        .total = timing_now() - job->start,
+    };
+    return stats_write(command->stats, &stats, error);
+}
+
+static bool trace_output(const RenderJob *job, Error *error)
+{
+    BackendMember members[BACKEND_GROUP_MAX];
+    TraceSource sources[BACKEND_GROUP_MAX];
+    size_t count = 0, found = backend_group_members(job->backend, members);
+    for (size_t i = 0; i < found; ++i) {
+        if (!members[i].interface->spans)
+            continue;
+        TraceSource *source = &sources[count++];
+        source->count = members[i].interface->spans(members[i].backend, &source->spans, &source->dropped);
+        members[i].interface->statistics(members[i].backend, &source->statistics);
+        if (source->dropped > 0)
+            log_message(LOG_WARNING, "the trace holds the first %zu spans only; %llu more were not recorded",
+                        source->count, (unsigned long long)source->dropped);
+    }
+    return trace_write(job->command->trace, sources, count, error);
+}
+
+/* ---- the whole job ---------------------------------------------------------------------------------------------- */
+
+/* Runs one stage and adds its wall-clock time to *seconds. */
+static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, double *seconds, Error *error)
+{
+    double start = timing_now();
+    bool done = stage(job, error);
+    *seconds += timing_now() - start;
+    return done;
+}
+
+/* Nothing replaces a picture that is there by an empty one. */
+static bool film_write(RenderJob *job, Error *error)
+{
+    job->left = job->result.samples == 0 && access(job->output.exr, F_OK) == 0;
+    if (job->left)
+        return true;
+    bool written = render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
+    progress_end(&job->progress);
+    return written;
+}
+
+/* A rendering that failed on its way has an image all the same, of the samples that were finished. */
+static void film_rescue(RenderJob *job, Error *error)
+{
+    Error failed = {0}, first = *error;
+    const char *what = error_text(&first);
+    if (job->result.samples == 0)
+        return;
+    if (stage_run(film_write, job, &job->write, &failed))
+        error_set(error, "%s; what was finished, %.6g samples per pixel, is in %s", what, job->result.samples_per_pixel,
+                  job->output.exr);
+    else
+        error_set(error, "%s; nor could what was finished be written: %s", what, error_text(&failed));
+    if (first.fix[0])
+        error_fix(error, "%s", first.fix);
+}
+
+static int job_verify(RenderJob *job, Error *error)
+{
+    const RenderOptions options = job_options(job);
+    if (!interrupt_install(error) || !render_verify(job->command, job->integrator, &job->scene, &options, error))
+        return EXIT_FAILED;
+    return *options.stop ? EXIT_STOPPED : EXIT_OK;
+}
+
+static int memory_print(const RenderJob *job)
+{
+    const ChainOptions *options = &job->command->chains;
+    FrameParams frame = job->scene.frame;
+    frame.max_depth = (uint)job->scene.settings.max_depth;
+    unsigned usual = options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    chain_memory_print(&frame, options->chains ? options->chains : usual);
+    return EXIT_OK;
+}
+
+static int job_run(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    job->integrator = integrator_find(command->integrator, error);
+    if (!job->integrator || !render_settings_check(command, job->integrator, error) ||
+        !render_settings_layers(command, job->integrator, &job->layers.wanted, error))
+        return EXIT_USAGE;
+    if (!names_fill(job, error))
+        return EXIT_USAGE;
+    if (command->output && !output_check(command->output, error))
+        return EXIT_FAILED; /* before a scene that may take long to load */
+    if (!stage_run(scene_load, job, &job->load, error))
+        return EXIT_FAILED;
+    if (!render_settings_apply(command, job->integrator, &job->scene, error))
+        return EXIT_USAGE;
+    if (command->memory)
+        return memory_print(job);
+    if (command->verify)
+        return job_verify(job, error);
+    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error) || !interrupt_install(error) ||
+        !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
+        return EXIT_FAILED;
+    if (!stage_run(film_render, job, &job->rendering, error)) {
+        film_rescue(job, error);
+        return EXIT_FAILED;
+    }
+    if (!stage_run(film_write, job, &job->write, error))
+        return EXIT_FAILED;
+    render_report(&job->result, &job->film, job->output.picture.scale);
+    summary_report(job);
+    if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !stats_output(job, error)) ||
+        (command->trace && !trace_output(job, error)))
+        return EXIT_FAILED;
+    return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
+}
+
+int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    RenderCommand command = {.png = true, .frame = -1};
+    OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
+    if (end != OPTIONS_READ)
+        return options_status(end);
+    if (!command.integrator)
+        command.integrator = "mmlt";
+    log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
+    RenderJob job;
+    memset(&job, 0, sizeof job);
+    job.command = &command;
+    job.start = timing_now();
+    scene_init(&job.scene);
+    int status = job_run(&job, error);
+    if (job.backend.backend)
+        job.backend.interface->close(job.backend.backend);
+    bad_chains_cancel(&job.bad_chains);
+    arena_destroy(&job.names);
+    render_output_release(&job.output);
+    render_layers_destroy(&job.layers);
+    film_destroy(&job.film);
+    scene_destroy(&job.scene);
+    return status;
+}

@@ -1,0 +1,404 @@
+#include "command/render_options.h"
+
+#include "base/frame_name.h"
+#include "base/option_values.h"
+#include "base/options.h"
+#include "base/path_name.h"
+
+#include <string.h>
+
+static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
+    [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
+    [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
+                           "algorithm: mmlt, Metropolis (default), pt, path tracing, or bdpt or ibpt, bidirectional"},
+    [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
+    [OPTION_STRATEGY] = {"strategy", 0, "s,t",
+                         "show one bidirectional strategy: s vertices from the light, t from the camera"},
+    [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: as if there were no other"},
+    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel, or of mmlt as much work (default: the scene's)"},
+    [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
+    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
+    [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
+                       "OpenCL devices, by number or part of a name as twinlight devices has them (default: 0)"},
+    [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
+    [OPTION_FILM] = {"film", 0, "WHERE", "who adds the paths of OpenCL devices to the film: host (default) or device"},
+    [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME",
+                           "how mmlt runs its chains: generations (default) or paper, one start and large steps"},
+    [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: Markov chains at a time, at most (default: 524288)"},
+    [OPTION_STEPS] = {"steps", 0, "N", "mmlt: steps of a chain between two pools (default: 64)"},
+    [OPTION_POOL] = {"pool", 0, "N",
+                     "mmlt: samples from which chains begin (default: one for every 12 steps of chains)"},
+    [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
+    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
+    [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
+    [OPTION_SORT] = {"sort", 0, "ORDER", "mmlt: chains by strategy, that is, depth and strategy (default), or depth"},
+    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order in which they were drawn"},
+    [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
+    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL, "mmlt: no steps across the film that keep the rest of the path"},
+    [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: chains know nothing of where the lights are"},
+    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
+    [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
+    [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
+    [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
+    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
+    [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
+    [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
+    [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
+    [OPTION_LAYERS] =
+        {"layers", 0, "NAME,...",
+         "what the image holds besides: direct, indirect, halves, variance, by-depth (mmlt), albedo, normal, "
+         "depth; all (but by-depth) or none (default: mmlt all, else none)"},
+    [OPTION_DESPECKLE] = {"despeckle", 0, "T",
+                          "add a layer without pixels that are T times as bright as the median around them"},
+    [OPTION_FRAME] = {"frame", 0, "N", "the number that file names with %d, %4d or %04d get in its place"},
+    [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
+    [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
+    [OPTION_STATS] = {"stats", 0, "FILE.json",
+                      "write what was rendered, how fast, and what was noticed; -: to standard output"},
+    [OPTION_TRACE] = {"trace", 0, "FILE.json", "write when a device did what, for chrome://tracing"},
+    [OPTION_VERIFY] = {"verify", 0, NULL,
+                       "compare the backend's state with the CPU's bit for bit, instead of rendering"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
+    [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
+};
+
+/* Parsing in progress. */
+typedef struct Parse {
+    RenderCommand *command;
+    const RenderOptionSet *set;
+    OptionSpec specs[RENDER_OPTION_COUNT]; /* of the set */
+    const char *backend; /* --backend; NULL: not given */
+} Parse;
+
+/* The options whose value is a number. */
+static bool number_set(const Parse *parse, int option, const char *value, Error *error)
+{
+    RenderCommand *command = parse->command;
+    uint64_t whole = 0;
+    const char *name = SPECS[option].name;
+    switch (option) {
+    case OPTION_SAMPLES:
+        return option_whole(name, value, 1, 0x7fffffff, &command->samples, error);
+    case OPTION_SEED:
+        return option_whole(name, value, 0, UINT64_MAX, &command->seed, error);
+    case OPTION_THREADS:
+        if (!option_whole(name, value, 1, 1024, &whole, error))
+            return false;
+        command->threads = (int)whole;
+        return true;
+    case OPTION_FRAME:
+        if (!option_whole(name, value, 0, FRAME_MAX, &whole, error))
+            return false;
+        command->frame = (int)whole;
+        return true;
+    case OPTION_BATCH:
+        if (!option_whole(name, value, 1, 1u << 26, &whole, error))
+            return false;
+        command->batch = (unsigned)whole;
+        return true;
+    case OPTION_MAX_DEPTH:
+        if (!option_whole(name, value, parse->set->depth_low, parse->set->depth_high, &whole, error))
+            return false;
+        command->max_depth = (int)whole;
+        return true;
+    default:
+        return option_number(name, value, -64.0, 64.0, &command->exposure, error);
+    }
+}
+
+static bool path_set(const char **path, int option, const char *value, const char *ending, Error *error)
+{
+    *path = value;
+    if (!ending || path_ends(value, ending))
+        return true;
+    error_set(error, "--%s=%s: the name does not end in %s", SPECS[option].name, value, ending);
+    return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
+}
+
+static bool heuristic_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->balance = strcmp(value, "balance") == 0;
+    if (command->balance || strcmp(value, "power") == 0)
+        return true;
+    error_set(error, "--heuristic=%s: there is no such heuristic", value);
+    return error_fix(error, "use power or balance");
+}
+
+static bool film_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->film = value;
+    if (strcmp(value, "device") == 0 || strcmp(value, "host") == 0)
+        return true;
+    error_set(error, "--film=%s: there is no such place", value);
+    return error_fix(error, "use host or device");
+}
+
+static bool scheme_set(ChainOptions *chains, const char *value, Error *error)
+{
+    chains->paper = strcmp(value, "paper") == 0;
+    if (chains->paper || strcmp(value, "generations") == 0)
+        return true;
+    error_set(error, "--mlt-scheme=%s: there is no such scheme", value);
+    return error_fix(error, "use generations or paper");
+}
+
+/* Names with commas between as bits: name i of `names` as bit i. False when `value` has another, which is *other. */
+static bool names_set(const char *value, const char *const *names, unsigned count, unsigned *bits, const char **other)
+{
+    *bits = 0;
+    for (const char *name = value;; ++name) {
+        size_t length = strcspn(name, ",");
+        unsigned found = 0;
+        for (unsigned i = 0; i < count; ++i)
+            if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0)
+                found = 1u << i;
+        *other = name;
+        if (!found)
+            return false;
+        *bits |= found;
+        name += length;
+        if (*name == '\0')
+            return true;
+    }
+}
+
+static bool sort_set(ChainOptions *chains, const char *value, Error *error)
+{
+    if (strcmp(value, "strategy") != 0 && strcmp(value, "depth") != 0) {
+        error_set(error, "--sort=%s is no order of chains", value);
+        return error_fix(error, "use strategy or depth, or --no-sort");
+    }
+    chains->order = value[0] == 'd' ? CHAIN_ORDER_DEPTH : CHAIN_ORDER_STRATEGY;
+    return true;
+}
+
+static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
+{
+    static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
+    const char *other;
+    if (names_set(value, NAMES, sizeof NAMES / sizeof NAMES[0], &chains->mutations, &other))
+        return true;
+    error_set(error, "--mutations=%s: %.*s is no kind of mutation", value, (int)strcspn(other, ","), other);
+    return error_fix(error, "use all, light and camera, with commas between");
+}
+
+static bool layers_set(RenderCommand *command, const char *value, Error *error)
+{
+    static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
+                                                   "albedo", "normal",   "depth",  "by-depth"};
+    const char *other;
+    command->has_layers = true;
+    command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
+    if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
+        return true;
+    error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
+    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal, depth and by-depth, with "
+                            "commas between, or all (but by-depth) or none");
+}
+
+static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)
+{
+    uint64_t whole;
+    if (!option_whole(name, value, 1, high, &whole, error))
+        return false;
+    *number = (unsigned)whole;
+    return true;
+}
+
+/* Options of Markov chains. */
+static bool chain_option_set(RenderCommand *command, int option, const char *value, Error *error)
+{
+    ChainOptions *chains = &command->chains;
+    const char *name = SPECS[option].name;
+    command->chain_option = name;
+    switch (option) {
+    case OPTION_MLT_SCHEME:
+        return scheme_set(chains, value, error);
+    case OPTION_CHAINS:
+        return chain_number_set(name, value, 1u << 26, &chains->chains, error);
+    case OPTION_STEPS:
+        return chain_number_set(name, value, 1u << 14, &chains->steps, error);
+    case OPTION_POOL:
+        return chain_number_set(name, value, 1u << 30, &chains->pool, error);
+    case OPTION_MUTATIONS:
+        return mutations_set(chains, value, error);
+    case OPTION_MEMORY:
+        command->memory = true;
+        return true;
+    case OPTION_SORT:
+        return sort_set(chains, value, error);
+    case OPTION_NO_SORT:
+        chains->order = CHAIN_ORDER_NONE;
+        return true;
+    case OPTION_NO_GROUP:
+        chains->ungrouped = true;
+        return true;
+    case OPTION_NO_SHIFT:
+        chains->shiftless = true;
+        return true;
+    case OPTION_NO_AIM:
+        chains->aimless = true;
+        return true;
+    case OPTION_NO_BLEND:
+        chains->unblended = true;
+        return true;
+    case OPTION_DUMP_BAD:
+        return path_set(&command->dump_bad, option, value, NULL, error);
+    default:
+        return option_number(name, value, 1e-6, 1.0, &chains->large_step, error);
+    }
+}
+
+static bool option_set(void *context, int index, const char *value, Error *error)
+{
+    Parse *parse = context;
+    RenderCommand *command = parse->command;
+    const int option = parse->set->uses ? (int)parse->set->uses[index].option : index;
+    switch (option) {
+    case OPTION_OUTPUT:
+        return path_set(&command->output, option, value, parse->set->output_ending, error);
+    case OPTION_STATS:
+        return path_set(&command->stats, option, value, NULL, error);
+    case OPTION_TRACE:
+        return path_set(&command->trace, option, value, NULL, error);
+    case OPTION_DEVICE:
+        command->device = value;
+        return true;
+    case OPTION_PNG:
+        command->png = true;
+        return !value || path_set(&command->png_path, option, value, ".png", error);
+    case OPTION_NO_PNG:
+        command->png = false;
+        return true;
+    case OPTION_INTEGRATOR:
+        command->integrator = value;
+        return true;
+    case OPTION_HEURISTIC:
+        return heuristic_set(command, value, error);
+    case OPTION_FILM:
+        return film_set(command, value, error);
+    case OPTION_STRATEGY:
+        command->only_strategy = true;
+        return option_strategy("strategy", value, command->strategy, error);
+    case OPTION_UNWEIGHTED:
+        command->unweighted = true;
+        return true;
+    case OPTION_BACKEND:
+        parse->backend = value;
+        return true;
+    case OPTION_TIME:
+        return option_seconds("time", value, &command->seconds, error);
+    case OPTION_SAVE_EVERY:
+        return option_seconds("save-every", value, &command->save_every, error);
+    case OPTION_RESOLUTION:
+        return option_resolution("resolution", value, command->resolution, error);
+    case OPTION_CROP:
+        command->has_crop = true;
+        return option_crop("crop", value, command->crop, error);
+    case OPTION_LAYERS:
+        return layers_set(command, value, error);
+    case OPTION_DESPECKLE:
+        return option_number("despeckle", value, 1.0, 1e6, &command->despeckle, error);
+    case OPTION_VERIFY:
+        command->verify = true;
+        return true;
+    case OPTION_LENIENT:
+        command->lenient = true;
+        return true;
+    case OPTION_QUIET:
+        command->quiet = true;
+        return true;
+    case OPTION_MLT_SCHEME:
+    case OPTION_CHAINS:
+    case OPTION_STEPS:
+    case OPTION_POOL:
+    case OPTION_LARGE_STEP:
+    case OPTION_MUTATIONS:
+    case OPTION_MEMORY:
+    case OPTION_SORT:
+    case OPTION_NO_SORT:
+    case OPTION_NO_GROUP:
+    case OPTION_NO_SHIFT:
+    case OPTION_NO_AIM:
+    case OPTION_NO_BLEND:
+    case OPTION_DUMP_BAD:
+        return chain_option_set(command, option, value, error);
+    default:
+        return number_set(parse, option, value, error);
+    }
+}
+
+/* --verify makes no picture and takes no time of its own choosing. */
+static bool verify_alone(const RenderCommand *command, Error *error)
+{
+    const char *option = command->output             ? "output"
+                         : command->png_path         ? "png"
+                         : command->seconds > 0.0    ? "time"
+                         : command->save_every > 0.0 ? "save-every"
+                         : command->stats            ? "stats"
+                         : command->trace            ? "trace"
+                         : command->dump_bad         ? "dump-bad"
+                         : command->film             ? "film"
+                         : command->has_layers       ? "layers"
+                         : command->despeckle > 0.0  ? "despeckle"
+                                                     : NULL;
+    if (!command->verify || !option)
+        return true;
+    error_set(error, "--%s does not go with --verify, which renders no picture", option);
+    return error_fix(error, "leave --%s out; --samples=N says how much is compared", option);
+}
+
+/* Which backends, once all options are known. */
+static bool backends_set(RenderCommand *command, const BackendTable *table, const char *backend, Error *error)
+{
+    command->reference = table->backends[0];
+    if (command->verify && !backend && table->count > 1)
+        backend = table->backends[1]->name;
+    if (!backend_choices_make(&command->backends, table, backend, command->device, error))
+        return false;
+    if (command->verify && !backend_choices_have_devices(&command->backends)) {
+        error_set(error, "--verify compares devices with the CPU, and --backend=%s has none", command->backends.name);
+        return error_fix(error, "use --backend=opencl, in a build that has it");
+    }
+    const char *option = command->device      ? "device"
+                         : command->batch > 0 ? "batch"
+                         : command->film      ? "film"
+                         : command->trace     ? "trace"
+                                              : NULL;
+    if (!option || backend_choices_have_devices(&command->backends))
+        return true;
+    error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backends.name);
+    return error_fix(error, "add --backend=opencl, or leave --%s out", option);
+}
+
+/* The set's options as a table; returns their number. */
+static int specs_fill(const RenderOptionSet *set, OptionSpec *specs)
+{
+    if (!set->uses) {
+        memcpy(specs, SPECS, sizeof SPECS);
+        return RENDER_OPTION_COUNT;
+    }
+    for (int i = 0; i < set->use_count; ++i) {
+        const RenderOptionUse *use = &set->uses[i];
+        specs[i] = SPECS[use->option];
+        specs[i].argument = use->argument ? use->argument : specs[i].argument;
+        specs[i].help = use->help ? use->help : specs[i].help;
+    }
+    return set->use_count;
+}
+
+OptionsEnd render_options_parse(RenderCommand *command, const RenderOptionSet *set, const BackendTable *backends,
+                                int argc, char **argv, Error *error)
+{
+    Parse parse = {.command = command, .set = set};
+    const OptionTable table = {set->command, set->usage, set->summary, parse.specs, specs_fill(set, parse.specs),
+                               set->footer};
+    int first = 0;
+    OptionsEnd end = options_parse(&table, argc, argv, option_set, &parse, &first, error);
+    if (end != OPTIONS_READ)
+        return end;
+    bool good = options_scene(&table, argc, argv, first, &command->scene, error) && verify_alone(command, error) &&
+                backends_set(command, backends, parse.backend, error);
+    return good ? OPTIONS_READ : OPTIONS_WRONG;
+}

@@ -1,0 +1,127 @@
+#include "command/render_output.h"
+
+#include "config.h"
+
+#include "base/path_name.h"
+#include "image/exr.h"
+#include "image/png_write.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any case. */
+static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
+{
+    const char *name = path_file_name(path);
+    const char *dot = strrchr(name, '.');
+    bool ends = path_ends(path, ending);
+    size_t stem = dot && dot != name && !ends ? (size_t)(dot - path) : strlen(path);
+    if (stem + strlen(ending) >= PATH_MAX) {
+        error_set(error, "the file name is too long: %.200s...", path);
+        return error_fix(error, "give a shorter one with --output");
+    }
+    snprintf(target, PATH_MAX, "%.*s%s", (int)stem, path, ends ? "" : ending);
+    return true;
+}
+
+bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error)
+{
+    output->png[0] = '\0';
+    if (!path_with_ending(output->exr, image, ".exr", error))
+        return false;
+    return !want_png || path_with_ending(output->png, png ? png : output->exr, ".png", error);
+}
+
+/* ---- files ------------------------------------------------------------------------------------------------------- */
+
+bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error)
+{
+    return picture_memory_init(&output->memory, &output->picture, crop[2] - crop[0], crop[3] - crop[1],
+                               (uint)output->max_depth, error);
+}
+
+void render_output_release(RenderOutput *output)
+{
+    picture_memory_destroy(&output->memory);
+}
+
+/* A picture on its way to one file. */
+typedef struct Writing {
+    const RenderOutput *output;
+    const char *path;
+    Picture picture;
+} Writing;
+
+/* Row y is about to be made. */
+static void writing_report(const Writing *writing, int y)
+{
+    const RenderOutput *output = writing->output;
+    if (output->writing)
+        output->writing(output->writing_context, writing->path, (double)y / writing->picture.height);
+}
+
+static void writing_band(void *context, int first, int count)
+{
+    Writing *writing = context;
+    writing_report(writing, first);
+    picture_band(&writing->picture, first, count);
+}
+
+static const float *writing_row(void *context, int y)
+{
+    Writing *writing = context;
+    writing_report(writing, y);
+    return picture_row(&writing->picture, y);
+}
+
+static bool exr_output_write(Writing *writing, const Film *film, double samples_per_pixel, Error *error)
+{
+    const RenderOutput *output = writing->output;
+    const RenderLayers *layers = output->picture.layers;
+    /* Nothing of time, machine or threads: the same picture is the same file. */
+    const ExrAttribute attributes[] = {
+        exr_text("integrator", output->integrator),
+        exr_whole("maxDepth", (uint64_t)output->max_depth),
+        exr_text("renderer", PACKAGE_NAME " " PACKAGE_VERSION),
+        exr_real("samples", samples_per_pixel),
+        exr_text("scene", path_file_name(output->scene_file)),
+        exr_whole("seed", output->seed),
+        exr_matrix("worldToCamera", output->world_to_camera),
+        exr_matrix("worldToNDC", output->world_to_ndc),
+        exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world"),
+    };
+    /* The last one is for a layer that may not be there. */
+    bool depth = layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
+    ExrPicture picture = {.channels = writing->picture.channels,
+                          .channel_count = writing->picture.channel_count,
+                          .width = film->width,
+                          .height = film->height,
+                          .attributes = attributes,
+                          .attribute_count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1),
+                          .band = writing_band,
+                          .context = writing,
+                          .plane = output->memory.plane};
+    memcpy(picture.crop, film->crop, sizeof picture.crop);
+    writing->path = output->exr;
+    return exr_write_picture(output->exr, &picture, error);
+}
+
+static bool png_output_write(Writing *writing, Error *error)
+{
+    const RenderOutput *output = writing->output;
+    writing->path = output->png;
+    return png_write_picture(output->png, (PngRows){writing_row, writing}, writing->picture.width,
+                             writing->picture.height, output->exposure, error);
+}
+
+bool render_output_write(RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
+{
+    Writing writing = {.output = output};
+    picture_init(&writing.picture, &output->picture, film, &output->memory);
+    picture_memory_lend(&output->memory);
+    bool written = exr_output_write(&writing, film, samples_per_pixel, error) &&
+                   (!output->png[0] || png_output_write(&writing, error));
+    picture_memory_take_back(&output->memory);
+    return written;
+}

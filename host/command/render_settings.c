@@ -1,0 +1,108 @@
+#include "command/render_settings.h"
+
+#include "base/log.h"
+
+#include <math.h>
+#include <string.h>
+
+bool render_settings_check(const RenderCommand *command, const Integrator *integrator, Error *error)
+{
+    const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
+    if (command->unweighted && !command->only_strategy) {
+        error_set(error, "--unweighted without --strategy would count every path several times");
+        return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
+    }
+    if (option && integrator == integrator_pt()) {
+        error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
+        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
+    }
+    if (option && integrator == integrator_mmlt()) {
+        error_set(error, "--%s is not for mmlt, whose chains go over all strategies by the balance heuristic", option);
+        return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
+    }
+    if (command->chain_option && integrator != integrator_mmlt()) {
+        error_set(error, "--%s is for mmlt, and %s has no Markov chains", command->chain_option, integrator->name);
+        return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);
+    }
+    if (command->chains.large_step > 0.0 && !command->chains.paper) {
+        error_set(error,
+                  "--large-step is for --mlt-scheme=paper: generations begin anew instead of making large steps");
+        return error_fix(error, "add --mlt-scheme=paper, or leave --large-step out");
+    }
+    unsigned s = command->strategy[0], t = command->strategy[1];
+    if (!command->only_strategy || strategy_taken(integrator->strategies, s, s + t - 1))
+        return true;
+    error_set(error, "--strategy=%u,%u: %s has no such strategy", s, t, integrator->name);
+    return error_fix(error, "%s",
+                     s + t == 2 ? "lights are seen directly by 0,2 alone" : "use --integrator=bdpt, which has all");
+}
+
+bool render_settings_layers(const RenderCommand *command, const Integrator *integrator, unsigned *wanted, Error *error)
+{
+    bool chains = integrator == integrator_mmlt();
+    *wanted = command->has_layers ? command->layers : chains ? LAYERS_ALL : 0;
+    if (chains)
+        return true;
+    if (command->layers == LAYERS_ALL)
+        *wanted &= LAYERS_AOV;
+    else if ((command->layers & ~LAYERS_AOV) != 0) {
+        error_set(error, "--layers: the image of %s has no layers of light", integrator->name);
+        return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");
+    }
+    return true;
+}
+
+/* The scene's crop window on a film of another size: the same part of the picture (pbrt rounds both ends up). */
+static void crop_scale(const SceneSettings *settings, const int size[2], int crop[4])
+{
+    const int old[2] = {settings->width, settings->height};
+    for (int i = 0; i < 4; ++i) {
+        double part = (double)settings->crop[i] / old[i % 2];
+        crop[i] = (int)ceil(part * size[i % 2] - 1e-9);
+    }
+    for (int i = 0; i < 2; ++i)
+        if (crop[i] >= crop[i + 2])
+            crop[i] = crop[i + 2] - 1;
+}
+
+/* Size, crop and depth: the command line's where it says so, else the scene's. */
+static bool settings_override(const RenderCommand *command, Scene *scene, Error *error)
+{
+    SceneSettings *settings = &scene->settings;
+    int size[2] = {settings->width, settings->height};
+    int crop[4];
+    memcpy(crop, settings->crop, sizeof crop);
+    if (command->resolution[0] > 0) {
+        memcpy(size, command->resolution, sizeof size);
+        crop_scale(settings, size, crop);
+    }
+    if (command->has_crop)
+        memcpy(crop, command->crop, sizeof crop);
+    if (command->max_depth > 0)
+        settings->max_depth = command->max_depth;
+    return scene_film_set(scene, size[0], size[1], crop, error);
+}
+
+/* What is longer than the integrator can make or the user wants is said, not dropped. */
+static bool depth_check(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error)
+{
+    int *depth = &scene->settings.max_depth, limit = integrator->depth_limit;
+    if (*depth > limit) {
+        log_message(LOG_WARNING, "%s makes paths of up to %d segments; longer ones, up to %d, are left out",
+                    integrator->name, limit, *depth);
+        *depth = limit;
+    }
+    unsigned segments = command->strategy[0] + command->strategy[1] - 1;
+    if (!command->only_strategy || segments <= (unsigned)*depth)
+        return true;
+    error_set(error, "--strategy=%u,%u makes paths of %u segments, and the longest have %d", command->strategy[0],
+              command->strategy[1], segments, *depth);
+    if (segments > (unsigned)limit)
+        return error_fix(error, "%s makes no longer ones than %d", integrator->name, limit);
+    return error_fix(error, "add --max-depth=%u", segments);
+}
+
+bool render_settings_apply(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error)
+{
+    return settings_override(command, scene, error) && depth_check(command, integrator, scene, error);
+}

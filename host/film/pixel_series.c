@@ -1,0 +1,59 @@
+#include "film/pixel_series.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error)
+{
+    size_t values = pixels * (size_t)channels;
+    *series = (PixelSeries){.pixels = pixels, .channels = channels};
+    series->mean = calloc(values, sizeof *series->mean);
+    series->spread = calloc(values, sizeof *series->spread);
+    series->weight = calloc(pixels, sizeof *series->weight);
+    series->pictures = calloc(pixels, sizeof *series->pictures);
+    if (series->mean && series->spread && series->weight && series->pictures)
+        return true;
+    pixel_series_destroy(series);
+    return error_memory(error, values * 2 * sizeof(float) + pixels * (sizeof(float) + sizeof(short)), "variances");
+}
+
+void pixel_series_destroy(PixelSeries *series)
+{
+    free(series->mean);
+    free(series->spread);
+    free(series->weight);
+    free(series->pictures);
+    *series = (PixelSeries){0};
+}
+
+void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
+{
+    size_t channels = (size_t)series->channels;
+    for (size_t i = 0; i < series->pixels; ++i) {
+        double own = weights ? weight * (double)weights[i] : weight;
+        if (!(own > 0.0))
+            continue;
+        double sum = (double)series->weight[i] + own, part = own / sum;
+        series->weight[i] = (float)sum;
+        if (series->pictures[i] < USHRT_MAX)
+            ++series->pictures[i];
+        for (size_t value = i * channels; value < (i + 1) * channels; ++value) {
+            double distance = (double)picture[value] - (double)series->mean[value];
+            double mean = (double)series->mean[value] + part * distance;
+            series->spread[value] += (float)(own * distance * ((double)picture[value] - mean));
+            series->mean[value] = (float)mean;
+        }
+    }
+}
+
+double pixel_series_spread(const PixelSeries *series, size_t value)
+{
+    unsigned pictures = series->pictures[value / (size_t)series->channels];
+    return pictures > 1 ? (double)series->spread[value] / (pictures - 1) : 0.0;
+}
+
+double pixel_series_variance(const PixelSeries *series, size_t value)
+{
+    double weight = (double)series->weight[value / (size_t)series->channels];
+    return weight > 0.0 ? pixel_series_spread(series, value) / weight : 0.0;
+}

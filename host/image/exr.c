@@ -1,0 +1,304 @@
+#include "image/exr.h"
+
+#include "base/output_file.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <openexr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The library's default; named so that a change of its default does not change our bytes. */
+#define EXR_ZIP_LEVEL 4
+
+typedef struct ExrWriter {
+    OutputFile file;
+    const ExrPicture *picture;
+    const ExrChannel **channels; /* sorted by name */
+    int width, height; /* of the data window */
+    int write_errno; /* of the first write that failed, else 0 */
+    char message[256]; /* the library's last complaint */
+} ExrWriter;
+
+static void exr_message(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    void *user = NULL;
+    if (exr_get_user_data(context, &user) == EXR_ERR_SUCCESS && user) {
+        ExrWriter *writer = user;
+        snprintf(writer->message, sizeof writer->message, "%s",
+                 message ? message : exr_get_default_error_message(code));
+    }
+}
+
+/* pwrite for the library, all of it or -1. `report` is not called: the library holds its own lock while it writes the
+ * header, and reporting takes that lock again. */
+static int64_t exr_write_bytes(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
+                               uint64_t offset, exr_stream_error_func_ptr_t report)
+{
+    ExrWriter *writer = user;
+    uint64_t done = 0;
+    (void)context;
+    (void)report;
+    while (done < size) {
+        ssize_t n = pwrite(writer->file.descriptor, (const char *)buffer + done, size - done, (off_t)(offset + done));
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0) {
+            writer->write_errno = n < 0 ? errno : EIO;
+            return -1;
+        }
+        done += (uint64_t)n;
+    }
+    return (int64_t)done;
+}
+
+static int channel_compare(const void *a, const void *b)
+{
+    return strcmp((*(const ExrChannel *const *)a)->name, (*(const ExrChannel *const *)b)->name);
+}
+
+/* x0 <= x < x1 as EXR's box, whose ends are inside. */
+static exr_attr_box2i_t box_make(int x0, int y0, int x1, int y1)
+{
+    exr_attr_box2i_t box;
+    box.min.x = x0;
+    box.min.y = y0;
+    box.max.x = x1 - 1;
+    box.max.y = y1 - 1;
+    return box;
+}
+
+ExrAttribute exr_text(const char *name, const char *text)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_TEXT, .text = text};
+}
+
+ExrAttribute exr_whole(const char *name, uint64_t whole)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_WHOLE, .whole = whole};
+}
+
+ExrAttribute exr_real(const char *name, double real)
+{
+    return (ExrAttribute){.name = name, .kind = EXR_REAL, .real = real};
+}
+
+ExrAttribute exr_matrix(const char *name, const float matrix[16])
+{
+    return (ExrAttribute){.name = name, .kind = EXR_MATRIX, .matrix = matrix};
+}
+
+static exr_result_t attribute_set(exr_context_t context, int part, const ExrAttribute *attribute)
+{
+    const char *name = attribute->name;
+    char digits[24];
+    exr_attr_m44f_t matrix;
+    switch (attribute->kind) {
+    case EXR_WHOLE:
+        if (attribute->whole <= INT32_MAX)
+            return exr_attr_set_int(context, part, name, (int32_t)attribute->whole);
+        snprintf(digits, sizeof digits, "%" PRIu64, attribute->whole);
+        return exr_attr_set_string(context, part, name, digits);
+    case EXR_REAL:
+        return exr_attr_set_float(context, part, name, (float)attribute->real);
+    case EXR_MATRIX:
+        for (int i = 0; i < 16; ++i)
+            matrix.m[i] = attribute->matrix[i % 4 * 4 + i / 4];
+        return exr_attr_set_m44f(context, part, name, &matrix);
+    default:
+        return exr_attr_set_string(context, part, name, attribute->text);
+    }
+}
+
+/* Those of Rec. 709 and sRGB. */
+static exr_result_t chromaticities_set(exr_context_t context, int part)
+{
+    const exr_attr_chromaticities_t srgb = {.red_x = 0.64f,
+                                            .red_y = 0.33f,
+                                            .green_x = 0.30f,
+                                            .green_y = 0.60f,
+                                            .blue_x = 0.15f,
+                                            .blue_y = 0.06f,
+                                            .white_x = 0.3127f,
+                                            .white_y = 0.3290f};
+    return exr_attr_set_chromaticities(context, part, "chromaticities", &srgb);
+}
+
+static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
+{
+    int part = 0;
+    const ExrPicture *picture = writer->picture;
+    const int *crop = picture->crop;
+    exr_attr_box2i_t display = box_make(0, 0, picture->width, picture->height);
+    exr_attr_box2i_t data = box_make(crop[0], crop[1], crop[2], crop[3]);
+    exr_attr_v2f_t center = {.x = 0.0f, .y = 0.0f};
+    exr_result_t result = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_initialize_required_attr(context, part, &display, &data, 1.0f, &center, 1.0f,
+                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
+    for (size_t i = 0; i < picture->channel_count && result == EXR_ERR_SUCCESS; ++i)
+        result = exr_add_channel(context, part, writer->channels[i]->name,
+                                 writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (size_t i = 0; i < picture->attribute_count && result == EXR_ERR_SUCCESS; ++i)
+        result = attribute_set(context, part, &picture->attributes[i]);
+    if (result == EXR_ERR_SUCCESS)
+        result = chromaticities_set(context, part);
+    return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
+}
+
+/* The largest finite half instead of infinity. */
+static float half_range(float x)
+{
+    const float HALF_MAX = 65504.0f;
+    return x > HALF_MAX ? HALF_MAX : x < -HALF_MAX ? -HALF_MAX : x;
+}
+
+/* Points the encoder's channels at lines y ... of the picture. The packing routine takes contiguous planes only, so
+ * the lines are gathered into `plane` first. */
+static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder, float *plane, int y, int lines)
+{
+    const ExrPicture *picture = writer->picture;
+    size_t width = (size_t)writer->width, count = (size_t)lines * width, first = picture->band ? 0 : (size_t)y * width;
+    if (picture->band)
+        picture->band(picture->context, y, lines);
+    for (size_t c = 0; c < picture->channel_count; ++c) {
+        const ExrChannel *channel = writer->channels[c];
+        const float *from = channel->data + first * channel->stride;
+        float *to = plane + c * count;
+        for (size_t i = 0; i < count; ++i)
+            to[i] = channel->half ? half_range(from[i * channel->stride]) : from[i * channel->stride];
+        exr_coding_channel_info_t *info = &encoder->channels[c];
+        assert(strcmp(info->channel_name, channel->name) == 0);
+        info->user_data_type = EXR_PIXEL_FLOAT;
+        info->user_bytes_per_element = 4;
+        info->user_pixel_stride = 4;
+        info->user_line_stride = 4 * writer->width;
+        info->encode_from_ptr = (const uint8_t *)to;
+    }
+}
+
+typedef exr_result_t (*CompressFunction)(exr_encode_pipeline_t *encoder);
+
+/* A chunk whose size compression does not lower must be stored as it is, for that is how readers tell the two apart.
+ * OpenEXR before 3.4.8 stores the compressed bytes when both sizes are equal, which readers take for pixels
+ * (AcademySoftwareFoundation/openexr issue 2306). */
+static exr_result_t chunk_compress(exr_encode_pipeline_t *encoder)
+{
+    const CompressFunction *library = encoder->encoding_user_data;
+    exr_result_t result = (*library)(encoder);
+    if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
+        memcpy(encoder->compressed_buffer, encoder->packed_buffer, encoder->packed_bytes);
+    return result;
+}
+
+static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, float *plane)
+{
+    int first_line = writer->picture->crop[1];
+    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    CompressFunction library = NULL;
+    int32_t step = 1;
+    bool begun = false;
+    exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &step);
+    assert(step <= EXR_BAND_ROWS);
+    for (int y = 0; y < writer->height && result == EXR_ERR_SUCCESS; y += step) {
+        exr_chunk_info_t chunk;
+        result = exr_write_scanline_chunk_info(context, 0, first_line + y, &chunk);
+        if (result == EXR_ERR_SUCCESS)
+            result = begun ? exr_encoding_update(context, 0, &chunk, &encoder)
+                           : exr_encoding_initialize(context, 0, &chunk, &encoder);
+        if (result != EXR_ERR_SUCCESS)
+            break;
+        chunk_gather(writer, &encoder, plane, y, chunk.height);
+        if (!begun) {
+            result = exr_encoding_choose_default_routines(context, 0, &encoder);
+            library = encoder.compress_fn;
+            encoder.compress_fn = library ? chunk_compress : NULL;
+            encoder.encoding_user_data = &library;
+        }
+        begun = true;
+        if (result == EXR_ERR_SUCCESS)
+            result = exr_encoding_run(context, 0, &encoder);
+    }
+    exr_encoding_destroy(context, &encoder);
+    return result;
+}
+
+static bool channels_check(const ExrWriter *writer, const char *path, Error *error)
+{
+    for (size_t i = 1; i < writer->picture->channel_count; ++i)
+        if (strcmp(writer->channels[i - 1]->name, writer->channels[i]->name) == 0)
+            return error_set(error, "cannot write %s: two channels are named \"%s\"", path, writer->channels[i]->name);
+    return true;
+}
+
+static bool exr_write_open(ExrWriter *writer, const char *path, float *plane, Error *error)
+{
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn = exr_message;
+    setup.user_data = writer;
+    setup.write_fn = exr_write_bytes;
+    exr_context_t context = NULL;
+    exr_result_t result = exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, &setup);
+    if (result == EXR_ERR_SUCCESS)
+        result = header_write(context, writer);
+    if (result == EXR_ERR_SUCCESS)
+        result = chunks_write(context, writer, plane);
+    exr_result_t finished = context ? exr_finish(&context) : EXR_ERR_SUCCESS;
+    if (result == EXR_ERR_SUCCESS)
+        result = finished;
+    if (result == EXR_ERR_SUCCESS && !writer->write_errno)
+        return true;
+    error_set(error, "cannot write %s: %s", path,
+              writer->write_errno  ? strerror(writer->write_errno)
+              : writer->message[0] ? writer->message
+                                   : exr_get_default_error_message(result));
+    return error_fix_errno(error, writer->write_errno);
+}
+
+static bool picture_write(ExrWriter *writer, const char *path, float *plane, Error *error)
+{
+    const ExrPicture *picture = writer->picture;
+    for (size_t i = 0; i < picture->channel_count; ++i)
+        writer->channels[i] = &picture->channels[i];
+    qsort(writer->channels, picture->channel_count, sizeof *writer->channels, channel_compare);
+    bool good = channels_check(writer, path, error) && output_file_begin(&writer->file, path, error) &&
+                exr_write_open(writer, path, plane, error) && output_file_commit(&writer->file, error);
+    output_file_cancel(&writer->file);
+    return good;
+}
+
+bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error)
+{
+    const int *crop = picture->crop;
+    ExrWriter writer = {
+        .file = {.descriptor = -1}, .picture = picture, .width = crop[2] - crop[0], .height = crop[3] - crop[1]};
+    size_t bytes = picture->channel_count * EXR_BAND_ROWS * (size_t)writer.width * sizeof *picture->plane;
+    assert(picture->channel_count > 0 && writer.width > 0 && writer.height > 0);
+    float *own = picture->plane ? NULL : malloc(bytes), *plane = picture->plane ? picture->plane : own;
+    writer.channels = calloc(picture->channel_count, sizeof *writer.channels);
+    bool good = writer.channels && plane ? picture_write(&writer, path, plane, error)
+                                         : error_memory(error, bytes, "rows of an EXR file");
+    free(writer.channels);
+    free(own);
+    return good;
+}
+
+bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
+               const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error)
+{
+    const int whole[4] = {0, 0, width, height};
+    ExrPicture picture = {.channels = channels,
+                          .channel_count = channel_count,
+                          .width = width,
+                          .height = height,
+                          .attributes = attributes,
+                          .attribute_count = attribute_count};
+    memcpy(picture.crop, crop ? crop : whole, sizeof picture.crop);
+    return exr_write_picture(path, &picture, error);
+}

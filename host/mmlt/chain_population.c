@@ -1,0 +1,141 @@
+#include "mmlt/chain_population.h"
+
+#include "chain/chain.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Paths of the population and then those of the pool. */
+typedef struct Candidates {
+    const float *change; /* of importance; NULL: none */
+    double *weights;
+    uint *keys;
+    uint chains, all;
+} Candidates;
+
+void chain_population_init(ChainPopulation *population, uint fields)
+{
+    *population = (ChainPopulation){.fields = fields};
+}
+
+void chain_population_destroy(ChainPopulation *population)
+{
+    free(population->words);
+    *population = (ChainPopulation){0};
+}
+
+static uint word_of(const ChainPopulation *population, uint field, uint i)
+{
+    return population->words[(size_t)field * population->count + i];
+}
+
+/* The part of a path of such luminance that chains answer for. */
+static double part_of_chains(double luminance, double most, double threshold)
+{
+    return luminance > 0.0 ? most * luminance / (luminance + threshold) : 0.0;
+}
+
+/* Weights in units of brightness: their sum is that of the next population. */
+static void candidates_weigh(const Candidates *candidates, const ChainPopulation *population, const uint *pool,
+                             double threshold)
+{
+    uint chains = candidates->chains, samples = candidates->all - chains;
+    double most = population->samples / (population->samples + samples);
+    for (uint i = 0; i < chains; ++i) {
+        double change = candidates->change ? (double)candidates->change[word_of(population, CHAIN_PASS_CELL, i)] : 1.0;
+        double luminance = change * (double)bits_float(word_of(population, CHAIN_PASS_LUMINANCE, i));
+        double part = part_of_chains(luminance, most, threshold);
+        candidates->weights[i] = change * population->brightness / chains * part;
+        candidates->keys[i] = part > 0.0 ? word_of(population, CHAIN_PASS_KEY, i) : 0;
+    }
+    /* Also where there are no chains, because all pools before were black: others have had more to show than there is. */
+    for (uint i = 0; i < samples; ++i) {
+        double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
+        double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;
+        double part = part_of_chains(luminance, most, threshold);
+        candidates->weights[chains + i] = weight * (1.0 - part);
+        candidates->keys[chains + i] = pool[(size_t)POOL_KEY * samples + i];
+    }
+}
+
+/* The words of the chains chosen: of one that goes on its coordinates, of a new one its number in the pool. */
+static void words_gather(const ChainPopulation *population, const Candidates *candidates, const uint *seeds, uint count,
+                         uint *words)
+{
+    for (uint i = 0; i < count; ++i) {
+        bool old = seeds[i] < candidates->chains;
+        words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
+        words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
+        if (old) {
+            if (!candidates->change) /* else it is another, which the pass will find */
+                words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
+            words[(size_t)CHAIN_PASS_RUN * count + i] = word_of(population, CHAIN_PASS_RUN, seeds[i]);
+        }
+    }
+    for (uint field = CHAIN_PASS_NUMBERS; candidates->chains > 0 && field < population->fields; ++field)
+        for (uint i = 0; i < count; ++i)
+            if (seeds[i] < candidates->chains)
+                words[(size_t)field * count + i] = word_of(population, field, seeds[i]);
+}
+
+/* A candidate that was chosen several times stands there several times in a row. */
+static void starts_count(const Candidates *candidates, const uint *seeds, uint count, ChainStarts *starts)
+{
+    for (uint i = 0; i < count; ++i) {
+        uint depth = chain_key_depth(candidates->keys[seeds[i]]) % CHAIN_DEPTHS;
+        ++starts->chains[depth];
+        starts->distinct[depth] += i == 0 || seeds[i] != seeds[i - 1];
+        starts->kept += seeds[i] < candidates->chains;
+    }
+}
+
+static bool population_choose(ChainPopulation *population, Candidates *candidates, const uint *pool, double threshold,
+                              ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error)
+{
+    uint *words = calloc((size_t)count * population->fields, sizeof *words), *seeds = malloc(count * sizeof *seeds);
+    double brightness = 0.0;
+    bool done = words && seeds;
+    if (done) {
+        candidates_weigh(candidates, population, pool, threshold);
+        done = chain_seeds_choose(candidates->weights, candidates->keys, candidates->all, order, offset, count, seeds,
+                                  &brightness, error);
+    } else {
+        error_memory(error, (size_t)count * population->fields * sizeof *words, "chains");
+    }
+    if (done && brightness > 0.0) {
+        words_gather(population, candidates, seeds, count, words);
+        if (starts)
+            starts_count(candidates, seeds, count, starts);
+    }
+    free(seeds);
+    if (!done) {
+        free(words);
+        return false;
+    }
+    free(population->words);
+    population->words = words;
+    population->count = count;
+    population->brightness = brightness;
+    population->samples += candidates->all - candidates->chains;
+    return true;
+}
+
+bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
+                            double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
+                            Error *error)
+{
+    Candidates candidates = {.change = change, .chains = population->brightness > 0.0 ? population->count : 0};
+    candidates.all = candidates.chains + pool_count;
+    candidates.weights = malloc(candidates.all * sizeof *candidates.weights);
+    candidates.keys = malloc(candidates.all * sizeof *candidates.keys);
+    bool done = candidates.weights && candidates.keys;
+    if (!done)
+        error_memory(error, candidates.all * (sizeof *candidates.weights + sizeof *candidates.keys), "a pool's paths");
+    if (starts)
+        *starts = (ChainStarts){0};
+    done = done && population_choose(population, &candidates, pool, threshold, order, offset, count, starts, error);
+    free(candidates.weights);
+    free(candidates.keys);
+    return done;
+}

@@ -1,0 +1,52 @@
+#include "mmlt/chain_seeds.h"
+
+#include "chain/pool.h"
+
+#include <stdlib.h>
+
+/* Depths and numbers of vertices are below 64 (path/bd_state.h). */
+#define KEY_SIDE 64u
+#define KEY_COUNT (KEY_SIDE * KEY_SIDE)
+
+static uint key_rank(uint key, ChainOrder order)
+{
+    uint depth = order == CHAIN_ORDER_NONE ? 0 : chain_key_depth(key) % KEY_SIDE;
+    return depth * KEY_SIDE + (order == CHAIN_ORDER_STRATEGY ? chain_key_s(key) % KEY_SIDE : 0);
+}
+
+/* numbers[0 ... returned - 1]: paths there are, by key (a counting sort, so that those of a key keep their order). */
+static uint candidates_order(const uint *keys, uint candidates, ChainOrder order, uint *numbers)
+{
+    uint starts[KEY_COUNT + 1] = {0}, found = 0;
+    for (uint i = 0; i < candidates; ++i)
+        if (keys[i] != 0)
+            ++starts[key_rank(keys[i], order) + 1];
+    for (uint k = 0; k < KEY_COUNT; ++k)
+        starts[k + 1] += starts[k];
+    for (uint i = 0; i < candidates; ++i)
+        if (keys[i] != 0) {
+            numbers[starts[key_rank(keys[i], order)]++] = i;
+            ++found;
+        }
+    return found;
+}
+
+bool chain_seeds_choose(const double *weights, const uint *keys, uint candidates, ChainOrder order, double offset,
+                        uint count, uint *seeds, double *sum, Error *error)
+{
+    uint *numbers = malloc(candidates * sizeof *numbers);
+    if (!numbers)
+        return error_memory(error, candidates * sizeof *numbers, "the order of seeds");
+    uint found = candidates_order(keys, candidates, order, numbers), chosen = 0;
+    double before = 0.0;
+    *sum = 0.0;
+    for (uint i = 0; i < found; ++i)
+        *sum += weights[numbers[i]];
+    for (uint i = 0; i < found && chosen<count && * sum> 0.0; ++i) {
+        before += weights[numbers[i]];
+        while (chosen < count && (((double)chosen + offset) * *sum < before * count || i + 1 == found))
+            seeds[chosen++] = numbers[i];
+    }
+    free(numbers);
+    return true;
+}

@@ -1,0 +1,156 @@
+#include "mmlt/importance.h"
+
+#include "layout/item.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A place's light counts for no less than this part of the mean. */
+#define LIGHT_LEAST 0.05
+
+/* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and of a
+ * glossy room is 1.15 times smaller than without, and that of a pool's caustics 1.03 times larger, which three seeds cannot
+ * tell from none. */
+#define EXPONENT 0.5
+
+/* Every pixel has at least this part of the visits that it would have if all were visited alike, as a path that has not been met
+ * is not known of. At equal time, without the worst thousandth of pixels, these visits divide the square error of a lamp in glass
+ * by 1.3 and that of a glossy hall by 1.1; that of a door ajar is the same. In proportion to the error and not to its root, or with
+ * the largest of the tiles beside, they are worse ... */
+#define VISITS_EVEN 0.25
+
+/* ... which is so many visits before they are rounded. */
+#define VISITS_MEAN 4.0
+
+void importance_even(float importance[IMPORTANCE_CELLS])
+{
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        importance[i] = 1.0f;
+}
+
+/* Tiles that meet cell `cell` of `size` pixels along an axis, or stand next to it. */
+static void tiles_near(int cell, int size, int tiles, int *first, int *last)
+{
+    double unit = (double)size / (double)IMPORTANCE_SIDE;
+    *first = (int)(cell * unit) / BLEND_TILE - 1;
+    *last = ((int)ceil((cell + 1) * unit) - 1) / BLEND_TILE + 1;
+    *first = *first > 0 ? *first : 0;
+    *last = *last < tiles ? *last : tiles - 1;
+}
+
+static int tile_pixels(int tile, int size)
+{
+    int left = size - tile * BLEND_TILE;
+    return left < BLEND_TILE ? left : BLEND_TILE;
+}
+
+/* Mean luminance of the pixels in and around a cell. */
+static double light_around(const Blend *blend, int column, int row)
+{
+    int x0, x1, y0, y1;
+    double light = 0.0, pixels = 0.0;
+    tiles_near(column, blend->size[0], blend->tiles[0], &x0, &x1);
+    tiles_near(row, blend->size[1], blend->tiles[1], &y0, &y1);
+    for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+            light += blend->known[(size_t)y * (size_t)blend->tiles[0] + (size_t)x].light;
+            pixels += (double)tile_pixels(x, blend->size[0]) * (double)tile_pixels(y, blend->size[1]);
+        }
+    return light / pixels;
+}
+
+void importance_learn(const Blend *blend, float importance[IMPORTANCE_CELLS])
+{
+    double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        light[i] = light_around(blend, (int)(i % IMPORTANCE_SIDE), (int)(i / IMPORTANCE_SIDE));
+        sum += light[i];
+    }
+    importance_even(importance);
+    if (!(sum > 0.0))
+        return;
+    double least = LIGHT_LEAST * sum / IMPORTANCE_CELLS;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        double inverse = pow(light[i] + least, -EXPONENT);
+        worth += light[i] * inverse;
+        importance[i] = (float)inverse;
+    }
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        importance[i] = (float)((double)importance[i] * (sum / worth));
+}
+
+/* ---- visits ------------------------------------------------------------------------------------------------------ */
+
+static uint cell_pixels(const Blend *blend, uint cell)
+{
+    uint width = (uint)blend->size[0], height = (uint)blend->size[1];
+    uint column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE;
+    return (cell_begin(column + 1, width) - cell_begin(column, width)) *
+           (cell_begin(row + 1, height) - cell_begin(row, height));
+}
+
+/* The tiles' relative error in a cell that has pixels: mean over those that it meets. */
+static double error_around(const Blend *blend, const double *errors, uint cell)
+{
+    uint width = (uint)blend->size[0], height = (uint)blend->size[1];
+    uint column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE, tiles = 0;
+    double sum = 0.0;
+    for (uint y = cell_begin(row, height) / BLEND_TILE; y <= (cell_begin(row + 1, height) - 1) / BLEND_TILE; ++y)
+        for (uint x = cell_begin(column, width) / BLEND_TILE; x <= (cell_begin(column + 1, width) - 1) / BLEND_TILE;
+             ++x, ++tiles)
+            sum += errors[(size_t)y * (size_t)blend->tiles[0] + x];
+    return sum / tiles;
+}
+
+bool importance_visits(const Blend *blend, const double samples[BLEND_STREAMS], const double visited[IMPORTANCE_CELLS],
+                       uint visits[IMPORTANCE_CELLS + 1], Error *error)
+{
+    double *errors = malloc((size_t)blend->tiles[0] * (size_t)blend->tiles[1] * sizeof *errors);
+    double deviation[IMPORTANCE_CELLS] = {0.0}, sum = 0.0, pixels = (double)blend->size[0] * (double)blend->size[1];
+    uint64_t all = 0;
+    visits[IMPORTANCE_CELLS] = 0;
+    if (!errors)
+        return error_memory(error, (size_t)blend->tiles[0] * (size_t)blend->tiles[1] * sizeof *errors,
+                            "errors of tiles");
+    blend_errors(blend, samples, errors);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        uint count = cell_pixels(blend, i);
+        if (count > 0)
+            deviation[i] = sqrt(error_around(blend, errors, i) * visited[i]);
+        sum += count * deviation[i];
+    }
+    free(errors);
+    if (!(sum > 0.0) || VISITS_MOST * pixels > 0x1p31)
+        return true;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        double part = VISITS_EVEN + (1.0 - VISITS_EVEN) * deviation[i] * pixels / sum;
+        visits[i] = (uint)all;
+        all += cell_pixels(blend, i) * (uint64_t)fmin(fmax(rint(VISITS_MEAN * part), 1.0), VISITS_MOST);
+    }
+    visits[IMPORTANCE_CELLS] = (uint)all;
+    return true;
+}
+
+double importance_rarity(const Blend *blend, const uint visits[IMPORTANCE_CELLS + 1], uint cell)
+{
+    double count = (double)cell_pixels(blend, cell), pixels = (double)blend->size[0] * (double)blend->size[1];
+    if (!(count > 0.0))
+        return 0.0;
+    uint all = visits[IMPORTANCE_CELLS];
+    return all > 0 ? (double)all / pixels / ((double)(visits[cell + 1] - visits[cell]) / count) : 1.0;
+}
+
+void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Blend *blend)
+{
+    const uint width = (uint)blend->size[0], height = (uint)blend->size[1];
+    for (int y = 0; y < blend->tiles[1]; ++y)
+        for (int x = 0; x < blend->tiles[0]; ++x) {
+            uint column = (uint)x * BLEND_TILE, row = (uint)y * BLEND_TILE, count = 0;
+            double sum = 0.0;
+            for (uint j = row; j < row + BLEND_TILE && j < height; ++j)
+                for (uint i = column; i < column + BLEND_TILE && i < width; ++i, ++count)
+                    sum += importance_rarity(
+                        blend, visits, j * IMPORTANCE_SIDE / height * IMPORTANCE_SIDE + i * IMPORTANCE_SIDE / width);
+            blend->rarity[(size_t)y * (size_t)blend->tiles[0] + (size_t)x] = sum / count;
+        }
+}

@@ -1,0 +1,242 @@
+/* Multiplexed Metropolis light transport (Hachisuka, Kaplanyan and Dachsbacher 2014; Frolov 2018): paths of one and two
+ * segments by path tracing, longer ones by Markov chains.
+ *
+ * In generations: a pool of independent bidirectional samples, from it chains drawn in proportion to what the samples are
+ * worth, some steps of each, and again. The mean of a generation's chains is right whatever their number and length, for
+ * chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). Sizes, shares, limits and
+ * importance of a generation follow from earlier ones, and the picture is a ratio of sums over all: it is consistent. */
+#include "mmlt/mmlt.h"
+
+#include "backend/step_recorder.h"
+#include "base/timing.h"
+#include "render/bd_fields.h"
+#include "render/layers.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Bits of BD_LIGHT_DELTA. */
+#define MMLT_DEPTH_LIMIT 31
+
+#define CHAINS_FIRST 256u
+#define STEPS_DEFAULT 64u
+
+/* What a chain of `paper` is chosen from. */
+#define PAPER_POOL_PER_CHAIN 8u
+
+#define LARGE_STEP_DEFAULT 0.3
+
+/* So many of the steps of the camera's half are shifts (chain/shift.h). For the same work, relMSE of a glossy hall and, in brackets,
+ * that with the worst thousandth of its pixels: 0.040 (0.075) with none, 0.029 (0.039) with a quarter, 0.027 (0.037) with this,
+ * 0.029 (0.041) with 0.9; of a door ajar 0.087 (0.13) with none, 0.057 (0.090) with half. */
+#define SHIFTS 0.75f
+
+/* Samples of path tracing for every step of a chain: until variances are known, and where only direct light is wanted. */
+#define PATHS_FIRST 1.0
+#define PATHS_DIRECT 0.5
+
+/* A generation takes no longer than this part of the time so far, so that stopping and saving are prompt. */
+#define GENERATION_PART 0.1
+
+/* But for one with a sample of path tracing of every pixel, which may take so much. */
+#define WHOLE_SAMPLE_PART 0.25
+
+/* ---- all of them ------------------------------------------------------------------------------------------------- */
+
+/* Work of a chain and of what goes with it. */
+static double chain_work(const Mmlt *mmlt)
+{
+    double steps = (double)mmlt->options.steps;
+    const double samples[BLEND_STREAMS] = {[BLEND_CHAINS] = steps,
+                                           [BLEND_POOL] = mmlt->options.paper ? 0.0 : steps * mmlt->pool_per_step,
+                                           [BLEND_PATHS] = steps * mmlt->paths_per_step};
+    return blend_work(samples);
+}
+
+/* Chains that the work left is enough for, rounded up. */
+static uint64_t chains_left(const Mmlt *mmlt, uint64_t total)
+{
+    return (uint64_t)ceil((double)(total - mmlt->work_done) / chain_work(mmlt));
+}
+
+/* Chains that go with one sample of path tracing of every pixel, while that is no more work than a part of all so far:
+ * generations that have no path tracing show easy light badly. */
+static uint chains_of_sample(const Mmlt *mmlt)
+{
+    double whole = (double)mmlt->run->crop_pixels / (mmlt->paths_per_step * (double)mmlt->options.steps);
+    double most = WHOLE_SAMPLE_PART * (double)mmlt->work_done / chain_work(mmlt);
+    return mmlt->options.unblended ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
+}
+
+/* Chains of the next generation: generations come in pairs of a size, one for either half of the image. With a number of
+ * samples it follows from that alone, so that the image does. */
+static uint chains_next(const Mmlt *mmlt, uint chains, double seconds, uint64_t total)
+{
+    const RenderOptions *options = mmlt->run->options;
+    double elapsed = timing_now() - mmlt->run->start;
+    bool grow = options->samples > 0 ? 2.0 * (double)mmlt->work_last < GENERATION_PART * (double)mmlt->work_done
+                                     : 2.0 * seconds < GENERATION_PART * elapsed;
+    uint next = chains, whole = chains_of_sample(mmlt);
+    if (mmlt->generation % 2 == 0) {
+        next = grow && chains < mmlt->options.chains ? 2 * chains : chains;
+        next = next < whole ? whole : next;
+    }
+    next = next < mmlt->options.chains ? next : mmlt->options.chains;
+    uint64_t left = chains_left(mmlt, total);
+    return left < next ? (uint)left : next;
+}
+
+/* Few, so that there is soon an image; and no more than half of what a number of samples wants. */
+static uint chains_first(const Mmlt *mmlt, uint64_t total)
+{
+    uint64_t left = chains_left(mmlt, total);
+    uint chains = mmlt->options.chains;
+    if (!mmlt->options.paper) {
+        left = (left + 1) / 2;
+        chains = chains < CHAINS_FIRST ? chains : CHAINS_FIRST;
+    }
+    return left < chains ? (uint)left : chains;
+}
+
+static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    const RenderOptions *options = run->options;
+    uint chains = chains_first(mmlt, total);
+    while (mmlt->work_done < total) {
+        double begin = timing_now();
+        if (!mmlt_generation_run(mmlt, chains, error) ||
+            !render_layers_sample(run, mmlt->paths_done * run->crop_pixels, error))
+            return false;
+        double now = timing_now();
+        render_run_report(run, options->samples > 0 ? (double)mmlt->work_done / (double)total : 0.0);
+        if (*render_run_stop(run) || (options->seconds > 0.0 && now - run->start >= options->seconds))
+            break;
+        render_run_save_if_due(run);
+        if (!mmlt->options.paper)
+            chains = chains_next(mmlt, chains, now - begin, total);
+    }
+    return true;
+}
+
+static void options_complete(ChainOptions *options, uint max_depth)
+{
+    options->unblended = options->unblended || options->paper || max_depth < CHAIN_DEPTH_MIN;
+    options->chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    if (options->paper && !options->pool)
+        options->pool = PAPER_POOL_PER_CHAIN * options->chains;
+    options->steps = options->steps ? options->steps : STEPS_DEFAULT;
+    options->mutations = options->mutations ? options->mutations : 7u;
+    if (options->paper && !(options->large_step > 0.0))
+        options->large_step = LARGE_STEP_DEFAULT;
+}
+
+static bool lists_make(Mmlt *mmlt, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    FrameParams *frame = &run->frame, pool_frame;
+    mmlt->paths_frame = *frame;
+    mmlt->paths_frame.strategies = integrator_pt()->strategies;
+    mmlt->paths_frame.split_direct = !mmlt->options.unblended;
+    if (mmlt->options.unblended && frame->max_depth >= CHAIN_DEPTH_MIN)
+        mmlt->paths_frame.max_depth = CHAIN_DEPTH_MIN - 1;
+    frame->min_depth = CHAIN_DEPTH_MIN;
+    frame->mis_exponent = 1;
+    frame->mutations = mmlt->options.mutations;
+    frame->group_mutations = !mmlt->options.ungrouped;
+    frame->large_step = mmlt->options.paper ? (float)mmlt->options.large_step : 0.0f;
+    frame->shifts = mmlt->options.paper || mmlt->options.shiftless ? 0.0f : SHIFTS;
+    frame->keep_chains = 1;
+    pool_frame = *frame;
+    pool_frame.pool = 1;
+    mmlt_frame_film(&pool_frame, &mmlt->pool_film);
+    mmlt_frame_film(&mmlt->paths_frame, &mmlt->paths_film);
+    return integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
+           (frame->max_depth < CHAIN_DEPTH_MIN || (bdpt_list(&pool_frame, &mmlt->pool, error) &&
+                                                   chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
+}
+
+/* Of the films that are shown. */
+static bool depths_reserve(Mmlt *mmlt, Error *error)
+{
+    const RenderLayers *layers = mmlt->run->options->layers;
+    uint last = mmlt->run->frame.max_depth;
+    if (!layers || (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) == 0)
+        return true;
+    return film_depths_reserve(mmlt->run->film, last, error) && film_depths_reserve(&mmlt->film, last, error) &&
+           (mmlt->options.unblended || (film_depths_reserve(&mmlt->pool_film, last, error) &&
+                                        film_depths_reserve(&mmlt->paths_film, last, error)));
+}
+
+static bool films_init(Mmlt *mmlt, Error *error)
+{
+    Film *films[] = {&mmlt->film, &mmlt->pool_film, &mmlt->paths_film};
+    for (size_t i = 0; i < sizeof films / sizeof films[0]; ++i)
+        if (!film_init_like(films[i], mmlt->run->film, error))
+            return false;
+    if ((!mmlt->options.unblended && !film_rare_reserve(&mmlt->film, error)) || !depths_reserve(mmlt, error))
+        return false;
+    for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half) {
+        if (!blend_init(&mmlt->blends[half], mmlt->run->film, error))
+            return false;
+        mmlt->blends[half].shown = mmlt->options.shown;
+    }
+    return true;
+}
+
+bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
+{
+    *mmlt = (Mmlt){.run = run, .options = run->options->chains, .next_sample = run->options->first_sample};
+    options_complete(&mmlt->options, run->frame.max_depth);
+    mmlt->pool_per_step = POOL_PER_STEP;
+    mmlt->paths_per_step = mmlt->options.unblended ? PATHS_DIRECT : PATHS_FIRST;
+    if (!films_init(mmlt, error) || !lists_make(mmlt, error))
+        return false;
+    for (int half = 0; half < MMLT_HALVES; ++half) {
+        importance_even(mmlt->importance[half]);
+        chain_population_init(&mmlt->populations[half], mmlt->chains.pass_fields);
+    }
+    return true;
+}
+
+void mmlt_destroy(Mmlt *mmlt)
+{
+    step_list_destroy(&mmlt->paths);
+    step_list_destroy(&mmlt->pool);
+    step_list_destroy(&mmlt->chains);
+    film_destroy(&mmlt->film);
+    film_destroy(&mmlt->pool_film);
+    film_destroy(&mmlt->paths_film);
+    for (int half = 0; half < MMLT_HALVES; ++half) {
+        blend_destroy(&mmlt->blends[half]);
+        chain_population_destroy(&mmlt->populations[half]);
+    }
+    free(mmlt->pool_words);
+    free(mmlt->begun);
+}
+
+static bool mmlt_render(RenderRun *run, Error *error)
+{
+    Mmlt mmlt;
+    const uint64_t limit = UINT64_MAX / 2;
+    run->start = run->last_save = timing_now();
+    uint64_t total = run->options->samples > 0 ? run->crop_pixels * run->options->samples : limit;
+    bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, total, error);
+    for (int s = 0; s < BLEND_STREAMS; ++s)
+        run->chains.shares[s] = mmlt.blends[0].share[s];
+    for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
+        run->chains.r_hat[depth] = chain_groups_r_hat(&mmlt.groups, depth);
+    mmlt_destroy(&mmlt);
+    return done;
+}
+
+const Integrator *integrator_mmlt(void)
+{
+    static const Integrator integrator = {.name = "mmlt",
+                                          .summary = "multiplexed Metropolis light transport",
+                                          .depth_limit = MMLT_DEPTH_LIMIT,
+                                          .strategies = STRATEGIES_BDPT,
+                                          .aims = true,
+                                          .render = mmlt_render};
+    return &integrator;
+}

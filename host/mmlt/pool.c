@@ -1,0 +1,316 @@
+/* A pool, from where its samples are taken to the chains that begin with some of them. */
+#include "mmlt/mmlt.h"
+
+#include "base/sample_statistics.h"
+#include "film/pixel_order.h"
+#include "math/rng.h"
+
+#include "chain/chain.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A path may show so many times the mean worth of a pool's sample, both with their importance. The rest is left to chains,
+ * which have it with less noise: for the same work, pixels of a lamp in glass, a door ajar and a glossy hall have 1.2 times
+ * the square error with 16. With 1 they have the same. */
+#define LIMIT_FACTOR 2.0
+
+/* The part of a pool's samples that have a walk from the light. The rest, which take a third of the time, look for what the
+ * camera's walk meets or connects with a light by itself. At equal time, 128 x 128 pixels, against pools of which all have one:
+ * half the square error of a lamp in glass, where the worst dots are lights met by chance through glass; 0.8 times that of a
+ * door ajar, the same in a glossy hall. With a sixteenth easy places of the lamp's room have 1.5 times the error. */
+#define POOL_LIGHTS 0.25
+
+/* Of the pool before the first, at most. */
+#define PILOT_SAMPLES 4096u
+#define PILOT_PARTS 16u
+
+static bool pool_reserve(Mmlt *mmlt, uint count, Error *error)
+{
+    if (mmlt->pool_words && count <= mmlt->pool_count)
+        return true;
+    size_t bytes = (size_t)count * POOL_WORDS * sizeof *mmlt->pool_words;
+    free(mmlt->pool_words);
+    mmlt->pool_count = count;
+    mmlt->pool_words = malloc(bytes);
+    return mmlt->pool_words || error_memory(error, bytes, "a pool");
+}
+
+int mmlt_half(const Mmlt *mmlt, uint generation)
+{
+    return mmlt->options.paper ? 0 : (int)(generation % MMLT_HALVES);
+}
+
+ChainPopulation *mmlt_population(Mmlt *mmlt)
+{
+    return &mmlt->populations[mmlt_half(mmlt, mmlt->generation)];
+}
+
+/* What the other half has seen of the pools' brightness; before that, what the pilot has. */
+static double brightness_known(const Mmlt *mmlt)
+{
+    uint generations = (mmlt->generation + 1) / 2;
+    return generations > 0 ? mmlt->brightness_sum[mmlt_half(mmlt, mmlt->generation + 1)] / generations
+                           : mmlt->pilot_brightness;
+}
+
+/* A uniform number of the host's own. */
+static double host_random(const FrameParams *frame, uint generation, uint use)
+{
+    Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
+    return ((double)random.x[0] + 0.5) / 4294967296.0;
+}
+
+/* Terms of the sequence by which lights_first goes before it begins anew. */
+#define TURNS 16u
+
+/* The first sample with a walk from the light, of the next pool, which begins at `place` in the order of the pixels. Pools visit
+ * the same pixels again after a round, so those with a walk are chosen by their place in that order: each has one in about
+ * four rounds, whatever the sizes of pool and round. Parts of a pool take turns in the order of van
+ * der Corput's sequence, shifted by chance, and anew after TURNS, so that periods that fit it cannot add up. Samples with a walk
+ * stay together, so that chunks without any leave out their steps. turn: rounds so far, or pools where those are longer. */
+static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t place, uint items)
+{
+    double part = host_random(&mmlt->run->frame, (uint)(turn / TURNS), 2 + order);
+    for (uint k = (uint)(turn % TURNS), weight = TURNS / 2; k > 0; k >>= 1, weight >>= 1)
+        part += (double)(k & 1u) * weight / TURNS;
+    return (uint)(((uint64_t)(part * items) + items - place % items) % items);
+}
+
+/* The next pool, of `items` samples: it goes on visiting the pixels where the last one stopped, and the first begins
+ * anywhere, so that each by itself is as likely to see one pixel as another. */
+static void pool_place(Mmlt *mmlt, uint items)
+{
+    int half = mmlt_half(mmlt, mmlt->generation);
+    uint visits = mmlt->visits[half][IMPORTANCE_CELLS], order = visits > 0 ? (uint)half : MMLT_HALVES;
+    uint *next = &mmlt->pool_next[order], *turn = &mmlt->pool_turns[order];
+    uint64_t round = visits > 0 ? visits : mmlt->run->crop_pixels;
+    if (mmlt->generation == 0)
+        *next = (uint)(host_random(&mmlt->run->frame, 0, 1) * (double)round);
+    uint64_t end = (uint64_t)*next + items;
+    mmlt->pool_pixel = *next;
+    if (items <= round && *next + items / 2 >= round) /* most of it is in the next round */
+        mmlt->pool_lights_first = lights_first(mmlt, order, *turn + 1, *next + items - round % items, items);
+    else
+        mmlt->pool_lights_first = lights_first(mmlt, order, *turn, *next, items);
+    *turn += items <= round ? (uint)(end / round) : 1;
+    *next = (uint)(end % round);
+    mmlt->pool_sample = mmlt->next_sample;
+    mmlt->next_sample += (uint)((end + round - 1) / round) * (visits > 0 ? VISITS_MOST : 1);
+}
+
+/* Of what a path shows before it becomes an excess: that of a usual one many times, as earlier pools have it. */
+static float limit_of(const Mmlt *mmlt)
+{
+    if (mmlt->options.unblended)
+        return FLT_MAX;
+    return (float)(LIMIT_FACTOR * brightness_known(mmlt));
+}
+
+void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame)
+{
+    memcpy(frame->importance, mmlt->importance[mmlt_half(mmlt, mmlt->generation)], sizeof frame->importance);
+    frame->limit = limit_of(mmlt);
+}
+
+/* What a pool and the chains from it have in common. */
+static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
+{
+    mmlt_generation_frame(mmlt, frame);
+    frame->sample_index = mmlt->pool_sample;
+    frame->pixel_first = mmlt->pool_pixel;
+    const uint *visits = mmlt->visits[mmlt_half(mmlt, mmlt->generation)];
+    memcpy(frame->visits, visits, sizeof frame->visits);
+    frame->pixel_stride = visits[IMPORTANCE_CELLS] > 0
+                              ? pixel_order_stride_of(visits[IMPORTANCE_CELLS])
+                              : pixel_order_stride(frame->crop_x1 - frame->crop_x0, frame->crop_y1 - frame->crop_y0);
+}
+
+void mmlt_frame_film(FrameParams *frame, const Film *film)
+{
+    frame->film_exponent = film->quantum_exponent;
+    frame->split_depths = film->depth_kinds;
+}
+
+FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count)
+{
+    FrameParams frame = mmlt->run->frame;
+    frame.pool = 1;
+    frame.pool_lights = mmlt->options.unblended ? count : (uint)ceil(POOL_LIGHTS * count);
+    frame.pool_items = count;
+    frame.pool_lights_first = mmlt->pool_lights_first;
+    frame.pool_lights_weight = (float)((double)count / frame.pool_lights);
+    seeds_frame(mmlt, &frame);
+    mmlt_frame_film(&frame, &mmlt->pool_film);
+    return frame;
+}
+
+FrameParams mmlt_chain_frame(Mmlt *mmlt)
+{
+    FrameParams frame = mmlt->run->frame;
+    seeds_frame(mmlt, &frame);
+    frame.brightness = (float)mmlt_population(mmlt)->brightness;
+    frame.roulette_depth = NONE;
+    mmlt_frame_film(&frame, &mmlt->film);
+    return frame;
+}
+
+static bool pool_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    FrameParams frame = mmlt_pool_frame(mmlt, count);
+    uint64_t delivered = 0;
+    if (!pool_reserve(mmlt, count, error))
+        return false;
+    mmlt->pool.pass_words = mmlt->pool_words;
+    mmlt->pool.pass_fields = POOL_WORDS;
+    mmlt->pool.pass_stride = count;
+    frame.item_count = count;
+    film_clear(&mmlt->pool_film);
+    SplatSink sink = render_run_sink(&mmlt->pool_film);
+    sink.whole = true;
+    bool done = run->interface->run(run->backend, &frame, &mmlt->pool, &sink, render_run_stop(run), &delivered, error);
+    *whole = delivered == count;
+    mmlt->pool_film.light_samples = *whole ? count : 0;
+    return done;
+}
+
+/* Uniform numbers of the host's own, one for each generation. */
+static double offset_of(const Mmlt *mmlt)
+{
+    return host_random(&mmlt->run->frame, mmlt->generation, 0);
+}
+
+/* Mean worth of every so-manyth of the latest pool's samples, from the first on. */
+static double pool_brightness(const Mmlt *mmlt, uint pool_count, uint first, uint every)
+{
+    double sum = 0.0, count = 0.0;
+    for (uint i = first; i < pool_count; i += every) {
+        if (mmlt->pool_words[(size_t)POOL_KEY * pool_count + i] != 0)
+            sum += (double)bits_float(mmlt->pool_words[(size_t)POOL_WEIGHT * pool_count + i]);
+        count += 1.0;
+    }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
+static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint count, Error *error)
+{
+    ChainPopulation *population = mmlt_population(mmlt);
+    ChainStarts starts;
+    /* A sample of a pool that is worth this begins one chain. */
+    double threshold = brightness_known(mmlt) * pool_count / count;
+    mmlt->brightness = pool_brightness(mmlt, pool_count, 0, 1);
+    if (!chain_population_renew(population, mmlt->pool_words, pool_count, change, threshold, mmlt->options.order,
+                                offset_of(mmlt), count, &starts, error))
+        return false;
+    mmlt->chains.pass_words = population->words;
+    mmlt->chains.pass_stride = count;
+    chain_statistics_starts(&mmlt->run->chains, &starts);
+    return true;
+}
+
+/* ---- what is known of the picture -------------------------------------------------------------------------------- */
+
+/* Samples of a pool for so many steps of chains: of every pixel as many, where that changes the number by no more than
+ * half. */
+static uint pool_size(const Mmlt *mmlt, double steps)
+{
+    double pixels = (double)mmlt->run->crop_pixels, whole = rint(mmlt->pool_per_step * steps / pixels);
+    double wanted = whole >= 1.0 ? whole * pixels : mmlt->pool_per_step * steps;
+    if (mmlt->options.pool)
+        wanted = (double)mmlt->options.pool;
+    return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
+}
+
+/* Whether the half whose turn it is goes by what is known now: after 2, 4, 8 ... generations of its own, so that what is
+ * known has grown by much since, and chains nearly always go on as they were. */
+static bool importance_due(const Mmlt *mmlt)
+{
+    uint own = mmlt->generation / MMLT_HALVES;
+    return !mmlt->options.unblended && own >= 2 && (own & (own - 1)) == 0;
+}
+
+/* The importance as the other half knows it. change: room for what it is over what it was. */
+static void importance_renew(Mmlt *mmlt, float *change)
+{
+    int half = mmlt_half(mmlt, mmlt->generation);
+    float *importance = mmlt->importance[half];
+    memcpy(change, importance, IMPORTANCE_CELLS * sizeof *change);
+    importance_learn(&mmlt->blends[1 - half], importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        change[i] = importance[i] / change[i];
+}
+
+/* The same of how often its pools visit what. */
+static bool visits_renew(Mmlt *mmlt, Error *error)
+{
+    int half = mmlt_half(mmlt, mmlt->generation), other = 1 - half;
+    const double samples[BLEND_STREAMS] = {1.0, mmlt->pool_per_step, mmlt->paths_per_step};
+    double visited[IMPORTANCE_CELLS];
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        visited[i] = mmlt->visited[other][i] / mmlt->visited_all[other];
+    uint *visits = mmlt->visits[half];
+    if (!importance_visits(&mmlt->blends[other], samples, visited, visits, error))
+        return false;
+    importance_tell(visits, &mmlt->blends[half]);
+    mmlt->pool_next[half] =
+        (uint)(host_random(&mmlt->run->frame, mmlt->generation, 1) * (double)visits[IMPORTANCE_CELLS]);
+    return true;
+}
+
+void mmlt_visits_count(Mmlt *mmlt)
+{
+    int half = mmlt_half(mmlt, mmlt->generation);
+    double samples = (double)mmlt->pool_film.light_samples;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        double rarity = importance_rarity(&mmlt->blends[half], mmlt->visits[half], i);
+        mmlt->visited[half][i] += rarity > 0.0 ? samples / rarity : 0.0;
+    }
+    mmlt->visited_all[half] += samples;
+}
+
+/* pool_brightness for a limit that has no more to go by than one small pool: the median of the means of its parts, which a
+ * rare bright path in one of them does not change. */
+static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
+{
+    double parts[PILOT_PARTS];
+    for (uint part = 0; part < PILOT_PARTS; ++part)
+        parts[part] = pool_brightness(mmlt, pool_count, part, PILOT_PARTS);
+    sample_sort(parts, PILOT_PARTS);
+    return parts[PILOT_PARTS / 2];
+}
+
+bool mmlt_pilot_run(Mmlt *mmlt, uint chains, bool *whole, Error *error)
+{
+    uint pool_count = pool_size(mmlt, (double)chains * (double)mmlt->options.steps);
+    uint count = pool_count < PILOT_SAMPLES ? pool_count : PILOT_SAMPLES;
+    if (mmlt->options.unblended)
+        return true;
+    pool_place(mmlt, count);
+    if (!pool_run(mmlt, count, whole, error))
+        return false;
+    if (*whole)
+        mmlt->pilot_brightness = pool_brightness_robust(mmlt, count);
+    mmlt->run->chains.pool_samples += count;
+    return true;
+}
+
+bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
+{
+    float change[IMPORTANCE_CELLS];
+    bool changed = importance_due(mmlt);
+    if (changed) {
+        importance_renew(mmlt, change);
+        if (!visits_renew(mmlt, error))
+            return false;
+    }
+    uint pool_count = pool_size(mmlt, (double)count * (double)mmlt->options.steps);
+    pool_place(mmlt, pool_count);
+    if (!pool_run(mmlt, pool_count, whole, error) ||
+        (*whole && !chains_begin(mmlt, pool_count, changed ? change : NULL, count, error)))
+        return false;
+    mmlt->run->chains.pool_samples += pool_count;
+    return true;
+}

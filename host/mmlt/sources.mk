@@ -1,0 +1,14 @@
+libtwinlight_host_la_SOURCES += \
+	host/mmlt/bad.c \
+	host/mmlt/bad_chains.c host/mmlt/bad_chains.h \
+	host/mmlt/blend.c host/mmlt/blend.h \
+	host/mmlt/blend_learn.c host/mmlt/blend_learn.h \
+	host/mmlt/chain_groups.c host/mmlt/chain_groups.h \
+	host/mmlt/chain_list.c host/mmlt/chain_list.h \
+	host/mmlt/chain_population.c host/mmlt/chain_population.h \
+	host/mmlt/chain_seeds.c host/mmlt/chain_seeds.h \
+	host/mmlt/generation.c \
+	host/mmlt/importance.c host/mmlt/importance.h \
+	host/mmlt/integrator_mmlt.c \
+	host/mmlt/mmlt.h \
+	host/mmlt/pool.c

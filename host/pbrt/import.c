@@ -1,0 +1,148 @@
+#include "pbrt/import.h"
+
+#include "base/file_read.h"
+#include "base/log.h"
+#include "pbrt/directives.h"
+#include "pbrt/errors.h"
+#include "pbrt/parser.h"
+#include "pbrt/state.h"
+#include "scene/center.h"
+#include "scene/format.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void import_init(PbrtImport *im, const ImportOptions *options, Scene *scene, Error *error)
+{
+    memset(im, 0, sizeof *im);
+    im->scene = scene;
+    im->options = *options;
+    im->error = error;
+    im->directory = "";
+    param_buffer_init(&im->params);
+    state_init(&im->state);
+    im->world = box_empty();
+    array_init(&im->saved, sizeof(StateSave));
+    name_table_init(&im->coordinate_systems);
+    array_init(&im->coordinate_matrices, sizeof(Matrix));
+    name_table_init(&im->objects);
+    array_init(&im->object_definitions, sizeof(ImportObject));
+    im->open_object = -1;
+    name_table_init(&im->materials);
+    name_table_init(&im->float_textures);
+    name_table_init(&im->spectrum_textures);
+    array_init(&im->textures, sizeof(ImportTexture));
+    texture_cache_init(&im->images);
+    im->default_material = NONE;
+    im->iso = 100.0f;
+    im->shutter_close = 1.0f;
+}
+
+static void import_destroy(PbrtImport *im)
+{
+    parser_close_all(im);
+    param_buffer_destroy(&im->params);
+    array_destroy(&im->saved);
+    name_table_destroy(&im->coordinate_systems);
+    array_destroy(&im->coordinate_matrices);
+    name_table_destroy(&im->objects);
+    array_destroy(&im->object_definitions);
+    name_table_destroy(&im->materials);
+    name_table_destroy(&im->float_textures);
+    name_table_destroy(&im->spectrum_textures);
+    array_destroy(&im->textures);
+    texture_cache_destroy(&im->images);
+    arena_destroy(&im->arena);
+}
+
+static void counts_report(const Scene *scene)
+{
+    const SceneCounts *counts = &scene->counts;
+    if (counts->degenerate_triangles > 0)
+        log_message(LOG_WARNING, "%lu primitives of no area were left out", counts->degenerate_triangles);
+    if (counts->zero_area_lights > 0)
+        log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
+}
+
+/* A scene file, or (text) one in memory. */
+typedef struct ImportSource {
+    const char *path, *text;
+    size_t length;
+    const char *name, *directory; /* of a text */
+} ImportSource;
+
+static bool source_open(PbrtImport *im, const ImportSource *source)
+{
+    if (!source->path) {
+        TextWindow window;
+        im->directory = source->directory;
+        text_window_from_memory(&window, source->text, source->length);
+        return parser_open_text(im, &window, source->name);
+    }
+    const char *slash = strrchr(source->path, '/');
+    size_t length = slash ? (size_t)(slash - source->path) + 1 : 0;
+    im->directory = arena_text(&im->arena, source->path, length, im->error);
+    return im->directory && parser_open_file(im, source->path, (SourcePlace){0}, false);
+}
+
+/* Reads it less *offset. *offset becomes what is to be taken off it yet. */
+static bool source_read(const ImportSource *source, const ImportOptions *options, Vec3 *offset, Scene *scene,
+                        Error *error)
+{
+    PbrtImport im;
+    import_init(&im, options, scene, error);
+    im.offset = scene->origin = *offset;
+    bool good = source_open(&im, source) && directives_read(&im);
+    good = errors_end(&im) && good;
+    camera_move(&scene->camera_settings, im.offset);
+    scene->movable = true;
+    *offset = good && !box_is_empty(&im.world) ? scene_center_offset(&im.world) : vec3_splat(0.0f);
+    import_destroy(&im);
+    return good;
+}
+
+/* Where a world lies is known when all of it is read. One that is far away is read again, and nothing said twice. */
+static bool source_import(const ImportSource *source, const ImportOptions *options, Scene *scene, Error *error)
+{
+    Vec3 offset = vec3_splat(0.0f);
+    if (!source_read(source, options, &offset, scene, error))
+        return false;
+    if (!vec3_is_zero(offset)) {
+        scene_destroy(scene);
+        scene_init(scene);
+        log_mute(true);
+        bool good = source_read(source, options, &offset, scene, error);
+        log_mute(false);
+        if (!good)
+            return false;
+    }
+    counts_report(scene);
+    return true;
+}
+
+bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, Error *error)
+{
+    const ImportSource source = {.path = path};
+    return source_import(&source, options, scene, error);
+}
+
+bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
+                      const ImportOptions *options, Scene *scene, Error *error)
+{
+    const ImportSource source = {.text = text, .length = length, .name = name, .directory = directory};
+    return source_import(&source, options, scene, error);
+}
+
+bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)
+{
+    const ImportOptions options = {.lenient = lenient, .all_errors = true};
+    FileData text = {0};
+    bool piped = strcmp(path, "-") == 0;
+    bool good = piped ? file_read_stream(STDIN_FILENO, "standard input", IMPORT_FILE_BYTES_MAX, &text, error) &&
+                            pbrt_import_text(text.data, text.size, "stdin", "", &options, scene, error)
+                      : pbrt_import(path, &options, scene, error);
+    free(text.data);
+    return good && (scene_finish(scene, error) || error_in(error, piped ? "stdin" : path));
+}

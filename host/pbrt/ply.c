@@ -1,0 +1,396 @@
+#include "pbrt/ply.h"
+
+#include "base/array.h"
+#include "base/file_read.h"
+#include "base/text_number.h"
+#include "pbrt/ply_header.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* The body, while it is read. */
+typedef struct Cursor {
+    const PlySource *source;
+    const PlyHeader *header;
+    const char *p, *end;
+    PlyMesh *mesh;
+    Array triangles, quads; /* uint */
+} Cursor;
+
+static bool truncated(const Cursor *c)
+{
+    return ply_error(c->source, "the file ends too early");
+}
+
+static uint64_t bytes_integer(const char *p, size_t size, bool little)
+{
+    uint64_t value = 0;
+    for (size_t i = 0; i < size; ++i)
+        value |= (uint64_t)(unsigned char)p[i] << (8 * (little ? i : size - 1 - i));
+    return value;
+}
+
+/* An integer of any type; negative ones come as huge. */
+static uint64_t integer_decode(const char *p, PlyType type, bool little)
+{
+    uint64_t raw = bytes_integer(p, ply_type_size(type), little);
+    switch (type) {
+    case PLY_INT8:
+        return (uint64_t)(int8_t)raw;
+    case PLY_INT16:
+        return (uint64_t)(int16_t)raw;
+    case PLY_INT32:
+        return (uint64_t)(int32_t)raw;
+    default:
+        return raw;
+    }
+}
+
+static float float_decode(const char *p, PlyType type, bool little)
+{
+    uint64_t raw = bytes_integer(p, ply_type_size(type), little);
+    if (type == PLY_FLOAT32)
+        return bits_float((uint)raw);
+    if (type == PLY_FLOAT64) {
+        double value;
+        memcpy(&value, &raw, sizeof value);
+        return (float)value;
+    }
+    return (float)(int64_t)integer_decode(p, type, little);
+}
+
+/* The next word of an ascii body. */
+static bool word_next(Cursor *c, const char **word, size_t *length)
+{
+    while (c->p < c->end && (*c->p == ' ' || *c->p == '\n' || *c->p == '\r' || *c->p == '\t'))
+        ++c->p;
+    *word = c->p;
+    while (c->p < c->end && *c->p != ' ' && *c->p != '\n' && *c->p != '\r' && *c->p != '\t')
+        ++c->p;
+    *length = (size_t)(c->p - *word);
+    return *length > 0 || truncated(c);
+}
+
+static bool not_a_number(const Cursor *c, const char *word, size_t length)
+{
+    return ply_error(c->source, "expected a number, found %.*s", (int)(length < 40 ? length : 40), word);
+}
+
+static bool integer_next(Cursor *c, PlyType type, uint64_t *value)
+{
+    if (c->header->format == PLY_ASCII) {
+        const char *word;
+        size_t length;
+        int number;
+        if (!word_next(c, &word, &length))
+            return false;
+        if (number_integer(word, length, &number) != NUMBER_OK)
+            return not_a_number(c, word, length);
+        *value = (uint64_t)number;
+        return true;
+    }
+    size_t size = ply_type_size(type);
+    if ((size_t)(c->end - c->p) < size)
+        return truncated(c);
+    *value = integer_decode(c->p, type, c->header->format == PLY_LITTLE_ENDIAN);
+    c->p += size;
+    return true;
+}
+
+static bool float_next(Cursor *c, PlyType type, float *value)
+{
+    if (c->header->format == PLY_ASCII) {
+        const char *word;
+        size_t length;
+        return word_next(c, &word, &length) &&
+               (number_float(word, length, value) == NUMBER_OK || not_a_number(c, word, length));
+    }
+    size_t size = ply_type_size(type);
+    if ((size_t)(c->end - c->p) < size)
+        return truncated(c);
+    *value = float_decode(c->p, type, c->header->format == PLY_LITTLE_ENDIAN);
+    c->p += size;
+    return true;
+}
+
+static bool values_skip(Cursor *c, PlyType type, uint64_t count)
+{
+    if (c->header->format != PLY_ASCII) {
+        if (count > (uint64_t)(c->end - c->p) / ply_type_size(type))
+            return truncated(c);
+        c->p += count * ply_type_size(type);
+        return true;
+    }
+    const char *word;
+    size_t length;
+    for (uint64_t i = 0; i < count; ++i)
+        if (!word_next(c, &word, &length))
+            return false;
+    return true;
+}
+
+/* One face's indices, `count` of them. */
+static bool face_next(Cursor *c, PlyType type, uint64_t count)
+{
+    if (count != 3 && count != 4) {
+        ++c->mesh->polygon_count;
+        return values_skip(c, type, count);
+    }
+    uint *out = array_grow(count == 3 ? &c->triangles : &c->quads, (size_t)count, c->source->error);
+    for (uint64_t i = 0; out && i < count; ++i) {
+        uint64_t index = 0;
+        if (!integer_next(c, type, &index))
+            return false;
+        out[i] = index < NONE ? (uint)index : NONE;
+    }
+    return out != NULL;
+}
+
+/* Where the floats of meaning m go: base + stride * vertex. */
+static float *meaning_target(PlyMesh *mesh, PlyMeaning meaning, size_t *stride)
+{
+    *stride = meaning >= PLY_U ? 2 : 3;
+    if (meaning <= PLY_Z)
+        return mesh->positions + (meaning - PLY_X);
+    return meaning <= PLY_NZ ? mesh->normals + (meaning - PLY_NX) : mesh->uvs + (meaning - PLY_U);
+}
+
+static bool property_next(Cursor *c, const PlyProperty *property, size_t index)
+{
+    uint64_t count = 1;
+    if (property->count_type != PLY_NONE) {
+        if (!integer_next(c, property->count_type, &count))
+            return false;
+        if (property->meaning == PLY_INDICES)
+            return face_next(c, property->type, count);
+    }
+    if (property->meaning == PLY_IGNORED)
+        return values_skip(c, property->type, count);
+    size_t stride;
+    float *target = meaning_target(c->mesh, property->meaning, &stride);
+    return float_next(c, property->type, &target[stride * index]);
+}
+
+/* Any element, value by value. */
+static bool element_walk(Cursor *c, const PlyElement *element)
+{
+    for (size_t i = 0; element->property_count > 0 && i < element->count; ++i)
+        for (int k = 0; k < element->property_count; ++k)
+            if (!property_next(c, &element->properties[k], i))
+                return false;
+    return true;
+}
+
+/* Bytes that an element takes at least. */
+static size_t element_least_bytes(const PlyHeader *header, const PlyElement *element)
+{
+    size_t bytes = 0;
+    for (int k = 0; k < element->property_count; ++k) {
+        const PlyProperty *property = &element->properties[k];
+        PlyType type = property->count_type != PLY_NONE ? property->count_type : property->type;
+        bytes += header->format == PLY_ASCII ? 2 : ply_type_size(type);
+    }
+    return bytes;
+}
+
+/* Before memory is taken: a short file must not ask for much. The last ascii value needs no separator. */
+static bool element_fits(const Cursor *c, const PlyElement *element)
+{
+    size_t least = element_least_bytes(c->header, element), left = (size_t)(c->end - c->p) + 1;
+    return least == 0 || element->count <= left / least || truncated(c);
+}
+
+static bool has_meaning(const PlyElement *element, PlyMeaning meaning)
+{
+    for (int k = 0; k < element->property_count; ++k)
+        if (element->properties[k].meaning == meaning)
+            return true;
+    return false;
+}
+
+static bool floats_take(float **out, size_t count, Error *error)
+{
+    *out = malloc(count * sizeof **out);
+    return *out != NULL || error_memory(error, count * sizeof **out, "a PLY mesh");
+}
+
+/* Only scalars: values lie at fixed distances. */
+static bool vertices_strided(Cursor *c, const PlyElement *element)
+{
+    size_t stride = element_least_bytes(c->header, element), offset = 0;
+    bool little = c->header->format == PLY_LITTLE_ENDIAN;
+    if (element->count > (size_t)(c->end - c->p) / stride)
+        return truncated(c);
+    for (int k = 0; k < element->property_count; ++k) {
+        const PlyProperty *property = &element->properties[k];
+        const char *from = c->p + offset;
+        size_t step;
+        offset += ply_type_size(property->type);
+        if (property->meaning == PLY_IGNORED)
+            continue;
+        float *to = meaning_target(c->mesh, property->meaning, &step);
+        if (property->type == PLY_FLOAT32 && little)
+            for (size_t i = 0; i < element->count; ++i)
+                to[step * i] = bits_float((uint)bytes_integer(from + stride * i, 4, true));
+        else
+            for (size_t i = 0; i < element->count; ++i)
+                to[step * i] = float_decode(from + stride * i, property->type, little);
+    }
+    c->p += stride * element->count;
+    return true;
+}
+
+static bool vertices_read(Cursor *c, const PlyElement *element)
+{
+    PlyMesh *mesh = c->mesh;
+    Error *error = c->source->error;
+    mesh->vertex_count = element->count;
+    if (!floats_take(&mesh->positions, 3 * element->count, error) ||
+        (has_meaning(element, PLY_NX) && !floats_take(&mesh->normals, 3 * element->count, error)) ||
+        (has_meaning(element, PLY_U) && !floats_take(&mesh->uvs, 2 * element->count, error)))
+        return false;
+    bool lists = false;
+    for (int k = 0; k < element->property_count; ++k)
+        lists = lists || element->properties[k].count_type != PLY_NONE;
+    return lists || c->header->format == PLY_ASCII ? element_walk(c, element) : vertices_strided(c, element);
+}
+
+/* The usual face: one list of 32-bit indices behind a byte. Reads as many triangles as follow each other; returns how
+ * many. */
+static size_t triangles_packed(Cursor *c, size_t count)
+{
+    bool little = c->header->format == PLY_LITTLE_ENDIAN;
+    size_t most = (size_t)(c->end - c->p) / 13, done = 0;
+    most = most < count ? most : count;
+    uint *out = array_grow(&c->triangles, 3 * most, c->source->error);
+    for (; out && done < most && c->p[0] == 3; ++done, c->p += 13)
+        for (size_t k = 0; k < 3; ++k) {
+            uint index = (uint)bytes_integer(c->p + 1 + 4 * k, 4, little);
+            out[3 * done + k] = index;
+        }
+    c->triangles.count -= out ? 3 * (most - done) : 0;
+    return done;
+}
+
+static bool faces_read(Cursor *c, const PlyElement *element)
+{
+    const PlyProperty *first = &element->properties[0];
+    PlyElement rest = *element;
+    if (c->header->format != PLY_ASCII && element->property_count == 1 && ply_type_size(first->count_type) == 1 &&
+        ply_type_size(first->type) == 4)
+        rest.count -= triangles_packed(c, element->count);
+    return element_walk(c, &rest);
+}
+
+static bool indices_check(const Cursor *c, const Array *indices)
+{
+    size_t vertex_count = c->mesh->vertex_count;
+    for (size_t i = 0; i < indices->count; ++i)
+        if (ARRAY_AT(indices, uint, i) >= vertex_count)
+            return ply_error(c->source, "vertex index %d is out of range: the file has %zu vertices",
+                             (int)ARRAY_AT(indices, uint, i), vertex_count);
+    return true;
+}
+
+static bool body_read(Cursor *c)
+{
+    for (int i = 0; i < c->header->element_count; ++i) {
+        const PlyElement *element = &c->header->elements[i];
+        if (!element_fits(c, element))
+            return false;
+        bool good = element->kind == PLY_VERTEX ? vertices_read(c, element)
+                    : element->kind == PLY_FACE ? faces_read(c, element)
+                                                : element_walk(c, element);
+        if (!good)
+            return false;
+    }
+    return indices_check(c, &c->triangles) && indices_check(c, &c->quads);
+}
+
+bool ply_read_memory(const char *path, SourcePlace place, const char *data, size_t size, PlyMesh *mesh, Error *error)
+{
+    PlySource source = {path, place, error};
+    PlyHeader header;
+    *mesh = (PlyMesh){0};
+    if (!ply_header_read(&source, data, size, &header))
+        return false;
+    Cursor c = {.source = &source, .header = &header, .p = data + header.size, .end = data + size, .mesh = mesh};
+    array_init(&c.triangles, sizeof(uint));
+    array_init(&c.quads, sizeof(uint));
+    bool good = body_read(&c);
+    mesh->triangles = c.triangles.data;
+    mesh->triangle_count = c.triangles.count / 3;
+    mesh->quads = c.quads.data;
+    mesh->quad_count = c.quads.count / 4;
+    if (!good)
+        ply_destroy(mesh);
+    return good;
+}
+
+void ply_destroy(PlyMesh *mesh)
+{
+    free(mesh->positions);
+    free(mesh->normals);
+    free(mesh->uvs);
+    free(mesh->triangles);
+    free(mesh->quads);
+    *mesh = (PlyMesh){0};
+}
+
+/* Of a file, packed or not: four times the 13 bytes a face and 32 bytes for every other vertex of 10^8 triangles. Deflate
+ * expands up to 1032 times, so that without a limit a small file might take all memory. */
+#define PLY_BYTES_MAX ((size_t)12 << 30)
+
+/* Inflates all members of a gzip'd file. */
+static bool gzip_inflate(const PlySource *source, const FileData *file, Array *out)
+{
+    z_stream stream = {.next_in = (Bytef *)file->data};
+    size_t left = file->size;
+    if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK)
+        return error_memory(source->error, 65536, "zlib");
+    int status = Z_OK;
+    while (status == Z_OK || (status == Z_STREAM_END && stream.avail_in + left > 0)) {
+        if (status == Z_STREAM_END && inflateReset(&stream) != Z_OK)
+            break;
+        if (stream.avail_in == 0) {
+            stream.avail_in = (uInt)(left < (1u << 30) ? left : 1u << 30);
+            left -= stream.avail_in;
+        }
+        size_t used = out->count, room = file->size < (1u << 20) ? 1u << 16 : 1u << 24;
+        if (used > PLY_BYTES_MAX) {
+            inflateEnd(&stream);
+            return ply_error(source, "the gzip'd data are more than 12 GiB");
+        }
+        char *target = array_grow(out, room, source->error);
+        if (!target) {
+            inflateEnd(&stream);
+            return false;
+        }
+        stream.next_out = (Bytef *)target;
+        stream.avail_out = (uInt)room;
+        status = inflate(&stream, Z_NO_FLUSH);
+        out->count = used + room - stream.avail_out;
+    }
+    inflateEnd(&stream);
+    return status == Z_STREAM_END || ply_error(source, "the gzip'd data are damaged or incomplete");
+}
+
+bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error)
+{
+    PlySource source = {path, place, error};
+    FileData file;
+    *mesh = (PlyMesh){0};
+    if (!file_read(path, PLY_BYTES_MAX, place, &file, error))
+        return false;
+    bool gzip = file.size >= 2 && (unsigned char)file.data[0] == 0x1f && (unsigned char)file.data[1] == 0x8b;
+    Array inflated;
+    array_init(&inflated, 1);
+    bool good = !gzip || gzip_inflate(&source, &file, &inflated);
+    if (good)
+        good = gzip ? ply_read_memory(path, place, inflated.data, inflated.count, mesh, error)
+                    : ply_read_memory(path, place, file.data, file.size, mesh, error);
+    array_destroy(&inflated);
+    free(file.data);
+    return good;
+}

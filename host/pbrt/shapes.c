@@ -1,0 +1,133 @@
+/* Shape directives other than meshes' data: the surroundings of a shape, and quadrics. */
+#include "base/log.h"
+#include "pbrt/errors.h"
+#include "pbrt/mesh.h"
+#include "pbrt/readers.h"
+#include "pbrt/state.h"
+#include "pbrt/values.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define DEGREES_TO_RADIANS 0.017453292519943295f
+
+/* Sphere::Create of pbrt: zmin -radius, zmax radius, phimax 360 by default, clamped to the sphere. */
+static bool sphere_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    float radius = param_float(list, "radius", 1.0f);
+    float a = param_float(list, "zmin", -radius), b = param_float(list, "zmax", radius);
+    float phi = param_float(list, "phimax", 360.0f);
+    if (!(radius > 0.0f))
+        param_error(list, "radius", "the radius of a sphere must be above 0");
+    Quadric quadric = {.radius = radius,
+                       .z_min = float_clamp(float_min(a, b), -radius, radius),
+                       .z_max = float_clamp(float_max(a, b), -radius, radius),
+                       .phi_max = float_clamp(phi, 0.0f, 360.0f) * DEGREES_TO_RADIANS};
+    return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_SPHERE, &quadric);
+}
+
+static bool disk_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    float height = param_float(list, "height", 0.0f), radius = param_float(list, "radius", 1.0f);
+    float inner = param_float(list, "innerradius", 0.0f), phi = param_float(list, "phimax", 360.0f);
+    if (!(radius > 0.0f))
+        param_error(list, "radius", "the radius of a disk must be above 0");
+    if (!(inner >= 0.0f && inner < radius))
+        param_error(list, "innerradius", "the inner radius of a disk must be at least 0 and below the radius");
+    Quadric quadric = {.radius = radius,
+                       .inner_radius = inner,
+                       .z_min = height,
+                       .z_max = height,
+                       .phi_max = float_clamp(phi, 0.0f, 360.0f) * DEGREES_TO_RADIANS};
+    return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_DISK, &quadric);
+}
+
+/* The alpha texture, or a constant below 1. */
+static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
+{
+    FloatParam param = {.value = 1.0f, .program = NONE};
+    value_float_param(im, list, "alpha", &param);
+    *alpha = param.program;
+    if (param.program != NONE || list->failed)
+        return !list->failed;
+    if (param.value < 0.0f)
+        param_error(list, "alpha", "alpha must not be negative");
+    else if (param.value < 1.0f)
+        *alpha = value_constant_program(im, param.value);
+    return !list->failed && (param.value >= 1.0f || *alpha != NONE);
+}
+
+/* Emission of a shape: an invisible one has none, with a warning as in pbrt. */
+static bool emission_read(PbrtImport *im, ShapeContext *context)
+{
+    if (!value_area_emission(im, &context->emission, &context->emits))
+        return false;
+    if (context->emits && context->invisible) {
+        log_message_at(LOG_WARNING, im->place, "the area light is ignored: the shape's material is \"interface\"");
+        context->emits = false;
+    }
+    return true;
+}
+
+/* pbrt takes an area light of alpha 0 for a light that nobody sees. */
+static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const ShapeContext *context)
+{
+    if (!context->emits || context->shape.alpha == NONE)
+        return true;
+    const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
+    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f)
+        return true;
+    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)",
+                              "it does not shine either", "use a point light");
+}
+
+static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
+{
+    *context = (ShapeContext){.place = im->place};
+    if (!import_ctm(im, im->place, &context->ctm) || !value_material(im, &context->shape.material))
+        return false;
+    if (im->open_object < 0)
+        import_matrix_move(im, &context->ctm);
+    context->invisible = context->shape.material == MATERIAL_INTERFACE;
+    context->has_inverse = matrix_inverse(&context->ctm, &context->inverse);
+    bool reverse = im->state.reverse_orientation;
+    context->shape.flags =
+        (reverse ? SHAPE_REVERSE : 0u) | (reverse != matrix_swaps_handedness(&context->ctm) ? SHAPE_FLIP_NORMAL : 0u);
+    context->shape.first_light = NONE;
+    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context) &&
+           alpha_emission_check(im, list, context);
+}
+
+static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
+{
+    static const char *const KNOWN[] = {"sphere", "disk", "trianglemesh", "plymesh", "bilinearmesh"};
+    static const char *const UNSUPPORTED[] = {"cylinder", "curve", "loopsubdiv"};
+    ShapeContext context;
+    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)
+        if (strcmp(kind, UNSUPPORTED[i]) == 0) {
+            char what[64];
+            snprintf(what, sizeof what, "the shape \"%s\"", kind);
+            return import_unsupported(im, im->place, what, "the shape is left out", "turn it into a plymesh");
+        }
+    bool quadric = strcmp(kind, "sphere") == 0 || strcmp(kind, "disk") == 0;
+    size_t known = 0;
+    while (known < sizeof KNOWN / sizeof *KNOWN && strcmp(kind, KNOWN[known]) != 0)
+        ++known;
+    if (known == sizeof KNOWN / sizeof *KNOWN)
+        return import_unknown(im, im->place, "shape", kind, KNOWN, known);
+    if (!context_make(im, list, &context))
+        return false;
+    if (quadric)
+        return import_inverse(im, im->place, &context.ctm, &context.inverse) &&
+               (kind[0] == 's' ? sphere_read(im, list, &context) : disk_read(im, list, &context));
+    return mesh_read(im, kind, list, &context);
+}
+
+bool import_shape(PbrtImport *im, const char *kind)
+{
+    ParamList list;
+    import_list(im, &list, kind, ATTRIBUTE_SHAPE);
+    bool good = shape_read(im, kind, &list);
+    param_list_destroy(&list);
+    return good;
+}

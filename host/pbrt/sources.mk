@@ -1,0 +1,24 @@
+libtwinlight_host_la_SOURCES += \
+	host/pbrt/context.c host/pbrt/context.h \
+	host/pbrt/directives.c host/pbrt/directives.h \
+	host/pbrt/errors.c host/pbrt/errors.h \
+	host/pbrt/film_camera.c \
+	host/pbrt/import.c host/pbrt/import.h \
+	host/pbrt/import_options.h \
+	host/pbrt/lexer.c host/pbrt/lexer.h \
+	host/pbrt/lights.c \
+	host/pbrt/materials.c \
+	host/pbrt/mesh.c host/pbrt/mesh.h \
+	host/pbrt/objects.c \
+	host/pbrt/options.c \
+	host/pbrt/param_list.c \
+	host/pbrt/params.c host/pbrt/params.h \
+	host/pbrt/parser.c host/pbrt/parser.h \
+	host/pbrt/ply.c host/pbrt/ply.h \
+	host/pbrt/ply_header.c host/pbrt/ply_header.h \
+	host/pbrt/readers.h \
+	host/pbrt/shape_add.c host/pbrt/shape_add.h \
+	host/pbrt/shapes.c \
+	host/pbrt/state.c host/pbrt/state.h \
+	host/pbrt/textures.c \
+	host/pbrt/values.c host/pbrt/values.h

@@ -1,0 +1,93 @@
+#include "render/film_pilot.h"
+
+#include "backend/step_recorder.h"
+#include "film/pixel_order.h"
+#include "layout/state.h"
+#include "math/vec.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+#define PILOT_ITEMS 4096u
+
+/* A sum of floats that does not depend on their order: mantissas of 24 bits by exponent. */
+#define FLOAT_EXPONENTS 255u
+
+typedef struct Pilot {
+    pthread_mutex_t mutex;
+    uint64_t mantissas[FLOAT_EXPONENTS];
+} Pilot;
+
+static void pilot_add(Pilot *pilot, float value)
+{
+    uint bits = float_bits(value), exponent = bits >> 23 & 0xffu, mantissa = bits & 0x7fffffu;
+    if (exponent < FLOAT_EXPONENTS) /* neither infinite nor NaN */
+        pilot->mantissas[exponent] += exponent > 0 ? mantissa | 0x800000u : mantissa;
+}
+
+static double pilot_sum(const Pilot *pilot)
+{
+    double sum = 0.0;
+    for (uint exponent = 0; exponent < FLOAT_EXPONENTS; ++exponent)
+        sum += ldexp((double)pilot->mantissas[exponent], (exponent > 0 ? (int)exponent : 1) - 150);
+    return sum;
+}
+
+static void pilot_splats(void *context, const uint *splats, uint count, uint stride)
+{
+    Pilot *pilot = context;
+    pthread_mutex_lock(&pilot->mutex);
+    for (uint t = 0; t < count; ++t)
+        if (state_load(splats, stride, SPLAT_PIXEL, t) != NONE)
+            pilot_add(pilot, rgb_luminance(state_load_vec3(splats, stride, SPLAT_COLOR, t)));
+    pthread_mutex_unlock(&pilot->mutex);
+}
+
+/* What shows a picture of the integrator in independent samples. */
+static const Integrator *pilot_integrator(const Integrator *integrator)
+{
+    return integrator->list ? integrator : integrator_bdpt();
+}
+
+static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator)
+{
+    FrameParams frame = run->frame;
+    frame.strategies = integrator->strategies;
+    frame.only_s = frame.only_t = NONE;
+    frame.unweighted = 0;
+    frame.crop_x0 = frame.crop_y0 = 0;
+    frame.crop_x1 = frame.width;
+    frame.crop_y1 = frame.height;
+    frame.first_item = 0;
+    frame.item_count = PILOT_ITEMS;
+    frame.sample_index = PILOT_SAMPLE;
+    frame.pixel_stride = pixel_order_stride(frame.width, frame.height);
+    return frame;
+}
+
+/* Mean radiance, were the lights' flux spread over the sphere around the scene, and leaving it in all directions alike. */
+static double radiance_of_power(const Scene *scene)
+{
+    double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
+    return scene->light_power / (4.0 * M_PI * radius * radius) / M_PI;
+}
+
+bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
+{
+    const Integrator *shown = pilot_integrator(integrator);
+    FrameParams frame = pilot_frame(run, shown);
+    Pilot pilot;
+    StepList list;
+    memset(pilot.mantissas, 0, sizeof pilot.mantissas);
+    if (!shown->list(&frame, &list, error))
+        return false;
+    pthread_mutex_init(&pilot.mutex, NULL);
+    const SplatSink sink = {.splats = pilot_splats, .context = &pilot, .whole = true};
+    bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);
+    pthread_mutex_destroy(&pilot.mutex);
+    step_list_destroy(&list);
+    double mean = pilot_sum(&pilot) / PILOT_ITEMS;
+    film_quantum_set(run->film, mean > 0.0 ? mean : radiance_of_power(scene));
+    return done;
+}

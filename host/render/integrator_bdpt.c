@@ -1,0 +1,86 @@
+/* Bidirectional path tracing: a walk from a light, a walk from the camera, and every connection between them. */
+#include "backend/step_recorder.h"
+#include "layout/kernel_list.h"
+#include "path/bd_state.h"
+#include "render/bd_fields.h"
+#include "render/integrator.h"
+
+/* Bits of BD_LIGHT_DELTA; also what vertices and pairs are worth storing and making. */
+#define BDPT_DEPTH_LIMIT 31
+
+/* What has been gathered so far to the film, where depths are split: it is all of one depth. */
+static void record_gathered(Recorder *recorder)
+{
+    recorder_kernel(recorder, KERNEL_bd_splat, false);
+    recorder_step(recorder, STEP_SPLAT);
+}
+
+/* The camera's walk where depths are split. Nothing is left out: a splat that is, is what it was in another pass. */
+static void record_split_walk(Recorder *recorder, uint segments)
+{
+    for (uint i = 1; i <= segments; ++i) {
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_bd_shade_hits, true);
+        record_gathered(recorder);
+        if (i < segments)
+            recorder_kernel(recorder, KERNEL_bd_extend_walks, true);
+    }
+}
+
+static void record_connection(Recorder *recorder, uint t, bool split)
+{
+    recorder_kernel(recorder, KERNEL_bd_connect, false);
+    recorder_step(recorder, STEP_TRACE_SHADOW);
+    recorder_kernel(recorder, KERNEL_bd_add_connections, false);
+    if (t == 1)
+        recorder_step(recorder, STEP_SPLAT);
+    else if (split)
+        record_gathered(recorder);
+}
+
+/* The pairs in the order that connection_advance (kernels/bd_connect.cl) has. */
+static void record_connections(Recorder *recorder, uint max_depth, bool split)
+{
+    for (uint s = 2; s <= max_depth; ++s)
+        record_connection(recorder, 1, split);
+    for (uint t = 2; t <= max_depth; ++t)
+        for (uint s = 1; s + t <= max_depth + 1; ++s)
+            record_connection(recorder, t, split);
+}
+
+bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
+{
+    uint max_depth = frame->max_depth;
+    bool split = frame->split_depths != 0;
+    /* Two walks, their beginnings and the splat, and up to five steps a pair. */
+    size_t capacity = 9 * (size_t)max_depth + 9 + 5 * (size_t)max_depth * (max_depth + 1) / 2;
+    Recorder recorder;
+    if (!recorder_init(&recorder, capacity, error))
+        return false;
+    recorder_kernel(&recorder, KERNEL_bd_start_light, false);
+    if (max_depth > 1)
+        recorder_walk(&recorder, max_depth - 1, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
+    recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
+    if (split)
+        record_split_walk(&recorder, max_depth);
+    else
+        recorder_walk(&recorder, max_depth, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
+    record_connections(&recorder, max_depth, split);
+    if (frame->pool)
+        recorder_kernel(&recorder, KERNEL_pool_end, false);
+    recorder_kernel(&recorder, KERNEL_bd_splat, false);
+    *list = recorder_list(&recorder, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);
+    list->words_per_item[BUFFER_VERTICES] = 2 * max_depth * VERTEX_WORDS;
+    list->words_per_item[BUFFER_DENSITIES] = 2 * max_depth * DENSITY_WORDS;
+    return true;
+}
+
+const Integrator *integrator_bdpt(void)
+{
+    static const Integrator integrator = {.name = "bdpt",
+                                          .summary = "bidirectional path tracing",
+                                          .depth_limit = BDPT_DEPTH_LIMIT,
+                                          .strategies = STRATEGIES_BDPT,
+                                          .list = bdpt_list};
+    return &integrator;
+}

@@ -1,0 +1,80 @@
+/* Instant bidirectional path tracing: both walks, each with the one connection that its vertices allow on their own. */
+#include "backend/step_recorder.h"
+#include "layout/kernel_list.h"
+#include "path/bd_state.h"
+#include "path/ib_weight.h"
+#include "render/bd_fields.h"
+#include "render/integrator.h"
+
+#include <assert.h>
+
+/* Random numbers of connections have 64 places a depth (path/bd_random.h). */
+#define IBPT_DEPTH_LIMIT 63
+
+/* Steps of a segment: rays, vertex, connection, its ray, its sum, [splats,] next direction, skip. */
+#define SEGMENT_STEPS_MAX 8
+
+/* The light's walk: every vertex but y_0 is shown to the lens. */
+static void record_light(Recorder *recorder, uint segments)
+{
+    size_t end = recorder->count + (size_t)segments * 8 - 2;
+    for (uint i = 1; i <= segments; ++i) {
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
+        recorder_kernel(recorder, KERNEL_ib_connect, true);
+        recorder_step(recorder, STEP_TRACE_SHADOW);
+        /* Those that died have a splat to take back. */
+        recorder_kernel(recorder, KERNEL_ib_add_connections, false);
+        recorder_step(recorder, STEP_SPLAT);
+        if (i == segments)
+            break;
+        recorder_kernel(recorder, KERNEL_ib_extend_walks, true);
+        recorder_skip(recorder, end);
+    }
+    assert(recorder->count == end);
+}
+
+static void record_camera(Recorder *recorder, uint segments)
+{
+    size_t end = recorder->count + (size_t)(segments - 1) * 7 + 2;
+    for (uint i = 1; i <= segments; ++i) {
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
+        if (i == segments)
+            break;
+        recorder_kernel(recorder, KERNEL_ib_connect, true);
+        recorder_step(recorder, STEP_TRACE_SHADOW);
+        recorder_kernel(recorder, KERNEL_ib_add_connections, true);
+        recorder_kernel(recorder, KERNEL_ib_extend_walks, true);
+        recorder_skip(recorder, end);
+    }
+    assert(recorder->count == end);
+}
+
+static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
+{
+    uint max_depth = frame->max_depth;
+    size_t capacity = 4 + 2 * (size_t)max_depth * SEGMENT_STEPS_MAX;
+    Recorder recorder;
+    if (!recorder_init(&recorder, capacity, error))
+        return false;
+    recorder_kernel(&recorder, KERNEL_ib_start_light, false);
+    if (max_depth > 1)
+        record_light(&recorder, max_depth - 1);
+    recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
+    record_camera(&recorder, max_depth);
+    recorder_kernel(&recorder, KERNEL_bd_splat, false);
+    *list = recorder_list(&recorder, IB_HEADER_WORDS, BD_FIELDS, IB_FIELD_COUNT);
+    list->words_per_item[BUFFER_VERTICES] = VERTEX_WORDS;
+    return true;
+}
+
+const Integrator *integrator_ibpt(void)
+{
+    static const Integrator integrator = {.name = "ibpt",
+                                          .summary = "three-strategy bidirectional path tracing",
+                                          .depth_limit = IBPT_DEPTH_LIMIT,
+                                          .strategies = STRATEGIES_IBPT,
+                                          .list = ibpt_list};
+    return &integrator;
+}

@@ -1,0 +1,155 @@
+#include "render/render.h"
+
+#include "render/layers.h"
+#include "render/run.h"
+
+#include "backend/step_recorder.h"
+#include "base/timing.h"
+#include "layout/diagnostics.h"
+#include "render/film_pilot.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The first segments of a bidirectional walk always survive Russian roulette. */
+#define ROULETTE_DEPTH 3
+
+/* A pass is sized to take about this long, so that saving, stopping and progress are prompt. */
+#define PASS_SECONDS 0.25
+#define PASS_ITEMS_MIN 16384u
+#define PASS_ITEMS_MAX (1u << 28)
+
+/* Names of the kernels' counters in reports. */
+#define DIAGNOSTIC_NAME(constant, name) name,
+static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
+#undef DIAGNOSTIC_NAME
+
+/* ---- the passes ------------------------------------------------------------------------------------------------- */
+
+/* The loop of integrators whose items are samples of pixels. */
+typedef struct PassLoop {
+    RenderRun *run;
+    StepList list;
+    uint64_t next, total; /* items; without a limit as many as there are sample numbers */
+} PassLoop;
+
+/* One pass of `items` items. */
+static bool pass_run(PassLoop *loop, uint items, Error *error)
+{
+    RenderRun *run = loop->run;
+    uint64_t delivered = 0;
+    run->frame.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
+    run->frame.first_item = (uint)(loop->next % run->crop_pixels);
+    run->frame.item_count = items;
+    run->frame.film_exponent = run->film->quantum_exponent;
+    const SplatSink sink = render_run_sink(run->film);
+    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop(run), &delivered, error)) {
+        run->done += delivered; /* they are in the film */
+        return false;
+    }
+    loop->next += items;
+    run->done += delivered;
+    return true;
+}
+
+/* How many items the next pass takes, given the speed so far. */
+static uint pass_items(const PassLoop *loop, double elapsed)
+{
+    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)loop->run->done / elapsed : PASS_ITEMS_MIN;
+    uint items = wanted < PASS_ITEMS_MIN ? PASS_ITEMS_MIN : wanted > PASS_ITEMS_MAX ? PASS_ITEMS_MAX : (uint)wanted;
+    uint64_t left = loop->total - loop->next;
+    return left < items ? (uint)left : items;
+}
+
+static bool passes_run(PassLoop *loop, Error *error)
+{
+    RenderRun *run = loop->run;
+    const RenderOptions *options = run->options;
+    run->start = run->last_save = timing_now();
+    while (loop->next < loop->total) {
+        double elapsed = timing_now() - run->start;
+        /* With a time, too, every pixel has a sample: an image without holes is worth a moment. */
+        bool spent = options->seconds > 0.0 && elapsed >= options->seconds && loop->next >= run->crop_pixels;
+        if (spent || *render_run_stop(run))
+            break;
+        if (!pass_run(loop, pass_items(loop, elapsed), error))
+            return false;
+        render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
+        if (!render_layers_sample(run, run->done, error))
+            return false;
+        render_run_save_if_due(run);
+    }
+    return true;
+}
+
+static bool samples_render(const Integrator *integrator, RenderRun *run, Error *error)
+{
+    const RenderOptions *options = run->options;
+    PassLoop loop = {.run = run};
+    loop.total = run->crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
+    if (!integrator->list(&run->frame, &loop.list, error))
+        return false;
+    bool done = passes_run(&loop, error);
+    step_list_destroy(&loop.list);
+    return done;
+}
+
+static void result_fill(const RenderRun *run, RenderResult *result)
+{
+    uint64_t counters[DIAGNOSTIC_COUNT] = {0};
+    result->samples = run->done;
+    result->samples_per_pixel = (double)run->done / (double)run->crop_pixels;
+    result->seconds = timing_now() - run->start;
+    run->interface->statistics(run->backend, &result->backend);
+    run->interface->diagnostics(run->backend, counters);
+    result->chains = run->chains;
+    result->stopped = *render_run_stop(run);
+    result->diagnostic_count = 0;
+    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
+        result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
+        result->diagnostics[result->diagnostic_count++] = counters[i];
+    }
+}
+
+void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame)
+{
+    *frame = scene->frame;
+    frame->max_depth =
+        (uint)(options->max_depth < integrator->depth_limit ? options->max_depth : integrator->depth_limit);
+    frame->strategies = integrator->strategies;
+    frame->mis_exponent = options->balance ? 1 : 2;
+    frame->only_s = options->only_strategy ? options->strategy[0] : NONE;
+    frame->only_t = options->only_strategy ? options->strategy[1] : NONE;
+    frame->unweighted = options->unweighted;
+    frame->seed_low = (uint)options->seed;
+    frame->seed_high = (uint)(options->seed >> 32);
+    frame->sample_index = options->first_sample;
+    frame->first_item = 0;
+    frame->pixel_stride = 1;
+    frame->min_depth = 1;
+    frame->roulette_depth = ROULETTE_DEPTH;
+    if (!integrator->aims || options->chains.paper || options->chains.aimless)
+        frame->aim_count = 0;
+}
+
+bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
+                 const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
+                 RenderResult *result, Error *error)
+{
+    RenderRun run = {
+        .interface = interface, .backend = backend, .options = options, .callbacks = callbacks, .film = film};
+    run.crop_pixels = film_pixels(film);
+    memset(result, 0, sizeof *result);
+    render_frame(integrator, scene, options, &run.frame);
+    bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
+    if (from_light && !film_light_reserve(film, error))
+        return false;
+    run.start = run.last_save = timing_now();
+    RenderLayers *layers = options->layers;
+    bool done =
+        (keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
+        (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.world_radius, error)) &&
+        (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
+    result_fill(&run, result);
+    return done;
+}

@@ -1,0 +1,10 @@
+/* What a picture may suffer from, as warnings. */
+#ifndef TWINLIGHT_RENDER_REPORT_H
+#define TWINLIGHT_RENDER_REPORT_H
+
+#include "render/render.h"
+
+/* `scale`: factor on every pixel of the film. */
+void render_report(const RenderResult *result, const Film *film, float scale);
+
+#endif

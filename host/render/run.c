@@ -1,0 +1,58 @@
+#include "render/run.h"
+
+#include "base/log.h"
+#include "base/timing.h"
+
+#include <math.h>
+
+static void film_splats(void *context, const uint *splats, uint count, uint stride)
+{
+    film_add_splats(context, splats, count, stride);
+}
+
+static void film_sums(void *context, ulong *words)
+{
+    film_add_sums(context, words);
+}
+
+const atomic_int *render_run_stop(const RenderRun *run)
+{
+    static const atomic_int never = 0;
+    return run->options->stop ? run->options->stop : &never;
+}
+
+SplatSink render_run_sink(Film *film)
+{
+    return (SplatSink){.splats = film_splats, .sums = film_sums, .sum_words = film_sum_words(film), .context = film};
+}
+
+void render_run_report(const RenderRun *run, double fraction)
+{
+    if (!run->callbacks || !run->callbacks->progress)
+        return;
+    BackendStatistics statistics;
+    run->interface->statistics(run->backend, &statistics);
+    double elapsed = timing_now() - run->start;
+    double by_time = run->options->seconds > 0.0 ? elapsed / run->options->seconds : 0.0;
+    RenderProgress progress = {.elapsed = elapsed,
+                               .fraction = fmin(1.0, fmax(fraction, by_time)),
+                               .samples = run->done,
+                               .rays = statistics.closest_rays + statistics.shadow_rays};
+    run->callbacks->progress(run->callbacks->context, &progress);
+}
+
+void render_run_save_if_due(RenderRun *run)
+{
+    Error error = {0};
+    if (!run->callbacks || !run->callbacks->save || run->options->save_every <= 0.0 ||
+        timing_now() - run->last_save < run->options->save_every)
+        return;
+    bool saved = run->callbacks->save(run->callbacks->context, run->film, &error);
+    /* Once for a row of failures. */
+    if (!saved && !run->save_failed)
+        log_message(LOG_WARNING, "%s; rendering goes on, and saving is tried again", error_text(&error));
+    if (saved && run->save_failed)
+        log_message(LOG_INFO, "the image could be saved again");
+    run->save_failed = !saved;
+    run->last_save = timing_now();
+}

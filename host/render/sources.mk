@@ -1,0 +1,17 @@
+libtwinlight_host_la_SOURCES += \
+	host/render/bd_fields.c host/render/bd_fields.h \
+	host/render/chain_statistics.c host/render/chain_statistics.h \
+	host/render/film_pilot.c host/render/film_pilot.h \
+	host/render/integrator.c host/render/integrator.h \
+	host/render/integrator_bdpt.c \
+	host/render/integrator_ibpt.c \
+	host/render/integrator_pt.c \
+	host/render/job.h \
+	host/render/layers.c host/render/layers.h \
+	host/render/picture.c host/render/picture.h \
+	host/render/progress.c host/render/progress.h \
+	host/render/render.c host/render/render.h \
+	host/render/report.c host/render/report.h \
+	host/render/run.c host/render/run.h \
+	host/render/stats.c host/render/stats.h \
+	host/render/verify.c host/render/verify.h

@@ -1,0 +1,38 @@
+#include "scene/advice.h"
+
+#include "backend/ray_reach.h"
+#include "base/log.h"
+#include "layout/scene_view.h"
+
+/* Whether all that the material scatters goes where a mirror or smooth glass sends it. */
+static bool material_is_delta(const Material *m)
+{
+    return m->kind == MATERIAL_THIN_DIELECTRIC ||
+           ((m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_CONDUCTOR) && !scene_material_is_rough(m));
+}
+
+static void strays_report(const Scene *scene)
+{
+    const BackendScene packed = scene_backend_view(scene);
+    const SceneView view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels);
+    float strays, others;
+    uint count = ray_reach_strays(&view, (uint)packed.instance_count, &strays, &others);
+    if (count > 0)
+        log_message(LOG_WARNING,
+                    "%u of the primitives and instances %s as far as %.3g from the origin, all others no further than "
+                    "%.3g: if that is not meant, look for a stray vertex or a wrong transform; light from infinity is "
+                    "found the more rarely, and the scene is slower",
+                    count, count == 1 ? "reaches" : "reach", (double)strays, (double)others);
+}
+
+void scene_advise(const Scene *scene)
+{
+    bool delta = false;
+    for (size_t i = 0; i < scene->materials.count; ++i)
+        delta = delta || material_is_delta(&ARRAY_AT(&scene->materials, Material, i));
+    if (delta && (scene->features & FEATURE_DELTA_LIGHT) != 0)
+        log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
+                              "and after a rough surface is found by no integrator and is missing; give a sun its size "
+                              "(an infinite light's image), or a lamp a small sphere");
+    strays_report(scene);
+}

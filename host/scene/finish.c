@@ -1,0 +1,383 @@
+/* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables. */
+#include "scene/scene.h"
+
+#include "bsdf/material.h"
+#include "geometry/box.h"
+#include "scene/aim_setup.h"
+#include "scene/camera_setup.h"
+#include "scene/center.h"
+#include "scene/coat_table.h"
+#include "scene/filter_setup.h"
+#include "scene/light_setup.h"
+#include "scene/pack.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- order of primitives ---------------------------------------------------------------------------------------- */
+
+/* Gives every object its range of primitives; `ends[s]` is where shape s ends now. */
+static void objects_place(Scene *scene, const uint *ends)
+{
+    Object *objects = scene->objects.data;
+    const uint *shape_objects = scene->shape_objects.data;
+    for (size_t o = 0; o < scene->objects.count; ++o)
+        objects[o].primitive_count = 0;
+    for (size_t s = 0; s < scene->shapes.count; ++s)
+        objects[shape_objects[s]].primitive_count += ends[s] - ARRAY_AT(&scene->shapes, Shape, s).first_primitive;
+    uint next = 0;
+    for (size_t o = 0; o < scene->objects.count; ++o) {
+        objects[o].first_primitive = next;
+        next += objects[o].primitive_count;
+    }
+}
+
+/* Copies the primitives shape by shape to `sorted`, behind those of the same object, and corrects what names them. */
+static void primitives_copy(Scene *scene, const uint *ends, uint *cursors, Primitive *sorted)
+{
+    const Primitive *old = scene->primitives.data;
+    const uint *shape_objects = scene->shape_objects.data;
+    for (size_t o = 0; o < scene->objects.count; ++o)
+        cursors[o] = ARRAY_AT(&scene->objects, Object, o).first_primitive;
+    for (size_t s = 0; s < scene->shapes.count; ++s) {
+        Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
+        uint to = cursors[shape_objects[s]], count = ends[s] - shape->first_primitive;
+        if (count > 0)
+            memcpy(sorted + to, old + shape->first_primitive, count * sizeof *sorted);
+        for (uint i = 0; shape->first_light != NONE && i < count; ++i)
+            ARRAY_AT(&scene->lights, Light, shape->first_light + i).primitive = to + i;
+        shape->first_primitive = to;
+        cursors[shape_objects[s]] += count;
+    }
+}
+
+/* Primitives of one object must be consecutive, but objects are defined in the middle of the world's own shapes. Moves
+ * whole shapes, keeping their order, and the lights along with them. */
+static bool primitives_group_by_object(Scene *scene, Error *error)
+{
+    size_t shape_count = scene->shapes.count, total = scene->primitives.count;
+    Primitive *sorted = malloc((total + 1) * sizeof *sorted);
+    uint *ends = malloc((shape_count + scene->objects.count + 1) * sizeof *ends);
+    if (!sorted || !ends) {
+        free(sorted);
+        free(ends);
+        return error_memory(error, total * sizeof *sorted, "primitives");
+    }
+    for (size_t s = 0; s < shape_count; ++s)
+        ends[s] = s + 1 < shape_count ? ARRAY_AT(&scene->shapes, Shape, s + 1).first_primitive : (uint)total;
+    objects_place(scene, ends);
+    primitives_copy(scene, ends, ends + shape_count, sorted);
+    if (total > 0)
+        memcpy(scene->primitives.data, sorted, total * sizeof *sorted);
+    free(sorted);
+    free(ends);
+    return true;
+}
+
+/* ---- bounds ----------------------------------------------------------------------------------------------------- */
+
+/* What of a view primitive_box reads, over the arrays as they are before packing. */
+static SceneView geometry_view(const Scene *scene)
+{
+    return (SceneView){.positions = scene->positions.data,
+                       .primitives = scene->primitives.data,
+                       .patches = scene->patches.data,
+                       .quadrics = scene->quadrics.data};
+}
+
+static Box object_box(const Scene *scene, const Object *object)
+{
+    SceneView view = geometry_view(scene);
+    Box box = box_empty();
+    for (uint i = 0; i < object->primitive_count; ++i) {
+        Box primitive = primitive_box(&view, object->first_primitive + i);
+        box_join(&box, &primitive);
+    }
+    return box;
+}
+
+/* The box of everything in world space; *largest is raised to the largest coordinate in the space of any object. */
+static bool world_box(const Scene *scene, Box *world, float *largest, Error *error)
+{
+    Box *objects = malloc(scene->objects.count * sizeof *objects);
+    if (!objects)
+        return error_memory(error, scene->objects.count * sizeof *objects, "bounds");
+    for (size_t o = 0; o < scene->objects.count; ++o) {
+        objects[o] = object_box(scene, &ARRAY_AT(&scene->objects, Object, o));
+        *largest = fmaxf(*largest, box_largest(&objects[o]));
+    }
+    *world = objects[0];
+    for (size_t i = 0; i < scene->instances.count; ++i) {
+        const Instance *instance = &ARRAY_AT(&scene->instances, Instance, i);
+        if (box_is_empty(&objects[instance->object]))
+            continue;
+        Box placed = box_transform(&objects[instance->object], instance->world_from_object);
+        box_join(world, &placed);
+    }
+    free(objects);
+    if (box_is_empty(world)) /* nothing to hit: an environment alone is a scene all the same */
+        *world = (Box){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    *largest = fmaxf(*largest, box_largest(world));
+    return true;
+}
+
+static void world_sphere_set(FrameParams *frame, const Box *world)
+{
+    double square = 0.0, center[3];
+    for (int i = 0; i < 3; ++i) {
+        double half = 0.5 * ((double)world->high[i] - (double)world->low[i]);
+        center[i] = 0.5 * ((double)world->low[i] + (double)world->high[i]);
+        square += half * half;
+    }
+    frame->world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
+    frame->world_radius = (float)(sqrt(square) * 1.0001);
+}
+
+static bool scene_bounds(Scene *scene, Error *error)
+{
+    Box world = box_empty();
+    float largest = 0.0f;
+    if (!world_box(scene, &world, &largest, error))
+        return false;
+    const float origin[3] = {scene->origin.x, scene->origin.y, scene->origin.z};
+    for (int i = 0; i < 3; ++i) {
+        scene->bounds_min[i] = world.low[i] + origin[i];
+        scene->bounds_max[i] = world.high[i] + origin[i];
+    }
+    if (scene->movable && scene_center(scene, &world)) {
+        largest = 0.0f;
+        if (!world_box(scene, &world, &largest, error))
+            return false;
+    }
+    for (int i = 0; i < 3; ++i)
+        largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
+    if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
+        error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
+        return error_fix(error, "scale the scene down, or remove the stray vertices");
+    }
+    world_sphere_set(&scene->frame, &world);
+    scene->ray_reach = box_largest(&world);
+    return true;
+}
+
+/* No ray of the camera starts further out along any axis. */
+static float camera_reach(const Camera *camera)
+{
+    Vec3 origin = vec3(camera->lens_radius, camera->lens_radius, 0.0f);
+    if (camera->kind == CAMERA_ORTHOGRAPHIC) {
+        origin.x += fmaxf(fabsf(camera->screen[0]), fabsf(camera->screen[1]));
+        origin.y += fmaxf(fabsf(camera->screen[2]), fabsf(camera->screen[3]));
+    }
+    return vec3_max_abs(affine_magnitude(camera->world_from_camera, origin));
+}
+
+/* Nor any ray of the light: those from infinity start on a disc as large as the bounding sphere that touches it. */
+static float light_reach(const FrameParams *frame, const Light *light)
+{
+    if (light->kind == LIGHT_AREA)
+        return 0.0f;
+    if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+        return vec3_max_abs(light->position);
+    return vec3_max_abs(frame->world_center) + 1.5f * frame->world_radius;
+}
+
+/* ---- features ---------------------------------------------------------------------------------------------------- */
+
+static const uint FEATURE_OF_MATERIAL[] = {
+    [MATERIAL_DIFFUSE] = FEATURE_DIFFUSE,
+    [MATERIAL_CONDUCTOR] = FEATURE_CONDUCTOR,
+    [MATERIAL_DIELECTRIC] = FEATURE_DIELECTRIC,
+    [MATERIAL_THIN_DIELECTRIC] = FEATURE_THIN_DIELECTRIC,
+    [MATERIAL_COATED_DIFFUSE] = FEATURE_COATED_DIFFUSE,
+    [MATERIAL_DIFFUSE_TRANSMISSION] = FEATURE_DIFFUSE_TRANSMISSION,
+    [MATERIAL_MIX] = FEATURE_MIX,
+};
+
+/* What the kernels make of a constant roughness. */
+static float material_alpha(const Material *m, const FloatParam *roughness)
+{
+    return alpha_from_roughness(m->flags, roughness->value);
+}
+
+static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
+{
+    return roughness->program != NONE || material_alpha(m, roughness) >= ALPHA_DELTA;
+}
+
+bool scene_material_is_rough(const Material *m)
+{
+    return (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_COATED_DIFFUSE) &&
+           (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
+}
+
+static uint material_features(const Material *m)
+{
+    uint features = FEATURE_OF_MATERIAL[m->kind];
+    if (scene_material_is_rough(m))
+        features |= FEATURE_ROUGH;
+    if (m->normal_map != NONE || m->displacement.program != NONE)
+        features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
+    if (m->roughness_u.program != m->roughness_v.program || m->roughness_u.value != m->roughness_v.value)
+        features |= FEATURE_TANGENTS;
+    if (m->color0.program != NONE || m->color1.program != NONE || m->roughness_u.program != NONE ||
+        m->roughness_v.program != NONE || m->amount.program != NONE)
+        features |= FEATURE_TEXTURE;
+    return features;
+}
+
+static uint geometry_features(const Scene *scene)
+{
+    uint features = scene->instances.count > 0 ? FEATURE_INSTANCE : 0u;
+    for (size_t s = 0; s < scene->shapes.count; ++s) {
+        const Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
+        features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
+        features |= shape->flags & SHAPE_HAS_NORMALS ? FEATURE_NORMALS : 0u;
+    }
+    /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers. */
+    for (size_t i = 0; i < scene->primitives.count; ++i)
+        features |=
+            FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
+    return features;
+}
+
+static uint light_features(const Light *light)
+{
+    if (light->kind == LIGHT_AREA)
+        return FEATURE_AREA_LIGHT;
+    return light->kind >= LIGHT_INFINITE ? FEATURE_INFINITE_LIGHT : FEATURE_DELTA_LIGHT;
+}
+
+static uint scene_features(const Scene *scene)
+{
+    uint features = geometry_features(scene);
+    for (size_t i = 0; i < scene->materials.count; ++i)
+        features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        features |= light_features(&ARRAY_AT(&scene->lights, Light, i));
+    if (scene->camera_settings.lens_radius > 0.0f)
+        features |= FEATURE_LENS;
+    return features;
+}
+
+/* ---- tables of rough coats --------------------------------------------------------------------------------------- */
+
+static bool roughness_is_textured(const Material *m)
+{
+    return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
+}
+
+/* Each takes milliseconds, and every coated material is compared with all. */
+#define COATS_MAX 4096
+
+/* Whether the table of `other` serves m. */
+static bool coat_serves(const Material *m, const Material *other)
+{
+    if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
+        return false;
+    return roughness_is_textured(m) ||
+           (material_alpha(m, &m->roughness_u) == material_alpha(other, &other->roughness_u) &&
+            material_alpha(m, &m->roughness_v) == material_alpha(other, &other->roughness_v));
+}
+
+static bool coat_build(Material *m, Array *lookup, Error *error)
+{
+    if (roughness_is_textured(m))
+        return coat_table_build_range(m->eta, lookup, &m->coat_table, error);
+    return coat_table_build(material_alpha(m, &m->roughness_u), material_alpha(m, &m->roughness_v), m->eta, lookup,
+                            &m->coat_table, error);
+}
+
+/* The table of m: that of a material in `owners` (uint), or a new one, which makes m an owner. */
+static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
+{
+    Material *m = &ARRAY_AT(&scene->materials, Material, index);
+    for (size_t j = 0; j < owners->count; ++j) {
+        const Material *other = &ARRAY_AT(&scene->materials, Material, ARRAY_AT(owners, uint, j));
+        if (coat_serves(m, other)) {
+            m->coat_table = other->coat_table;
+            return true;
+        }
+    }
+    if (owners->count >= COATS_MAX) {
+        error_set(error, "the scene has more than %d different rough coats", COATS_MAX);
+        return error_fix(error, "give materials of \"coateddiffuse\" fewer values of roughness and eta");
+    }
+    uint *owner = array_grow(owners, 1, error);
+    if (!owner)
+        return false;
+    *owner = index;
+    return coat_build(m, &scene->lookup, error);
+}
+
+/* Materials of equal coat share a table. */
+static bool scene_coat_tables(Scene *scene, Error *error)
+{
+    Array owners;
+    bool good = true;
+    array_init(&owners, sizeof(uint));
+    for (size_t i = 0; good && i < scene->materials.count; ++i) {
+        Material *m = &ARRAY_AT(&scene->materials, Material, i);
+        m->coat_table = NONE;
+        if (m->kind != MATERIAL_COATED_DIFFUSE)
+            continue;
+        m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
+        good = !scene_material_is_rough(m) || coat_find(scene, &owners, (uint)i, error);
+    }
+    array_destroy(&owners);
+    return good;
+}
+
+/* ---- entry points ------------------------------------------------------------------------------------------------- */
+
+bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
+{
+    FrameParams *frame = &scene->frame;
+    if (width < 1 || height < 1 || (int64_t)width * height > INT32_MAX) {
+        error_set(error, "the film size %d x %d is not between 1 and 2^31 pixels", width, height);
+        return error_fix(error, "choose another --resolution");
+    }
+    if (crop[0] < 0 || crop[1] < 0 || crop[2] > width || crop[3] > height || crop[0] >= crop[2] || crop[1] >= crop[3]) {
+        error_set(error, "the crop %d,%d,%d,%d is empty or outside the film of %d x %d pixels", crop[0], crop[1],
+                  crop[2], crop[3], width, height);
+        return error_fix(error, "give x0,y0,x1,y1 with 0 <= x0 < x1 <= %d and 0 <= y0 < y1 <= %d", width, height);
+    }
+    scene->settings.width = width;
+    scene->settings.height = height;
+    memcpy(scene->settings.crop, crop, 4 * sizeof *crop);
+    frame->width = (uint)width;
+    frame->height = (uint)height;
+    frame->crop_x0 = (uint)crop[0];
+    frame->crop_y0 = (uint)crop[1];
+    frame->crop_x1 = (uint)crop[2];
+    frame->crop_y1 = (uint)crop[3];
+    if (!camera_setup(&scene->camera_settings, width, height, &frame->camera, error))
+        return false;
+    /* The factor is for ray_offset and other rounding. */
+    frame->ray_reach = (1.0f + 64.0f * FLOAT_EPSILON) * fmaxf(scene->ray_reach, camera_reach(&frame->camera));
+    frame->ray_reach = fminf(frame->ray_reach, RAY_COMPONENT_MAX);
+    return true;
+}
+
+bool scene_finish(Scene *scene, Error *error)
+{
+    if (scene->objects.count == 0 && !array_grow(&scene->objects, 1, error))
+        return false;
+    if (!primitives_group_by_object(scene, error) || !scene_bounds(scene, error))
+        return false;
+    scene->features = scene->frame.features = scene_features(scene);
+    scene->primitive_count = scene->primitives.count;
+    if (!scene_coat_tables(scene, error) ||
+        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
+        !light_setup(scene, error))
+        return false;
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        scene->ray_reach = fmaxf(scene->ray_reach, light_reach(&scene->frame, &ARRAY_AT(&scene->lights, Light, i)));
+    aim_setup(scene);
+    scene->frame.light_count = (uint)scene->lights.count;
+    scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
+    scene->frame.pixel_stride = 1;
+    scene->frame.max_depth = (uint)scene->settings.max_depth;
+    return scene_pack(scene, error) &&
+           scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
+}

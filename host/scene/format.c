@@ -1,0 +1,51 @@
+#include "scene/format.h"
+
+#include <string.h>
+
+/* Beginnings; blanks before those that begin with a printing character do not count. */
+static const struct {
+    const char *head;
+    size_t size;
+    const char *what, *fix;
+} FORMATS[] = {
+    {"glTF", 4, "a binary glTF file", "export the scene for pbrt-v4"},
+    {"{", 1, "a JSON file, as glTF's are", "export the scene for pbrt-v4"},
+    {"<", 1, "an XML file, as Mitsuba's scenes are", "export the scene for pbrt-v4"},
+    {"ply\n", 4, "a PLY mesh", "name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE.ply\""},
+    {"ply\r", 4, "a PLY mesh", "name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE.ply\""},
+    {"#usda", 5, "a USD file", "export the scene for pbrt-v4"},
+    {"PXR-USDC", 8, "a USD file", "export the scene for pbrt-v4"},
+    {"\x1f\x8b", 2, "compressed by gzip", "uncompress it: gunzip --keep FILE.gz"},
+    {"\x89PNG", 4, "a PNG image", "give the scene that was rendered"},
+    {"\x76\x2f\x31\x01", 4, "an OpenEXR image", "give the scene that was rendered"},
+    {"BLENDER", 7, "a Blender file", "export the scene for pbrt-v4"},
+};
+
+const char *scene_format_other(const char *head, size_t size, const char **fix)
+{
+    size_t blanks = 0;
+    if (size >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0)
+        blanks = 3;
+    while (blanks < size && strchr(" \t\r\n", head[blanks]) && head[blanks])
+        ++blanks;
+    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; ++i)
+        if (size - blanks >= FORMATS[i].size && memcmp(head + blanks, FORMATS[i].head, FORMATS[i].size) == 0) {
+            *fix = FORMATS[i].fix;
+            return FORMATS[i].what;
+        }
+    return NULL;
+}
+
+bool scene_format_is_v3(const char *kind, const char *name)
+{
+    static const char *const NAMES[][2] = {
+        {"material", "disney"},    {"material", "fourier"},     {"material", "glass"},    {"material", "kdsubsurface"},
+        {"material", "matte"},     {"material", "metal"},       {"material", "mirror"},   {"material", "plastic"},
+        {"material", "substrate"}, {"material", "translucent"}, {"material", "uber"},     {"film", "image"},
+        {"shape", "cone"},         {"shape", "heightfield"},    {"shape", "hyperboloid"}, {"shape", "nurbs"},
+        {"shape", "paraboloid"}};
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; ++i)
+        if (strcmp(kind, NAMES[i][0]) == 0 && strcmp(name, NAMES[i][1]) == 0)
+            return true;
+    return false;
+}

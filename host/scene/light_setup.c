@@ -1,0 +1,209 @@
+#include "scene/light_setup.h"
+
+#include "base/log.h"
+#include "geometry/texture.h"
+#include "scene/distribution_build.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static double luminance(Vec3 c)
+{
+    return (double)rgb_luminance(vec3(float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f)));
+}
+
+/* ---- environments ------------------------------------------------------------------------------------------------ */
+
+/* An infinite light's image while its distribution is made. */
+typedef struct Environment {
+    SceneView view;
+    TextureImage image;
+    const Light *light;
+    float *texels; /* luminance times emission, width x height */
+} Environment;
+
+static float texel_luminance(const Environment *e, int x, int y)
+{
+    return (float)luminance(vec3_mul(e->light->emission, image_texel_wrapped(&e->view, &e->image, x, y, 0)));
+}
+
+/* Any texel at most one outside the image, wrapped as environment_image (light/infinite.h) sees it. */
+static float texel_at(const Environment *e, int x, int y)
+{
+    int width = (int)e->image.width, height = (int)e->image.height;
+    if ((e->light->flags & LIGHT_EQUIRECTANGULAR) != 0)
+        y = y < 0 ? 0 : y >= height ? height - 1 : y;
+    if (x >= 0 && x < width && y >= 0 && y < height)
+        return e->texels[(size_t)y * e->image.width + (size_t)x];
+    return texel_luminance(e, x, y);
+}
+
+/* Mean over the cell of texel (x, y) of the bilinear interpolant between texel centres: weights 1/8, 6/8, 1/8 along
+ * each axis. So a dark texel beside a bright one has the density of what bleeds into it. */
+static float cell_mean(const Environment *e, int x, int y)
+{
+    if (e->image.filter == FILTER_POINT)
+        return texel_at(e, x, y);
+    float rows[3];
+    for (int j = 0; j < 3; ++j)
+        rows[j] = 0.125f * texel_at(e, x - 1, y + j - 1) + 0.75f * texel_at(e, x, y + j - 1) +
+                  0.125f * texel_at(e, x + 1, y + j - 1);
+    return 0.125f * rows[0] + 0.75f * rows[1] + 0.125f * rows[2];
+}
+
+/* Share of the sphere that each cell of row y covers, times the number of cells. */
+static double row_weight(const Environment *e, int y)
+{
+    if ((e->light->flags & LIGHT_EQUIRECTANGULAR) == 0)
+        return 1.0;
+    double height = (double)e->image.height, step = M_PI / height;
+    return 0.5 * height * (cos(step * y) - cos(step * (y + 1)));
+}
+
+static bool environment_load(Environment *e, Error *error)
+{
+    int width = (int)e->image.width, height = (int)e->image.height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            float value = texel_luminance(e, x, y);
+            if (!float_finite(value)) {
+                error_set(error, "texel (%d, %d) of an infinite light's image is not finite", x, y);
+                return error_fix(error, "repair the image, or clamp its values below 1e30");
+            }
+            e->texels[(size_t)y * e->image.width + (size_t)x] = value;
+        }
+    return true;
+}
+
+/* Fills `weights` with every cell's share of the light; *mean: average radiance (luminance) over the sphere. */
+static void environment_weights(const Environment *e, float *weights, double *mean)
+{
+    int width = (int)e->image.width, height = (int)e->image.height;
+    double sum = 0.0;
+    for (int y = 0; y < height; ++y) {
+        double weight = row_weight(e, y);
+        for (int x = 0; x < width; ++x) {
+            double value = weight * (double)cell_mean(e, x, y);
+            weights[(size_t)y * e->image.width + (size_t)x] = (float)value;
+            sum += value;
+        }
+    }
+    *mean = sum / ((double)width * (double)height);
+}
+
+/* Builds the distribution of an infinite image; *mean as above. */
+static bool environment_setup(Scene *scene, Light *light, double *mean, Error *error)
+{
+    Environment e = {.light = light, .image = ARRAY_AT(&scene->images, TextureImage, light->image)};
+    e.view.lookup = scene->lookup.data;
+    e.view.texels = scene->texels.data;
+    size_t cells = (size_t)e.image.width * e.image.height;
+    if (cells == 0) {
+        error_set(error, "an infinite light's image is empty");
+        return error_fix(error, "give another image");
+    }
+    float *weights = malloc(2 * cells * sizeof *weights);
+    if (!weights)
+        return error_memory(error, 2 * cells * sizeof *weights, "an infinite light");
+    e.texels = weights + cells;
+    bool ok = environment_load(&e, error);
+    if (ok) {
+        environment_weights(&e, weights, mean);
+        light->distribution = (uint)scene->distributions2d.count;
+        Distribution2D *out = array_grow(&scene->distributions2d, 1, error);
+        ok = out && distribution2d_build(weights, e.image.width, e.image.height, &scene->lookup, out, error);
+    }
+    free(weights);
+    return ok;
+}
+
+/* ---- power ------------------------------------------------------------------------------------------------------- */
+
+/* Integral of pbrt's falloff over the sphere: the cubic step in the cosine has the mean 1/2. */
+double light_spot_solid_angle(double cos_total, double cos_falloff)
+{
+    return 2.0 * M_PI * ((1.0 - cos_falloff) + 0.5 * (cos_falloff - cos_total));
+}
+
+/* Luminance of the flux that a light sends into the scene; of an infinite light, through the bounding sphere. */
+static bool light_power(Scene *scene, Light *light, double *power, Error *error)
+{
+    double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
+    double disk = M_PI * radius * radius, mean = luminance(light->emission);
+    switch (light->kind) {
+    case LIGHT_AREA:
+        *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
+        break;
+    case LIGHT_POINT:
+        *power = mean * 4.0 * M_PI;
+        break;
+    case LIGHT_SPOT:
+        *power = mean * light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
+        break;
+    case LIGHT_DISTANT:
+        *power = mean * disk;
+        break;
+    default:
+        if (light->kind == LIGHT_INFINITE_IMAGE && !environment_setup(scene, light, &mean, error))
+            return false;
+        *power = mean * 4.0 * M_PI * disk;
+    }
+    if (*power >= 0.0 && isfinite(*power) && vec3_finite(light->emission))
+        return true;
+    error_set(error, "a light's power is not finite");
+    return error_fix(error, "check its radiance, intensity, scale and size");
+}
+
+static bool no_light(size_t count, Error *error)
+{
+    if (count == 0)
+        error_set(error, "the scene has no light");
+    else
+        error_set(error, "the scene has no light: the power of all %zu is zero", count);
+    return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
+}
+
+/* Fills `powers`, sets every select_pdf, and lists the infinite lights. */
+static bool lights_weigh(Scene *scene, double *powers, Error *error)
+{
+    size_t count = scene->lights.count, dark = 0;
+    double sum = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        if (!light_power(scene, &ARRAY_AT(&scene->lights, Light, i), &powers[i], error))
+            return false;
+        sum += powers[i];
+        dark += powers[i] > 0.0 ? 0 : 1;
+    }
+    if (!(sum > 0.0))
+        return no_light(count, error);
+    scene->light_power = sum;
+    if (dark > 0)
+        log_message(LOG_WARNING, "%zu of %zu lights have no power and are ignored", dark, count);
+    for (size_t i = 0; i < count; ++i) {
+        Light *light = &ARRAY_AT(&scene->lights, Light, i);
+        light->select_pdf = (float)(powers[i] / sum);
+        if (light->kind < LIGHT_INFINITE || !(powers[i] > 0.0))
+            continue;
+        uint *index = array_grow(&scene->infinite_lights, 1, error);
+        if (!index)
+            return false;
+        *index = (uint)i;
+    }
+    return true;
+}
+
+bool light_setup(Scene *scene, Error *error)
+{
+    size_t count = scene->lights.count;
+    scene->infinite_lights.count = scene->light_alias.count = 0;
+    if (count == 0)
+        return no_light(0, error);
+    double *powers = malloc(count * sizeof *powers);
+    if (!powers)
+        return error_memory(error, count * sizeof *powers, "lights");
+    bool ok = lights_weigh(scene, powers, error);
+    AliasBucket *buckets = ok ? array_grow(&scene->light_alias, count, error) : NULL;
+    ok = buckets && alias_build(powers, count, buckets, error);
+    free(powers);
+    return ok;
+}

@@ -1,0 +1,436 @@
+#include "scene/scene.h"
+
+#include "base/matrix.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define MEMBER_ARRAYS(X)                                                                                               \
+    X(positions, Vec3)                                                                                                 \
+    X(normals, Vec3)                                                                                                   \
+    X(uvs, Vec2)                                                                                                       \
+    X(primitives, Primitive)                                                                                           \
+    X(shapes, Shape)                                                                                                   \
+    X(patches, Patch)                                                                                                  \
+    X(quadrics, Quadric)                                                                                               \
+    X(objects, Object)                                                                                                 \
+    X(instances, Instance)                                                                                             \
+    X(materials, Material)                                                                                             \
+    X(texture_ops, TextureOp)                                                                                          \
+    X(images, TextureImage)                                                                                            \
+    X(lights, Light)                                                                                                   \
+    X(light_alias, AliasBucket)                                                                                        \
+    X(infinite_lights, uint)                                                                                           \
+    X(distributions2d, Distribution2D)                                                                                 \
+    X(lookup, float)                                                                                                   \
+    X(texels, uint)                                                                                                    \
+    X(shape_objects, uint)                                                                                             \
+    X(geometry_words, uint)                                                                                            \
+    X(tables_words, uint)
+
+void scene_init(Scene *scene)
+{
+    memset(scene, 0, sizeof *scene);
+#define X(member, Type) array_init(&scene->member, sizeof(Type));
+    MEMBER_ARRAYS(X)
+#undef X
+    scene->settings = (SceneSettings){
+        .width = 1280, .height = 720, .crop = {0, 0, 1280, 720}, .max_depth = 6, .samples = 16, .film_scale = 1.0f};
+    scene->filter_settings =
+        (FilterSettings){.kind = PIXEL_FILTER_GAUSSIAN, .radius_x = 1.5f, .radius_y = 1.5f, .sigma = 0.5f};
+    scene->camera_settings = (CameraSettings){.kind = CAMERA_PERSPECTIVE, .fov = 90.0f, .focal_distance = 1e6f};
+    for (int i = 0; i < 4; ++i)
+        scene->camera_settings.world_from_camera[5 * i] = scene->camera_settings.camera_from_world[5 * i] = 1.0;
+}
+
+void scene_destroy(Scene *scene)
+{
+#define X(member, Type) array_destroy(&scene->member);
+    MEMBER_ARRAYS(X)
+#undef X
+}
+
+/* Appends one element; a macro so that the result has the right type. */
+#define SCENE_GROW(scene, member, Type, n, error) ((Type *)array_grow(&(scene)->member, (n), (error)))
+
+/* Indices are 32 bits and PRIMITIVE_SHAPE_MASK 28 bits wide. */
+static bool count_fits(size_t count, size_t limit, const char *what, Error *error)
+{
+    if (count < limit)
+        return true;
+    error_set(error, "the scene has more than %zu %s", limit, what);
+    return error_fix(error, "use object instances, or split the scene");
+}
+
+static bool object_ensure_world(Scene *scene, Error *error)
+{
+    return scene->objects.count > 0 || SCENE_GROW(scene, objects, Object, 1, error) != NULL;
+}
+
+/* Before memory is taken: what does not fit the packed buffer must not be gathered first. */
+static bool geometry_fits(const Scene *scene, const MeshData *mesh, size_t primitive_words, Error *error)
+{
+    size_t vertex_words = 3u + (mesh->normals ? 3u : 0u) + (mesh->uvs ? 2u : 0u), words = scene_geometry_words(scene);
+    if (mesh->vertex_count < NONE && mesh->triangle_count < NONE &&
+        words + mesh->vertex_count * vertex_words + mesh->triangle_count * primitive_words <= SCENE_WORDS_MAX)
+        return true;
+    error_set(error, "the scene needs more than 16 GiB of vertices and primitives");
+    return error_fix(error, "use object instances, or split the scene");
+}
+
+/* Appends `shape` to the current object, and its vertices. */
+static bool shape_add(Scene *scene, const MeshData *mesh, Shape *shape, uint *index, Error *error)
+{
+    if (!object_ensure_world(scene, error) || !count_fits(scene->shapes.count, PRIMITIVE_SHAPE_MASK, "shapes", error))
+        return false;
+    shape->first_primitive = (uint)scene->primitives.count;
+    shape->first_vertex = (uint)scene->positions.count;
+    shape->first_normal = (uint)scene->normals.count;
+    shape->first_uv = (uint)scene->uvs.count;
+    shape->first_light = NONE;
+    if (mesh->vertex_count > 0) {
+        Vec3 *positions = SCENE_GROW(scene, positions, Vec3, mesh->vertex_count, error);
+        if (!positions)
+            return false;
+        memcpy(positions, mesh->positions, mesh->vertex_count * sizeof *positions);
+    }
+    if (mesh->normals) {
+        Vec3 *normals = SCENE_GROW(scene, normals, Vec3, mesh->vertex_count, error);
+        if (!normals)
+            return false;
+        memcpy(normals, mesh->normals, mesh->vertex_count * sizeof *normals);
+        shape->flags |= SHAPE_HAS_NORMALS;
+    }
+    if (mesh->uvs) {
+        Vec2 *uvs = SCENE_GROW(scene, uvs, Vec2, mesh->vertex_count, error);
+        if (!uvs)
+            return false;
+        memcpy(uvs, mesh->uvs, mesh->vertex_count * sizeof *uvs);
+        shape->flags |= SHAPE_HAS_UV;
+    }
+    *index = (uint)scene->shapes.count;
+    Shape *stored = SCENE_GROW(scene, shapes, Shape, 1, error);
+    uint *object = stored ? SCENE_GROW(scene, shape_objects, uint, 1, error) : NULL;
+    if (!object)
+        return false;
+    *stored = *shape;
+    *object = scene->current_object;
+    return true;
+}
+
+static uint shape_and_kind(uint shape_index, uint kind, const Shape *shape)
+{
+    return shape_index | (kind << PRIMITIVE_KIND_SHIFT) | (shape->alpha != NONE ? PRIMITIVE_ALPHA_BIT : 0u);
+}
+
+/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Those of no area are gone
+ * by now, and lights come in the order of primitives, so that the numbers of both differ by a constant. */
+static bool shape_emit(Scene *scene, uint shape_index, const float *emission, uint light_flags, Error *error)
+{
+    Shape *shape = &ARRAY_AT(&scene->shapes, Shape, shape_index);
+    size_t count = scene->primitives.count - shape->first_primitive;
+    if (!emission || count == 0)
+        return true;
+    assert(scene->current_object == 0);
+    if (!count_fits(scene->lights.count + count, NONE, "lights", error))
+        return false;
+    shape->first_light = (uint)scene->lights.count;
+    Light *lights = SCENE_GROW(scene, lights, Light, count, error);
+    if (!lights)
+        return false;
+    for (size_t i = 0; i < count; ++i) {
+        lights[i].kind = LIGHT_AREA;
+        lights[i].flags = light_flags;
+        lights[i].primitive = shape->first_primitive + (uint)i;
+        lights[i].image = NONE;
+        lights[i].distribution = NONE;
+        lights[i].emission = vec3(emission[0], emission[1], emission[2]);
+        lights[i].area = (float)scene_primitive_area(scene, lights[i].primitive);
+    }
+    return true;
+}
+
+static double length3(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static void edge3(Vec3 from, Vec3 to, double out[3])
+{
+    out[0] = (double)to.x - (double)from.x;
+    out[1] = (double)to.y - (double)from.y;
+    out[2] = (double)to.z - (double)from.z;
+}
+
+static double triangle_area(Vec3 a, Vec3 b, Vec3 c)
+{
+    double ab[3], ac[3], n[3];
+    edge3(a, b, ab);
+    edge3(a, c, ac);
+    vector_cross(ab, ac, n);
+    return 0.5 * length3(n);
+}
+
+/* The kernels divide by lengths squared in float32, so an area whose float32 normal vanishes counts as none. */
+static bool triangle_degenerate(Vec3 a, Vec3 b, Vec3 c)
+{
+    Vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+    return !(vec3_length_squared(n) > 0.0f) || !(triangle_area(a, b, c) > 0.0);
+}
+
+bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
+                    Error *error)
+{
+    uint index;
+    if (!geometry_fits(scene, mesh, sizeof(Primitive) / 4, error) || !shape_add(scene, mesh, &shape, &index, error))
+        return false;
+    Primitive *out = SCENE_GROW(scene, primitives, Primitive, mesh->triangle_count, error);
+    if (!out && mesh->triangle_count > 0)
+        return false;
+    const Vec3 *positions = scene->positions.data;
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh->triangle_count; ++i) {
+        Primitive p = {.a = shape.first_vertex + mesh->indices[3 * i],
+                       .b = shape.first_vertex + mesh->indices[3 * i + 1],
+                       .c = shape.first_vertex + mesh->indices[3 * i + 2],
+                       .shape_and_kind = shape_and_kind(index, PRIMITIVE_TRIANGLE, &shape)};
+        if (!triangle_degenerate(positions[p.a], positions[p.b], positions[p.c]))
+            out[kept++] = p;
+    }
+    size_t dropped = mesh->triangle_count - kept;
+    scene->primitives.count -= dropped;
+    scene->counts.degenerate_triangles += dropped;
+    if (emission)
+        scene->counts.zero_area_lights += dropped;
+    return shape_emit(scene, index, emission, light_flags, error);
+}
+
+bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
+                       Error *error)
+{
+    uint index;
+    if (!geometry_fits(scene, mesh, (sizeof(Primitive) + sizeof(Patch)) / 4, error) ||
+        !shape_add(scene, mesh, &shape, &index, error))
+        return false;
+    for (size_t i = 0; i < mesh->triangle_count; ++i) {
+        Patch patch;
+        for (int k = 0; k < 4; ++k)
+            patch.v[k] = shape.first_vertex + mesh->indices[4 * i + (size_t)k];
+        const Vec3 *p = scene->positions.data;
+        if (triangle_degenerate(p[patch.v[0]], p[patch.v[1]], p[patch.v[2]]) &&
+            triangle_degenerate(p[patch.v[3]], p[patch.v[1]], p[patch.v[2]])) {
+            ++scene->counts.degenerate_triangles;
+            scene->counts.zero_area_lights += emission ? 1 : 0;
+            continue;
+        }
+        uint patch_index = (uint)scene->patches.count;
+        Patch *stored = SCENE_GROW(scene, patches, Patch, 1, error);
+        Primitive *primitive = stored ? SCENE_GROW(scene, primitives, Primitive, 1, error) : NULL;
+        if (!primitive)
+            return false;
+        *stored = patch;
+        primitive->a = patch_index;
+        primitive->shape_and_kind = shape_and_kind(index, PRIMITIVE_BILINEAR, &shape);
+    }
+    return shape_emit(scene, index, emission, light_flags, error);
+}
+
+/* The factor of a similarity transform (rotation, reflection, uniform scale), or 0 when it is none to 1e-5. */
+static double similarity_scale(const double m[16])
+{
+    double column[3][3];
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            column[j][i] = m[4 * i + j];
+    double length = length3(column[0]);
+    for (int j = 0; j < 3; ++j)
+        for (int k = 0; k < 3; ++k) {
+            double dot = 0.0;
+            for (int i = 0; i < 3; ++i)
+                dot += column[j][i] * column[k][i];
+            if (fabs(dot - (j == k ? length * length : 0.0)) > 1e-5 * length * length)
+                return 0.0;
+        }
+    return length;
+}
+
+/* Factor by which the affine map stretches the area element with object-space normal n: |det M| |M^-T n|. */
+static double area_stretch(const Quadric *quadric, const double n[3])
+{
+    const float *m = quadric->world_from_object.m;
+    const float *w = quadric->object_from_world.m;
+    double a[3] = {(double)m[0], (double)m[4], (double)m[8]};
+    double b[3] = {(double)m[1], (double)m[5], (double)m[9]};
+    double c[3] = {(double)m[2], (double)m[6], (double)m[10]};
+    double bc[3], transformed[3];
+    vector_cross(b, c, bc);
+    double determinant = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
+    for (int j = 0; j < 3; ++j)
+        transformed[j] = (double)w[j] * n[0] + (double)w[4 + j] * n[1] + (double)w[8 + j] * n[2];
+    return fabs(determinant) * length3(transformed);
+}
+
+#define SPHERE_STEPS 64 /* of the area of a light */
+
+/* By the midpoint rule with `steps` squared places. */
+static double sphere_area(const Quadric *quadric, int steps)
+{
+    double r = (double)quadric->radius;
+    double low = fmax(-r, (double)quadric->z_min), high = fmin(r, (double)quadric->z_max);
+    double sum = 0.0;
+    if (!(high > low) || !(quadric->phi_max > 0.0f))
+        return 0.0;
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            double z = (low + (high - low) * (j + 0.5) / steps) / r;
+            double phi = (double)quadric->phi_max * (i + 0.5) / steps;
+            double s = sqrt(fmax(0.0, 1.0 - z * z));
+            double n[3] = {s * cos(phi), s * sin(phi), z};
+            sum += area_stretch(quadric, n);
+        }
+    return (double)quadric->phi_max * r * (high - low) * sum / (steps * steps);
+}
+
+static double disk_area(const Quadric *quadric)
+{
+    double n[3] = {0.0, 0.0, 1.0};
+    double r = (double)quadric->radius, inner = (double)quadric->inner_radius;
+    return 0.5 * (double)quadric->phi_max * fmax(0.0, r * r - inner * inner) * area_stretch(quadric, n);
+}
+
+static double quadric_area(const Quadric *quadric, uint kind, int steps)
+{
+    return kind == PRIMITIVE_SPHERE ? sphere_area(quadric, steps) : disk_area(quadric);
+}
+
+bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double world_from_object[16],
+                       const double object_from_world[16], Shape shape, const float *emission, uint light_flags,
+                       Error *error)
+{
+    uint index;
+    MeshData no_vertices = {0};
+    quadric.world_from_object = matrix_affine(world_from_object);
+    quadric.object_from_world = matrix_affine(object_from_world);
+    double scale = similarity_scale(world_from_object);
+    bool full = kind == PRIMITIVE_SPHERE && quadric.z_min <= -quadric.radius && quadric.z_max >= quadric.radius &&
+                quadric.phi_max >= 6.2831850f;
+    quadric.whole = full && scale > 0.0;
+    quadric.center =
+        vec3(quadric.world_from_object.m[3], quadric.world_from_object.m[7], quadric.world_from_object.m[11]);
+    quadric.world_radius = (float)(scale * (double)quadric.radius);
+    if (!geometry_fits(scene, &no_vertices, 0, error) || !shape_add(scene, &no_vertices, &shape, &index, error))
+        return false;
+    uint quadric_index = (uint)scene->quadrics.count;
+    Quadric *stored = SCENE_GROW(scene, quadrics, Quadric, 1, error);
+    Primitive *primitive = stored ? SCENE_GROW(scene, primitives, Primitive, 1, error) : NULL;
+    if (!primitive)
+        return false;
+    *stored = quadric;
+    primitive->a = quadric_index;
+    primitive->shape_and_kind = shape_and_kind(index, kind, &shape);
+    /* Whether there is any area is seen with few steps; scenes of a million spheres that are no lights are read fast. */
+    if (!((float)quadric_area(stored, kind, emission ? SPHERE_STEPS : 4) > 0.0f)) {
+        --scene->primitives.count;
+        scene->counts.zero_area_lights += emission ? 1 : 0;
+        ++scene->counts.degenerate_triangles;
+        return true;
+    }
+    return shape_emit(scene, index, emission, light_flags, error);
+}
+
+bool scene_object_begin(Scene *scene, uint *object, Error *error)
+{
+    assert(scene->current_object == 0);
+    if (!object_ensure_world(scene, error))
+        return false;
+    *object = (uint)scene->objects.count;
+    if (!SCENE_GROW(scene, objects, Object, 1, error))
+        return false;
+    scene->current_object = *object;
+    return true;
+}
+
+bool scene_object_end(Scene *scene, Error *error)
+{
+    (void)error;
+    assert(scene->current_object != 0);
+    scene->current_object = 0;
+    return true;
+}
+
+bool scene_add_instance(Scene *scene, uint object, const double world_from_object[16],
+                        const double object_from_world[16], Error *error)
+{
+    if (!count_fits(scene->instances.count, SCENE_WORDS_MAX / (sizeof(Instance) / 4), "instances", error))
+        return false;
+    Instance *instance = SCENE_GROW(scene, instances, Instance, 1, error);
+    if (!instance)
+        return false;
+    instance->world_from_object = matrix_affine(world_from_object);
+    instance->object_from_world = matrix_affine(object_from_world);
+    instance->object = object;
+    return true;
+}
+
+bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error)
+{
+    if (!count_fits(scene->materials.count, SCENE_WORDS_MAX / (sizeof(Material) / 4), "materials", error))
+        return false;
+    *index = (uint)scene->materials.count;
+    Material *stored = SCENE_GROW(scene, materials, Material, 1, error);
+    if (!stored)
+        return false;
+    *stored = *material;
+    return true;
+}
+
+bool scene_add_light(Scene *scene, const Light *light, Error *error)
+{
+    if (!count_fits(scene->lights.count, NONE, "lights", error))
+        return false;
+    Light *stored = SCENE_GROW(scene, lights, Light, 1, error);
+    if (!stored)
+        return false;
+    *stored = *light;
+    return true;
+}
+
+/* Area of a bilinear patch by a midpoint rule over its Jacobian; exact for parallelograms. */
+static double patch_area(const Vec3 *positions, const Patch *patch)
+{
+    enum { STEPS = 16 };
+    Vec3 p00 = positions[patch->v[0]], p10 = positions[patch->v[1]];
+    Vec3 p01 = positions[patch->v[2]], p11 = positions[patch->v[3]];
+    double du0[3], du1[3], dv0[3], dv1[3], sum = 0.0;
+    edge3(p00, p10, du0);
+    edge3(p01, p11, du1);
+    edge3(p00, p01, dv0);
+    edge3(p10, p11, dv1);
+    for (int j = 0; j < STEPS; ++j)
+        for (int i = 0; i < STEPS; ++i) {
+            double u = (i + 0.5) / STEPS, v = (j + 0.5) / STEPS, du[3], dv[3], n[3];
+            for (int k = 0; k < 3; ++k) {
+                du[k] = (1.0 - v) * du0[k] + v * du1[k];
+                dv[k] = (1.0 - u) * dv0[k] + u * dv1[k];
+            }
+            vector_cross(du, dv, n);
+            sum += length3(n);
+        }
+    return sum / (STEPS * STEPS);
+}
+
+double scene_primitive_area(const Scene *scene, uint primitive)
+{
+    const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, primitive);
+    const Vec3 *positions = scene->positions.data;
+    switch (p->shape_and_kind >> PRIMITIVE_KIND_SHIFT) {
+    case PRIMITIVE_TRIANGLE:
+        return triangle_area(positions[p->a], positions[p->b], positions[p->c]);
+    case PRIMITIVE_BILINEAR:
+        return patch_area(positions, &ARRAY_AT(&scene->patches, Patch, p->a));
+    default:
+        return quadric_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a), p->shape_and_kind >> PRIMITIVE_KIND_SHIFT,
+                            SPHERE_STEPS);
+    }
+}

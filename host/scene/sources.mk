@@ -1,0 +1,15 @@
+libtwinlight_host_la_SOURCES += \
+	host/scene/advice.c host/scene/advice.h \
+	host/scene/aim_setup.c host/scene/aim_setup.h \
+	host/scene/camera_setup.c host/scene/camera_setup.h \
+	host/scene/center.c host/scene/center.h \
+	host/scene/coat_table.c host/scene/coat_table.h \
+	host/scene/distribution_build.c host/scene/distribution_build.h \
+	host/scene/filter_setup.c host/scene/filter_setup.h \
+	host/scene/finish.c \
+	host/scene/format.c host/scene/format.h \
+	host/scene/light_setup.c host/scene/light_setup.h \
+	host/scene/pack.c host/scene/pack.h \
+	host/scene/scene.c host/scene/scene.h \
+	host/scene/summary.c host/scene/summary.h \
+	host/scene/texture_image.c host/scene/texture_image.h

@@ -1,0 +1,126 @@
+/* Where a splat goes that comes from anywhere on the film: to one pixel drawn among those whose filter covers the film
+ * position. The expected image is that of camera/pixel_filter.h, which draws film positions for a given pixel from the same
+ * tables: per unit of pixel area, pixel c gets f(film - c) / (integral of f), and nothing is renormalised at borders. */
+#ifndef TWINLIGHT_CAMERA_FILM_SPLAT_H
+#define TWINLIGHT_CAMERA_FILM_SPLAT_H
+
+#include "camera/pixel_filter.h"
+
+/* |f| at `offset` (pixels from a pixel's centre) along one axis, divided by its integral: what pixel_filter_sample draws
+ * with. table: the axis's, in `lookup`. *sign: of f. */
+SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, float radius, float offset, float *sign)
+{
+    uint kind = scene->frame->filter.kind;
+    *sign = 1.0f;
+    if (kind == PIXEL_FILTER_BOX)
+        return 0.5f / radius;
+    if (kind == PIXEL_FILTER_TRIANGLE)
+        return float_max(radius - float_abs(offset), 0.0f) / (radius * radius);
+    __global const float *cdf = scene->lookup + table;
+    uint cell = distribution_cell_of(0.5f * (offset / radius) + 0.5f, PIXEL_FILTER_CELLS);
+    *sign = cdf[PIXEL_FILTER_CELLS + 1u + cell];
+    return (cdf[cell + 1u] - cdf[cell]) * ((0.5f * (float)PIXEL_FILTER_CELLS) / radius);
+}
+
+/* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be none
+ * (false). */
+SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float film, uint *first, uint *last)
+{
+    float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
+    float high = float_min(float_floor(film - 0.5f + radius), (float)end - 1.0f);
+    if (!(low <= high))
+        return false;
+    *first = (uint)low;
+    *last = (uint)high;
+    return true;
+}
+
+/* Draws one of the pixels begin <= i < end along an axis in proportion to |f(film - i - 0.5)|; NONE when no filter
+ * covers `film`. *weight: the sum of |f| / (integral of |f|) over all of them times the sign of the one drawn.
+ *
+ * One pass, which keeps the pixel drawn so far and replaces it with probability f / (sum so far); what the decision
+ * leaves of u is uniform again and serves for the next. */
+SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float radius, uint begin, uint end, float film,
+                                     float u, float *weight)
+{
+    uint chosen = NONE, first, last;
+    float sum = 0.0f, sign = 1.0f;
+    *weight = 0.0f;
+    if (!film_splat_range(radius, begin, end, film, &first, &last))
+        return NONE;
+    for (uint i = first; i <= last; ++i) {
+        float sign_here;
+        float f = film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign_here);
+        if (!(f > 0.0f))
+            continue;
+        float before = sum, place;
+        sum += f;
+        place = u * sum;
+        bool take = chosen == NONE || place < f;
+        u = float_select(take, place, place - f) / float_select(take, f, before);
+        chosen = take ? i : chosen;
+        sign = take ? sign_here : sign;
+    }
+    *weight = sign * sum;
+    return chosen;
+}
+
+/* |*weight| of film_splat_axis. */
+SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float radius, uint begin, uint end, float film)
+{
+    uint first, last;
+    float sum = 0.0f, sign;
+    if (!film_splat_range(radius, begin, end, film, &first, &last))
+        return 0.0f;
+    for (uint i = first; i <= last; ++i)
+        sum += film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign);
+    return sum;
+}
+
+/* The pixel (y * width + x, inside the crop window) that a splat at film position `film` (pixels, continuous) goes to
+ * with factor *weight; NONE when no pixel's filter covers the position. u in [0, 1)^2. The film divides sums by samples
+ * per pixel, of which there are as many as light paths per pixel of the crop window. */
+SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u, float *weight)
+{
+    __global const FrameParams *frame = scene->frame;
+    __global const PixelFilter *filter = &frame->filter;
+    float weight_x, weight_y;
+    uint x = film_splat_axis(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x, u.x,
+                             &weight_x);
+    uint y = film_splat_axis(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y, u.y,
+                             &weight_y);
+    *weight = weight_x * weight_y * filter->weight;
+    return x == NONE || y == NONE ? NONE : y * frame->width + x;
+}
+
+/* What all pixels together see of the film position: the sum of |f(film - c)| / (integral of |f|), which is 1 but for borders
+ * and for filters that do not add up to a constant. */
+SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
+{
+    __global const FrameParams *frame = scene->frame;
+    __global const PixelFilter *filter = &frame->filter;
+    return film_splat_sum(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x) *
+           film_splat_sum(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y);
+}
+
+/* The cell along an axis of `pixels` pixels, from `first` on, that `film` is in or nearest to. */
+SHARED_FUNCTION uint importance_axis(float film, uint first, uint pixels)
+{
+    float place = (film - (float)first) * ((float)IMPORTANCE_SIDE / (float)pixels);
+    return (uint)float_clamp(place, 0.0f, (float)IMPORTANCE_SIDE - 1.0f);
+}
+
+/* The cell of frame->importance that a film position is in. */
+SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 film)
+{
+    uint x = importance_axis(film.x, frame->crop_x0, frame->crop_x1 - frame->crop_x0);
+    uint y = importance_axis(film.y, frame->crop_y0, frame->crop_y1 - frame->crop_y0);
+    return y * IMPORTANCE_SIDE + x;
+}
+
+SHARED_FUNCTION float film_importance(__global const FrameParams *frame, Vec2 film)
+{
+    return frame->importance[importance_cell(frame, film)];
+}
+
+#endif

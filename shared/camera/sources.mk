@@ -1,0 +1,5 @@
+SHARED_FILES += \
+	shared/camera/camera.h \
+	shared/camera/film_splat.h \
+	shared/camera/film_sum.h \
+	shared/camera/pixel_filter.h

@@ -1,0 +1,158 @@
+/* A Markov chain over the random numbers of one path (Hachisuka, Kaplanyan and Dachsbacher, "Multiplexed Metropolis
+ * Light Transport", 2014): what it keeps beside its coordinates (chain/chain_numbers.h). One word a field, behind the walk under way
+ * (path/bd_state.h). */
+#ifndef TWINLIGHT_CHAIN_CHAIN_H
+#define TWINLIGHT_CHAIN_CHAIN_H
+
+#include "chain/pool.h"
+#include "path/strategy.h"
+
+/* Paths of fewer segments are left to path tracing. */
+#define CHAIN_DEPTH_MIN SPLAT_DEPTH_MIN
+
+/* ---- state ------------------------------------------------------------------------------------------------------- */
+
+#define CHAIN_KEY BD_HEADER_WORDS /* chain_key of the current path; 0: the chain never began */
+#define CHAIN_PROPOSED_KEY (BD_HEADER_WORDS + 1u)
+#define CHAIN_STEP (BD_HEADER_WORDS + 2u) /* number of the proposal, for its random numbers */
+#define CHAIN_MOVE (BD_HEADER_WORDS + 3u) /* MOVE_*, four bits each */
+#define CHAIN_LUMINANCE (BD_HEADER_WORDS + 4u) /* f of the current path */
+#define CHAIN_COLOR (BD_HEADER_WORDS + 5u) /* its contribution over f, 3 */
+#define CHAIN_FILM (BD_HEADER_WORDS + 8u) /* where the film sees it, 2 */
+#define CHAIN_PENDING (BD_HEADER_WORDS + 10u) /* expected visits of the current path that the film has not got yet */
+#define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 11u) /* 2 */
+#define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
+#define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* number of the first proposal whose f was not finite; NONE: all were */
+#define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals refused in a row: run_after */
+/* What the connection has to know of a half of the path, twice for each side: chain_half. */
+#define CHAIN_HALVES (BD_HEADER_WORDS + 19u)
+#define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_HALF_WORDS + CHAIN_CAMERA_HALF_WORDS))
+
+/* Places in CHAIN_MOVE. */
+#define MOVE_MUTATION 0u /* of the proposal: MUTATION_* */
+#define MOVE_CHANGED 4u /* halves that the proposal has of its own: HALF_* */
+#define MOVE_REACHED 8u /* halves of the proposal whose last vertex is there */
+#define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
+#define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
+#define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS: the proposal is a shift (chain/shift.h) */
+
+SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint t, uint place)
+{
+    return state_load(paths, stride, CHAIN_MOVE, t) >> place & 0xfu;
+}
+
+SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, uint place, uint value)
+{
+    uint word = state_load(paths, stride, CHAIN_MOVE, t);
+    state_store(paths, stride, CHAIN_MOVE, t, (word & ~(0xfu << place)) | value << place);
+}
+
+#define CHAIN_HALF_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
+#define CHAIN_HALF_EMITTER_FLAGS 1u
+#define CHAIN_HALF_CONNECT 2u
+#define CHAIN_LIGHT_HALF_WORDS 3u
+#define CHAIN_CAMERA_HALF_WORDS 1u /* without the last two */
+
+/* Of MOVE_SHIFT. */
+#define SHIFT_STEP 0x1u
+#define SHIFT_KEEPS 0x2u /* and the current path can be shifted: z_2 and z_3 stay where they are */
+
+/* What BUFFER_VERTICES keeps of the camera's half for shifts. */
+#define SHIFT_VERTICES 2u /* z_1 and z_2 may have new directions */
+#define SHIFT_POINTS 0u /* z_2, z_3: where they are, and of which instance and primitive */
+#define SHIFT_INSTANCE 3u
+#define SHIFT_PRIMITIVE 4u
+#define SHIFT_POINT_WORDS 5u
+#define SHIFT_DENSITY 10u /* of both, per area; 0: the path cannot be shifted */
+#define SHIFT_WORDS 11u
+
+#define HALF_LIGHT 0x1u
+#define HALF_CAMERA 0x2u
+#define HALF_BOTH (HALF_LIGHT | HALF_CAMERA)
+
+/* Fields of half `side` (SIDE_*) in bank 0 or 1. */
+SHARED_FUNCTION uint chain_half(uint side, uint bank)
+{
+    return CHAIN_HALVES + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_HALF_WORDS
+                                              : 2u * CHAIN_LIGHT_HALF_WORDS + bank * CHAIN_CAMERA_HALF_WORDS);
+}
+
+/* The bank of a half of the proposal: the one that the current path does not have where the half is its own. */
+SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint t, uint side)
+{
+    uint banks = chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED);
+    return banks >> side & 1u;
+}
+
+/* BUFFER_VERTICES: the last vertex of either side, twice; a walk's vertices take each other's place. Then what shifts have to
+ * know of the camera's half, twice. */
+#define CHAIN_SHIFTS (4u * VERTEX_WORDS)
+#define CHAIN_VERTEX_WORDS (CHAIN_SHIFTS + 2u * SHIFT_WORDS)
+
+SHARED_FUNCTION uint chain_vertex_base(uint side, uint bank)
+{
+    return (2u * side + bank) * VERTEX_WORDS;
+}
+
+/* BUFFER_DENSITIES: one word a vertex as in path/strategy.h, compact, d of them, twice. */
+SHARED_FUNCTION uint chain_density(__global const FrameParams *frame, uint side, uint bank, uint s, uint i)
+{
+    return bank * frame->max_depth + (side == SIDE_LIGHT ? i : s + i - 1u);
+}
+
+SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame, __global const uint *paths,
+                                               __global const uint *densities, uint t, uint s, uint camera)
+{
+    uint stride = frame->stride;
+    uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    DensityView view;
+    view.light = densities + (size_t)chain_density(frame, SIDE_LIGHT, light_bank, s, 0u) * stride;
+    view.camera = densities + (size_t)chain_density(frame, SIDE_CAMERA, camera_bank, s, 1u) * stride;
+    view.stride = stride;
+    view.t = t;
+    view.light_delta = state_load(paths, stride, chain_half(SIDE_LIGHT, light_bank) + CHAIN_HALF_DELTA, t);
+    view.camera_delta = state_load(paths, stride, chain_half(SIDE_CAMERA, camera_bank) + CHAIN_HALF_DELTA, t);
+    view.compact = true;
+    view.light_end = s >= 2u ? s - 2u : 0u;
+    view.camera_end = camera >= 3u ? camera - 2u : 1u;
+    return view;
+}
+
+/* ---- BUFFER_PASS of chains --------------------------------------------------------------------------------------- */
+
+#define CHAIN_PASS_KEY 0u /* where to begin; after the pass, where it ended */
+#define CHAIN_PASS_ITEM 1u /* the pool's sample; NONE: the coordinates are given */
+#define CHAIN_PASS_LUMINANCE 2u /* of the path when the pass before ended, 0: there was none; after it, of this one */
+#define CHAIN_PASS_TALLY 3u /* after the pass, 4 */
+#define CHAIN_PASS_STEP 7u /* steps made in earlier passes */
+#define CHAIN_PASS_BAD 8u /* after the pass: CHAIN_BAD */
+#define CHAIN_PASS_RUN 9u /* CHAIN_RUN of the pass before, 0: there was none; after the pass, of this one */
+#define CHAIN_PASS_CELL 10u /* after the pass: importance_cell of where the film sees the path */
+#define CHAIN_PASS_NUMBERS 11u /* the coordinates, where the pass keeps them */
+
+/* ---- runs of refused proposals ----------------------------------------------------------------------------------- */
+
+/* The longest run of the pass is in the upper half of a word, the one under way, which began maybe in a pass before, in the
+ * lower. RUN_MOST means so many or more. */
+#define RUN_MOST 0xffffu
+
+SHARED_FUNCTION uint run_longest(uint run)
+{
+    return run >> 16;
+}
+
+/* At the beginning of a pass. */
+SHARED_FUNCTION uint run_begin(uint run)
+{
+    return run & RUN_MOST;
+}
+
+/* After a proposal. */
+SHARED_FUNCTION uint run_after(uint run, bool taken)
+{
+    uint now = run & RUN_MOST, longest = run >> 16;
+    now = taken ? 0u : now < RUN_MOST ? now + 1u : RUN_MOST;
+    return now | (now > longest ? now : longest) << 16;
+}
+
+#endif

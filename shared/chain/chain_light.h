@@ -1,0 +1,84 @@
+/* The light that a chain's walk from the camera meets (s = 0), and where the film sees what a chain proposes. */
+#ifndef TWINLIGHT_CHAIN_CHAIN_LIGHT_H
+#define TWINLIGHT_CHAIN_CHAIN_LIGHT_H
+
+#include "chain/mutation.h"
+#include "path/bd_weight.h"
+
+/* Where the film sees the proposal, and what path tracing shows of it. */
+SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec2 film,
+                                 Vec3 color, float plain)
+{
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, plain));
+}
+
+/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing shows of
+ * it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what they send. It has
+ * the luminance of all, so that the chain goes after all of them, and their color on average. *plain:
+ * StrategyWeights.plain, as much larger, so that color / *plain is what path tracing would contribute of the light drawn. */
+SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
+                                       float u, float *plain)
+{
+    Vec3 one = vec3_splat(0.0f);
+    float all = 0.0f, luminance = 1.0f, scale = 1.0f;
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        StrategyEnds ends = {0};
+        Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
+        if (vec3_is_zero(color))
+            continue;
+        StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
+        color = vec3_scale(color, weights.own);
+        float own = rgb_luminance(color), before = all, place;
+        if (own == 0.0f)
+            continue;
+        all += own;
+        place = u * all;
+        bool take = place < own;
+        u = take ? place / own : (place - own) / before;
+        if (take) {
+            one = color;
+            luminance = own;
+            *plain = weights.plain;
+        }
+    }
+    if (all > 0.0f)
+        scale = all / luminance;
+    *plain *= scale;
+    return vec3_scale(one, scale);
+}
+
+/* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
+SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *restrict paths,
+                                      __global const uint *restrict densities, uint t, uint d,
+                                      const WalkMeeting *meeting)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    state_store(paths, stride, chain_half(SIDE_CAMERA, bank) + CHAIN_HALF_DELTA, t,
+                state_load(paths, stride, BD_CAMERA_DELTA, t));
+    DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
+    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
+    float plain = 0.0f;
+    if (meeting->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
+        float u = random_float(chain_select(frame, paths, t).x[0]);
+        color = chain_environment(scene, beta, view, meeting->ray.d, meeting->from_ng, d, u, &plain);
+    } else if (!meeting->missed && meeting->light != NONE) {
+        StrategyEnds ends = {0};
+        color = vec3_mul(beta, emission_met(scene, meeting, &ends));
+        if (!vec3_is_zero(color)) {
+            StrategyWeights weights = bd_weights(frame, 0u, d + 1u, &view, &ends);
+            color = vec3_scale(color, weights.own);
+            plain = weights.plain;
+        }
+    }
+    if (vec3_is_zero(color))
+        return;
+    Random4 film = chain_camera(frame, paths, t);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
+    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, plain);
+}
+
+#endif

@@ -1,0 +1,261 @@
+/* The coordinates of a chain (chain/chain.h), and how a mutation moves them.
+ *
+ * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
+ * balance holds exactly and a coordinate that is left alone keeps its bits. A large step adds one that is any with the same
+ * probability, so that the sum is, too. What is added is a function of (seed, chain, step): a proposal stands where the
+ * current coordinates stood, and one that is refused is taken away again. */
+#ifndef TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
+#define TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
+
+#include "chain/chain.h"
+#include "chain/pool.h"
+#include "layout/item.h"
+#include "layout/scene_view.h"
+#include "path/bd_random.h"
+
+/* ---- coordinates ------------------------------------------------------------------------------------------------- */
+
+#define NUMBER_CAMERA 0u /* film, lens: 4 */
+#define NUMBER_EMIT 4u /* point and direction on the light: 4 */
+#define NUMBER_SELECT 8u /* which light: 2 */
+#define NUMBER_VERTICES 10u /* then those of every vertex between the ends */
+
+/* Lobe and direction; where the scene mixes materials, also which. */
+SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
+{
+    return (frame->features & FEATURE_MIX) != 0u ? 4u : 3u;
+}
+
+/* d - 1 vertices lie between the ends of a path: y_1, y_2 ... and then, from the light to the camera, ... z_2, z_1. */
+SHARED_FUNCTION uint chain_slot(uint side, uint d, uint i)
+{
+    return side == SIDE_LIGHT ? i - 1u : d - 1u - i;
+}
+
+/* Whether the half owns the coordinate slot: of a path with s vertices from the light. */
+SHARED_FUNCTION uint chain_slot_half(uint s, uint slot)
+{
+    return slot + 1u < s ? HALF_LIGHT : HALF_CAMERA;
+}
+
+/* ---- mutations --------------------------------------------------------------------------------------------------- */
+
+#define MUTATION_ALL 0u /* small steps of all coordinates */
+#define MUTATION_LIGHT 1u /* of the light's half */
+#define MUTATION_CAMERA 2u /* of the camera's half */
+#define MUTATION_LARGE 3u /* everything new, s too */
+#define MUTATION_COUNT 4u
+#define MUTATION_REPLAY 4u /* no mutation: the current path is made again */
+
+/* Of eight small steps so many are of each kind. A step of the light's half alone leaves the path where it is on the film, so
+ * the film has little of it; steps of the camera's half are also the cheapest. */
+#define MUTATION_CHANCE(kind) ((kind) == MUTATION_CAMERA ? 6u : 1u)
+
+/* Blocks of random numbers of one step, 256 of them. */
+#define CHAIN_BLOCK_DECIDE 0u /* whether to accept; pixel of the splat */
+#define CHAIN_BLOCK_S 1u /* the new s of a large step */
+#define CHAIN_BLOCK_SMALL 2u /* offsets, eight to a block */
+#define CHAIN_BLOCK_LARGE 64u /* four to a block */
+
+SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, uint step, uint block)
+{
+    return random_four(frame->first_item + t, step << 8 | block, frame->sample_index, PATH_STREAM_CHAIN,
+                       frame->seed_low, frame->seed_high);
+}
+
+/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path,
+ * half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With
+ * a scale for each coordinate the longest decides, as there are many; and the more there are, the shorter all must be. For the
+ * same work, a door ajar and a glossy hall have 1.15 times the square error where all depths have the same steps and none are
+ * as short as the fourth scale, a relief 1.2 times; a lamp in glass and a pool's caustics the same or a little less. */
+#define STEP_SHIFT_CAMERA 3u
+#define STEP_SHIFT_OTHERS 4u
+#define STEP_SCALES 4u
+
+/* How long the steps of a path of d segments are, in units of 2^-16 of those of one of three. */
+SHARED_FUNCTION uint mutation_length(uint d)
+{
+    return ((CHAIN_DEPTH_MIN + 1u) << 16) / (d + 1u);
+}
+
+/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, times length (mutation_length),
+ * either sign alike. (Kelemen et al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
+SHARED_FUNCTION uint mutation_offset(uint bits, uint shift, uint length)
+{
+    uint size = (uint)((ulong)(bits >> 1 >> shift) * length >> 16);
+    return (bits & 1u) != 0u ? size : 0u - size;
+}
+
+/* One random word serves two small steps: its bits 0 and 16 are their signs, the 15 bits above each what counts most in the
+ * size of one, and what is below those in one is in the other's upper half. Both have all their sizes, and the word with
+ * both signs turned has both steps turned, so detailed balance is exact. place: 0 or 1, which of the two. */
+#define MUTATION_SIGNS 0x00010001u
+
+SHARED_FUNCTION uint mutation_half_bits(uint word, uint place)
+{
+    uint turned = place == 0u ? word : word >> 16 | word << 16;
+    return (turned & ~MUTATION_SIGNS) | (turned >> 16 & 1u);
+}
+
+/* The coordinates that a mutation changes: four from `first` on and the others from `second` on. */
+typedef struct ChangedNumbers {
+    uint first, second, count;
+} ChangedNumbers;
+
+SHARED_FUNCTION ChangedNumbers chain_changed(__global const FrameParams *frame, uint changed, uint d, uint s)
+{
+    uint words = chain_vertex_numbers(frame), camera = NUMBER_VERTICES + (s > 1u ? s - 1u : 0u) * words;
+    uint end = NUMBER_VERTICES + (d - 1u) * words;
+    ChangedNumbers numbers;
+    numbers.first = changed == HALF_LIGHT ? NUMBER_EMIT : NUMBER_CAMERA;
+    numbers.second = changed == HALF_CAMERA ? camera : numbers.first + 4u;
+    numbers.count = 4u + (changed == HALF_LIGHT ? camera : end) - numbers.second;
+    return numbers;
+}
+
+/* Adds `offset` to the changed coordinate i. */
+SHARED_FUNCTION void chain_number_add(__global uint *paths, uint stride, uint t, ChangedNumbers numbers, uint i,
+                                      uint offset)
+{
+    uint field = CHAIN_NUMBERS + (i < 4u ? numbers.first + i : numbers.second + i - 4u);
+    if (i < numbers.count)
+        state_store(paths, stride, field, t, state_load(paths, stride, field, t) + offset);
+}
+
+SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+                                     ChangedNumbers numbers, bool back)
+{
+    for (uint first = 0u; first < numbers.count; first += 4u) {
+        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_LARGE + first / 4u);
+        for (uint i = 0u; i < 4u; ++i)
+            chain_number_add(paths, frame->stride, t, numbers, first + i, back ? 0u - random.x[i] : random.x[i]);
+    }
+}
+
+SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+                                     ChangedNumbers numbers, uint scale, uint length, bool back)
+{
+    uint film = scale + (numbers.first == NUMBER_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
+    uint turn = back ? 1u : 0u;
+    for (uint first = 0u; first < numbers.count; first += 8u) {
+        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_SMALL + first / 8u);
+        for (uint i = 0u; i < 8u; ++i) {
+            uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
+            uint bits = mutation_half_bits(random.x[i / 2u], i % 2u) ^ turn;
+            chain_number_add(paths, frame->stride, t, numbers, first + i, mutation_offset(bits, shift, length));
+        }
+    }
+}
+
+/* Whether a shift draws the direction at z_i, of a path of d segments and s vertices from the light: those to z_2 and z_3. */
+SHARED_FUNCTION bool shift_draws(uint i, uint d, uint s)
+{
+    return i <= SHIFT_VERTICES && i + s < d;
+}
+
+/* The coordinate k (0 or 1) of those that draw the direction at z_i. */
+SHARED_FUNCTION uint shift_number(__global const FrameParams *frame, uint d, uint i, uint k)
+{
+    return CHAIN_NUMBERS + NUMBER_VERTICES + chain_slot(SIDE_CAMERA, d, i) * chain_vertex_numbers(frame) + 1u + k;
+}
+
+/* Puts aside those that the walk of a shift will change; back: restores them. */
+SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __global uint *paths, uint t, uint d, uint s,
+                                        bool back)
+{
+    uint stride = frame->stride;
+    for (uint i = 1u; shift_draws(i, d, s); ++i)
+        for (uint k = 0u; k < 2u; ++k) {
+            uint kept = BD_SHIFT_NUMBERS + 2u * (i - 1u) + k, number = shift_number(frame, d, i, k);
+            state_store(paths, stride, back ? number : kept, t, state_load(paths, stride, back ? kept : number, t));
+        }
+}
+
+/* The current coordinates become the proposal's; back: the other way. */
+SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint t, bool back)
+{
+    uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, t);
+    uint step = state_load(paths, stride, CHAIN_STEP, t), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    uint d = chain_key_depth(key), s = chain_key_s(key);
+    ChangedNumbers numbers = chain_changed(frame, move >> MOVE_CHANGED & 0xfu, d, s);
+    if ((move >> MOVE_SHIFT & SHIFT_KEEPS) != 0u) {
+        numbers.first = NUMBER_CAMERA;
+        numbers.count = 4u;
+        shift_numbers_keep(frame, paths, t, d, s, back);
+    }
+    if ((move >> MOVE_MUTATION & 0xfu) == MUTATION_LARGE)
+        chain_add_large(frame, paths, t, step, numbers, back);
+    else
+        chain_add_small(frame, paths, t, step, numbers, move >> MOVE_SCALE & 0xfu, mutation_length(d), back);
+}
+
+SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __global const uint *paths, uint t, uint first,
+                                      uint count)
+{
+    Random4 numbers;
+    for (uint i = 0u; i < 4u; ++i)
+        numbers.x[i] = i < count ? state_load(paths, frame->stride, CHAIN_NUMBERS + first + i, t) : 0u;
+    return numbers;
+}
+
+SHARED_FUNCTION Random4 chain_camera(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_numbers(frame, paths, t, NUMBER_CAMERA, 4u);
+}
+
+SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_numbers(frame, paths, t, NUMBER_EMIT, 4u);
+}
+
+SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return chain_numbers(frame, paths, t, NUMBER_SELECT, 2u);
+}
+
+/* x: lobe, direction, direction, mix. */
+SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global const uint *paths, uint t, uint side,
+                                     uint d, uint i)
+{
+    uint count = chain_vertex_numbers(frame);
+    return chain_numbers(frame, paths, t, NUMBER_VERTICES + chain_slot(side, d, i) * count, count);
+}
+
+SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint t, uint first, uint count,
+                                         Random4 numbers)
+{
+    for (uint i = 0u; i < count; ++i)
+        state_store(paths, stride, CHAIN_NUMBERS + first + i, t, numbers.x[i]);
+}
+
+/* ---- how a chain begins ------------------------------------------------------------------------------------------ */
+
+/* The coordinates that the pool's sample had for the path it kept. */
+SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint t, uint key, uint item)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
+    ItemPlace place = item_place_of(frame, item);
+    state_store(paths, stride, BD_PIXEL, t, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    float weight;
+    Random4 camera = pool_camera(scene, paths, t, &weight);
+    if (s == d) {
+        Random4 film = pool_random(frame, paths, t, BD_RANDOM_PIXEL);
+        camera.x[0] = film.x[0];
+        camera.x[1] = film.x[1];
+    }
+    chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, camera);
+    chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, pool_random(frame, paths, t, BD_RANDOM_EMIT));
+    chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, pool_random(frame, paths, t, BD_RANDOM_LIGHT));
+    for (uint slot = 0u; slot + 1u < d; ++slot) {
+        uint side = slot + 1u < s ? SIDE_LIGHT : SIDE_CAMERA;
+        uint i = side == SIDE_LIGHT ? slot + 1u : d - 1u - slot;
+        Random4 numbers = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_SCATTER));
+        if (count > 3u)
+            numbers.x[3] = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[0];
+        chain_store_numbers(paths, stride, t, NUMBER_VERTICES + slot * count, count, numbers);
+    }
+}
+
+#endif

@@ -1,0 +1,224 @@
+/* What a chain proposes, and whether it takes it: Metropolis's rule with expected values, every proposal and every
+ * current path weighted by how probable it is to be visited (Veach 1997, section 11.3.2). */
+#ifndef TWINLIGHT_CHAIN_MUTATION_H
+#define TWINLIGHT_CHAIN_MUTATION_H
+
+#include "chain/chain_numbers.h"
+#include "chain/shift.h"
+#include "path/bd_connect.h"
+
+/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a half
+ * that does not change have nothing to do. */
+SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
+{
+    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
+    return random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
+}
+
+/* The kind of mutation. random: mutation_random. */
+SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, Random4 random)
+{
+    if (random_float(random.x[0]) < frame->large_step)
+        return MUTATION_LARGE;
+    uint chances = 0u, set = frame->mutations;
+    for (uint kind = 0u; kind < MUTATION_LARGE; ++kind)
+        chances += (set >> kind & 1u) * MUTATION_CHANCE(kind);
+    uint rest = (uint)((ulong)random.x[1] * chances >> 32);
+    for (uint kind = 0u; kind < MUTATION_LARGE; ++kind) {
+        uint chance = (set >> kind & 1u) * MUTATION_CHANCE(kind);
+        if (rest < chance)
+            return kind;
+        rest -= chance;
+    }
+    return MUTATION_ALL; /* the set is empty */
+}
+
+/* The scale of its small steps. */
+SHARED_FUNCTION uint mutation_scale(Random4 random)
+{
+    return (uint)((ulong)random.x[2] * STEP_SCALES >> 32);
+}
+
+/* Which halves the mutation changes. A half without coordinates cannot change: then all do. */
+SHARED_FUNCTION uint mutation_halves(uint mutation, uint d, uint s)
+{
+    bool light = s > 0u, camera = s < d;
+    if (mutation == MUTATION_LIGHT && light && camera)
+        return HALF_LIGHT;
+    if (mutation == MUTATION_CAMERA && light && camera)
+        return HALF_CAMERA;
+    return HALF_BOTH;
+}
+
+/* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
+SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
+                                   __global const uint *restrict vertices, uint t)
+{
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
+    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = HALF_BOTH, scale = 0u;
+    uint shift = 0u;
+    if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
+        state_store(paths, stride, CHAIN_STEP, t, ++step);
+        Random4 random = mutation_random(frame, t, step);
+        mutation = mutation_choose(frame, random);
+        scale = mutation_scale(random);
+        changed = mutation_halves(mutation, d, chain_key_s(key));
+        if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
+            shift = shift_kind(paths, vertices, stride, t);
+    }
+    if (mutation == MUTATION_LARGE) {
+        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
+        key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
+    }
+    uint kept = HALF_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | HALF_LIGHT : kept;
+    uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
+    state_store(paths, stride, CHAIN_MOVE, t,
+                banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
+                    scale << MOVE_SCALE | shift << MOVE_SHIFT);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
+    if (mutation != MUTATION_REPLAY)
+        chain_move_numbers(frame, paths, t, false);
+}
+
+/* ---- splats ------------------------------------------------------------------------------------------------------ */
+
+/* What path tracing shows of a path, from 0 to this, in the upper half of a chain's key: rounded, which leaves out or
+ * doubles less than 2^-16 of a path. */
+#define KEY_SHOWN_ALL 0xffffu
+
+/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `plain`: were the path
+ * made by path tracing, it would contribute color / plain. Here as in kernels/pt.cl (path_shown) that, times its importance, is
+ * shown up to the limit. Walks from the camera begin with film_reach_factor, which paths that the light's walk brings to the
+ * lens (t = 1) do not have, nor path tracing. */
+SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color, float plain)
+{
+    uint d = chain_key_depth(key), s = chain_key_s(key), shown = KEY_SHOWN_ALL;
+    float limit = RARE_OVER_LIMIT * frame->limit * plain;
+    float worth = rgb_luminance(color) * film_importance(frame, film);
+    if (s < d)
+        worth /= film_reach_factor(frame);
+    if (frame->limit < FLOAT_MAX && worth > limit)
+        shown = (uint)(limit / worth * (float)KEY_SHOWN_ALL + 0.5f);
+    return chain_key(d, s) | shown << 16;
+}
+
+/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by chance. */
+SHARED_FUNCTION uint chain_splat_flags(__global const FrameParams *frame, uint key, float f, float u)
+{
+    uint flags = u * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
+    return u * (float)KEY_SHOWN_ALL < (float)(key >> 16) ? flags : flags | SPLAT_RARE;
+}
+
+/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What a
+ * path has above the limit is kept apart (mmlt/blend.h): all of a visit or nothing of it, by chance. */
+SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
+                                 __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
+                                 float visits, Random4 random)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, pixel = NONE;
+    float weight = 0.0f;
+    if (visits > 0.0f)
+        pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
+    if (pixel == NONE)
+        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+    else
+        splat_store(splats, diagnostics, stride, t,
+                    chain_splat_flags(frame, key, f, random_float(random.x[3])) | pixel |
+                        splat_depth(frame->split_depths, chain_key_depth(key)),
+                    vec3_scale(color, visits * (weight * frame->brightness)));
+}
+
+SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint t)
+{
+    return vec2(state_load_float(paths, stride, field, t), state_load_float(paths, stride, field + 1u, t));
+}
+
+SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const uint *restrict paths,
+                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint t,
+                                         float visits, Random4 random)
+{
+    uint stride = scene->frame->stride;
+    chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_KEY, t),
+                chain_film_load(paths, stride, CHAIN_FILM, t), state_load_float(paths, stride, CHAIN_LUMINANCE, t),
+                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits, random);
+}
+
+/* ---- the rule ---------------------------------------------------------------------------------------------------- */
+
+/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin with. */
+SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
+                                Vec3 color, float visits)
+{
+    uint stride = frame->stride;
+    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
+    state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
+    chain_move_set(paths, stride, t, MOVE_BANKS,
+                   chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED));
+    state_store_float(paths, stride, CHAIN_LUMINANCE, t, f);
+    state_store_vec3(paths, stride, CHAIN_COLOR, t, vec3_scale(color, 1.0f / f));
+    state_store_float(paths, stride, CHAIN_FILM, t, film.x);
+    state_store_float(paths, stride, CHAIN_FILM + 1u, t, film.y);
+    state_store_float(paths, stride, CHAIN_PENDING, t, visits);
+}
+
+/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film, times
+ * the importance there. */
+SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color)
+{
+    float f = rgb_luminance(color);
+    if (f > 0.0f)
+        f *= film_splat_cover(scene, film) * film_importance(scene->frame, film);
+    return f;
+}
+
+/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is that of
+ * volumes of a mutation that is no step (shift_ratio). What the film gets is
+ * expected: a of the proposal, 1 - a of the current path, the latter kept until the chain leaves it. So there is one
+ * splat a step: of what the chain leaves, or of what it does not take. */
+SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
+                                  __global uint *restrict diagnostics, uint t, Vec3 color, float change)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
+    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color);
+    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
+    if (!float_finite(f)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        if (state_load(paths, stride, CHAIN_BAD, t) == NONE)
+            state_store(paths, stride, CHAIN_BAD, t, state_load(paths, stride, CHAIN_STEP, t));
+        f = 0.0f;
+    }
+    f = float_max(f, 0.0f);
+    if (mutation == MUTATION_REPLAY) {
+        uint before = state_load(paths, stride, CHAIN_COLOR, t);
+        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        if (before != 0u && before != float_bits(f))
+            diagnostic_count(diagnostics, DIAGNOSTIC_REPLAY);
+        if (f > 0.0f)
+            chain_take(frame, paths, t, f, color, 0.0f);
+        else
+            diagnostic_count(diagnostics, DIAGNOSTIC_LOST_CHAIN);
+        return;
+    }
+    float ratio = f > 0.0f ? f / current * change : 0.0f, accept = float_min(ratio, 1.0f),
+          pending = state_load_float(paths, stride, CHAIN_PENDING, t);
+    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
+    bool taken = f > 0.0f && random_float(random.x[0]) < accept;
+    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, t);
+    state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
+    state_store(paths, stride, CHAIN_RUN, t, run_after(state_load(paths, stride, CHAIN_RUN, t), taken));
+    if (taken) {
+        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept), random);
+        chain_take(frame, paths, t, f, color, accept);
+    } else {
+        if (f > 0.0f)
+            color = vec3_scale(color, 1.0f / f);
+        chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t),
+                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color, accept, random);
+        state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
+        chain_move_numbers(frame, paths, t, true);
+    }
+}
+
+#endif

@@ -1,0 +1,11 @@
+SHARED_FILES += \
+	shared/geometry/bilinear.h \
+	shared/geometry/box.h \
+	shared/geometry/bvh_traverse.h \
+	shared/geometry/disk.h \
+	shared/geometry/primitive.h \
+	shared/geometry/ray.h \
+	shared/geometry/sphere.h \
+	shared/geometry/surface.h \
+	shared/geometry/texture.h \
+	shared/geometry/triangle.h

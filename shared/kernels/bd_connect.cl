@@ -1,0 +1,135 @@
+/* Connections of bidirectional path tracing: per pair (s, t) bd_connect, (shadow rays traced) bd_add_connections; at the
+ * end bd_splat. */
+#ifndef TWINLIGHT_BD_CONNECT_CL
+#define TWINLIGHT_BD_CONNECT_CL
+
+#include "chain/pool.h"
+#include "path/bd_connect.h"
+#include "path/bd_weight.h"
+
+/* What roulette left of a walk up to its vertex number `count`; of one without segments all. */
+SHARED_FUNCTION float vertex_survival(__global const FrameParams *frame, __global const uint *vertices, uint item,
+                                      uint side, uint count)
+{
+    return count > 1u
+               ? state_load_float(vertices, frame->stride, vertex_base(frame, side, count - 1u) + VERTEX_SURVIVAL, item)
+               : 1.0f;
+}
+
+/* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
+__kernel void bd_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                         __global const uint *restrict tables, __global const uint *restrict texels,
+                         __global uint *restrict paths, __global uint *restrict shadows,
+                         __global const uint *restrict vertices, __global const uint *restrict densities)
+{
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
+        return;
+    uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
+    uint lengths = state_load(paths, stride, BD_LENGTHS, item);
+    if ((s > 1u && s > (lengths & 0xffffu)) || t > (lengths >> 16) + 1u || !strategy_wanted(frame, s, t))
+        return;
+    uint base_y = vertex_base(frame, SIDE_LIGHT, s - 1u), base_z = vertex_base(frame, SIDE_CAMERA, t - 1u);
+    if ((s > 1u && vertex_smooth(vertices, stride, base_y, item)) ||
+        (t > 1u && vertex_smooth(vertices, stride, base_z, item)))
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Connection connection = {0};
+    Vertex y = {0}, z = {0};
+    if (s > 1u)
+        y = vertex_load(scene, vertices, stride, base_y, item);
+    if (t > 1u)
+        z = vertex_load(scene, vertices, stride, base_z, item);
+    Random4 random = bd_random_connection(frame, paths, item, s, t);
+    bool possible = connect_ends(scene, s, t, &y, &z, random, &connection);
+    if (possible && t == 1u)
+        possible = connection_aim(scene, random, &connection);
+    if (!possible || !connection_traceable(&connection))
+        return;
+    if (s >= 2u)
+        connection_light_end(paths, stride, item, &connection.ends);
+    DensityView view = bd_density_view(frame, paths, densities, item);
+    float weight = bd_weight(frame, s, t, &view, &connection.ends);
+    connection_store(paths, shadows, stride, item, &connection, weight);
+    if (frame->pool == 0u)
+        return;
+    state_store_float(paths, stride, BD_CONNECTION_SURVIVAL, item,
+                      vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
+                          vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
+    if (t == 1u)
+        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item, film_importance(frame, connection.film));
+}
+
+/* The pairs in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...
+ * D + 1 - t. */
+SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stride, uint item, uint max_depth)
+{
+    uint s = state_load(paths, stride, BD_S, item) + 1u, t = state_load(paths, stride, BD_T, item);
+    if (s + t > max_depth + 1u) {
+        s = 1u;
+        ++t;
+    }
+    state_store(paths, stride, BD_S, item, s);
+    state_store(paths, stride, BD_T, item, t);
+}
+
+/* The connection makes a path of so many segments: for the splat, wherever it goes. */
+SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                          uint segments)
+{
+    uint stride = frame->stride;
+    if (frame->split_depths == 0u)
+        return;
+    uint target = state_load(paths, stride, BD_TARGET, item);
+    state_store(paths, stride, BD_GATHERED, item, segments);
+    if (target != NONE)
+        state_store(paths, stride, BD_TARGET, item, target | splat_depth(frame->split_depths, segments));
+}
+
+/* From: traced shadow rays. To: visible connections gathered, or (t = 1) put out for the film; the next pair. */
+__kernel void bd_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                 __global uint *restrict shadows, __global uint *restrict splats,
+                                 __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
+        return;
+    uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
+    bool visible = shadow_take(shadows, stride, item);
+    if (frame->pool != 0u && visible) {
+        /* Of a splat the weight is the cover, but for sign and the filter's own. */
+        float cover = t == 1u
+                          ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
+                          : state_load_float(paths, stride, BD_COVER, item);
+        Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
+        float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
+        contribution =
+            candidate_offer(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
+                            cover, importance, contribution);
+        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
+    }
+    if (visible)
+        connection_depth_set(frame, paths, item, s + t - 1u);
+    connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
+    connection_advance(paths, stride, item, frame->max_depth);
+}
+
+/* From: what was gathered for the pixel. To: its splat; with frame->split_depths also from a path under way, and then what
+ * has been gathered is gone. */
+__kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                       __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
+        return;
+    Vec3 radiance =
+        vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
+    uint flags = frame->pool != 0u ? SPLAT_FROM_LIGHT : 0u;
+    if (frame->split_depths != 0u) {
+        flags |= splat_depth(frame->split_depths, state_load(paths, stride, BD_GATHERED, item));
+        state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
+    }
+    splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item), radiance);
+}
+
+#endif

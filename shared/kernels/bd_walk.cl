@@ -1,0 +1,141 @@
+/* Both walks of bidirectional path tracing (Veach 1997, chapter 10; Lafortune and Willems 1993), vertex by vertex. Per
+ * segment: (rays traced) bd_shade_hits, bd_extend_walks; before them bd_start_light, then bd_start_camera. */
+#ifndef TWINLIGHT_BD_WALK_CL
+#define TWINLIGHT_BD_WALK_CL
+
+#include "chain/pool.h"
+#include "path/bd_random.h"
+#include "path/bd_start.h"
+#include "path/bd_walk.h"
+#include "path/bd_weight.h"
+
+/* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
+__kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows, __global uint *restrict vertices,
+                             __global uint *restrict densities, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    bd_header_begin(frame, paths, rays, shadows, stride, t);
+    state_store(paths, stride, BD_LENGTHS, t, 0u);
+    state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
+    state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
+    state_store(paths, stride, BD_S, t, 2u);
+    state_store(paths, stride, BD_T, t, 1u);
+    if (frame->max_depth < 2u || (frame->pool != 0u && !pool_has_light(frame, frame->first_item + t)))
+        return;
+    float own;
+    if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
+                          bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT),
+                          &own))
+        return;
+    if (frame->pool != 0u)
+        pool_roulette_weigh(frame, paths, t, 1.0f);
+    state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
+    state_store(paths, stride, BD_LENGTHS, t, 1u);
+}
+
+/* From: nothing more than the pixel. To: the camera's first ray. */
+__kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    if (frame->pool != 0u)
+        pool_start_camera(scene, paths, rays, diagnostics, t);
+    else
+        walk_start_camera(scene, paths, rays, diagnostics, stride, t);
+}
+
+/* s = 0: what is sent by lights that the walk has met after `depth` segments. */
+SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
+                                Vec3 contribution)
+{
+    uint stride = frame->stride;
+    if (frame->pool != 0u)
+        contribution = candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
+                                       state_load_float(paths, stride, BD_COVER, t),
+                                       state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, BD_GATHERED, t, depth);
+    bd_add_radiance(paths, stride, t, contribution);
+}
+
+/* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
+ * or are full end. */
+__kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits, __global uint *restrict vertices,
+                            __global uint *restrict densities)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    uint side = state_load(paths, stride, BD_SIDE, t);
+    WalkMeeting meeting = {0};
+    walk_meet(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &meeting);
+    Vec3 beta = state_load_vec3(paths, stride, BD_BETA, t);
+    DensityView view = bd_density_view(frame, paths, densities, t);
+    state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, t, meeting.own);
+    if (meeting.missed) {
+        if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
+            Vec3 sum = walk_environment(scene, view, meeting.ray.d, meeting.from_ng, depth);
+            bd_add_met(frame, paths, t, depth, vec3_mul(beta, sum));
+        }
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    if (side == SIDE_CAMERA && meeting.light != NONE) {
+        StrategyEnds ends = {0};
+        Vec3 radiance = emission_met(scene, &meeting, &ends);
+        if (!vec3_is_zero(radiance))
+            bd_add_met(frame, paths, t, depth,
+                       vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
+    }
+    if (!walk_vertex(scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
+                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, t, side, depth), &meeting))
+        return;
+    uint lengths = state_load(paths, stride, BD_LENGTHS, t);
+    lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
+    state_store(paths, stride, BD_LENGTHS, t, lengths);
+}
+
+/* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
+ * absorption or Russian roulette. Roulette leaves the weights alone: they need not know of it to sum to one. */
+__kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global const uint *restrict vertices, __global uint *restrict densities,
+                              __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
+    WalkStep step = {0};
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
+        return;
+    walk_mark(paths, stride, t, side, depth, &step);
+    if (side == SIDE_LIGHT || depth > 1u)
+        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t, step.reverse);
+    walk_step_store(paths, rays, stride, t, depth, &step);
+}
+
+#endif

@@ -1,0 +1,153 @@
+/* Instant bidirectional path tracing: of all strategies the three that need no stored vertices, so that the state of a
+ * path does not depend on its length (Frolov 2018, section 1; Bogolepov, Ulyanov, Sopin and Turlapov, "GPU-optimized
+ * bi-directional path tracing", WSCG 2013). Per segment: (rays traced) ib_shade_hits, ib_connect, (shadow rays traced)
+ * ib_add_connections, ib_extend_walks; around them ib_start_light, bd_start_camera, bd_splat. */
+#ifndef TWINLIGHT_IBPT_CL
+#define TWINLIGHT_IBPT_CL
+
+#include "path/bd_connect.h"
+#include "path/bd_start.h"
+#include "path/bd_weight.h"
+#include "path/ib_weight.h"
+
+/* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
+__kernel void ib_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows, __global uint *restrict vertices,
+                             __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    float own;
+    bd_header_begin(frame, paths, rays, shadows, stride, t);
+    if (frame->max_depth >= 2u &&
+        walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, 0u,
+                         bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT), &own))
+        state_store_float(paths, stride, IB_OWN_BEFORE, t, own);
+}
+
+/* s = 0: adds what a light met sends. */
+SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
+                                Vec3 radiance, const StrategyEnds *ends)
+{
+    bool delta = (state_load(paths, frame->stride, BD_WALK_FLAGS, t) & WALK_DELTA) != 0u;
+    if (vec3_is_zero(radiance) || !strategy_wanted(frame, 0u, depth + 1u))
+        return;
+    float weight = frame->unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, t, depth, delta, ends);
+    Vec3 beta = state_load_vec3(paths, frame->stride, BD_BETA, t);
+    bd_add_radiance(paths, frame->stride, t, vec3_scale(vec3_mul(beta, radiance), weight));
+}
+
+SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, uint depth,
+                                        Vec3 d, Vec3 ng)
+{
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        StrategyEnds ends = {0};
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
+        ib_add_met(scene->frame, paths, t, depth, radiance, &ends);
+    }
+}
+
+/* From: closest hits. To: emission met by the camera's walk gathered; the vertex. Walks that miss or are full end. */
+__kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits, __global uint *restrict vertices)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    uint side = state_load(paths, stride, BD_SIDE, t);
+    /* The vertex takes the place of the one before it. */
+    WalkMeeting meeting = {0};
+    walk_meet(scene, paths, rays, hits, vertices, t, 0u, &meeting);
+    state_store_float(paths, stride, IB_OWN, t, meeting.own);
+    if (meeting.missed) {
+        if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
+            ib_add_environment(scene, paths, t, depth, meeting.ray.d, meeting.from_ng);
+        walk_end(paths, rays, stride, t);
+        return;
+    }
+    if (side == SIDE_CAMERA && meeting.light != NONE) {
+        StrategyEnds ends = {0};
+        Vec3 radiance = emission_met(scene, &meeting, &ends);
+        ib_add_met(frame, paths, t, depth, radiance, &ends);
+    }
+    walk_vertex(scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(scene, paths, t, side, depth), &meeting);
+}
+
+/* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
+ * shadow ray. */
+__kernel void ib_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                         __global const uint *restrict tables, __global const uint *restrict texels,
+                         __global uint *restrict paths, __global uint *restrict shadows,
+                         __global const uint *restrict vertices)
+{
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
+    uint s = side == SIDE_LIGHT ? depth + 1u : 1u, t = side == SIDE_LIGHT ? 1u : depth + 1u;
+    if (depth == 0u || !strategy_wanted(frame, s, t))
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Vertex vertex = vertex_load(scene, vertices, stride, 0u, item);
+    Random4 random = bd_random_connection(frame, paths, item, s, t);
+    Connection connection = {0};
+    connection.target = NONE;
+    bool possible = side == SIDE_LIGHT ? connect_camera(scene, &vertex, random, &connection) &&
+                                             connection_aim(scene, random, &connection)
+                                       : connect_light(scene, &vertex, random, &connection);
+    if (!possible || !connection_traceable(&connection))
+        return;
+    if (side == SIDE_LIGHT)
+        connection_light_end(paths, stride, item, &connection.ends);
+    float weight = 1.0f;
+    if (frame->unweighted == 0u)
+        weight = side == SIDE_LIGHT ? ib_weight_seen(frame, paths, item, depth + 1u, &connection.ends)
+                                    : ib_weight_drawn(frame, paths, item, depth + 1u, &connection.ends);
+    connection_store(paths, shadows, stride, item, &connection, weight);
+}
+
+/* From: traced shadow rays. To: visible connections gathered (the camera's walk), or put out for the film. */
+__kernel void ib_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                 __global uint *restrict shadows, __global uint *restrict splats,
+                                 __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
+        return;
+    bool visible = shadow_take(shadows, stride, item);
+    connection_add(paths, splats, diagnostics, stride, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
+                   visible);
+}
+
+/* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette. */
+__kernel void ib_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global const uint *restrict vertices, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
+    WalkStep step = {0};
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
+        return;
+    ib_leave(paths, stride, t, side, depth, step.reverse, step.delta != 0u);
+    walk_step_store(paths, rays, stride, t, depth, &step);
+}
+
+#endif

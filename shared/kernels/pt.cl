@@ -1,0 +1,351 @@
+/* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
+ * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
+ * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+#ifndef TWINLIGHT_PT_CL
+#define TWINLIGHT_PT_CL
+
+#include "bsdf/bsdf.h"
+#include "bsdf/material.h"
+#include "camera/camera.h"
+#include "camera/film_splat.h"
+#include "geometry/ray.h"
+#include "geometry/surface.h"
+#include "layout/diagnostics.h"
+#include "layout/item.h"
+#include "light/light.h"
+#include "path/mis.h"
+#include "path/path_random.h"
+#include "path/path_state.h"
+
+/* The first vertices always survive. */
+#define ROULETTE_FIRST_DEPTH 2u
+
+/* Path tracing beside chains (frame->split_direct) shows light of longer paths than these up to the frame's limit. */
+#define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
+
+/* And roulette leaves at least so many of them alive: what it takes from some others carry, above the limit. */
+#define SURVIVED_LEAST 0.125f
+
+SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+{
+    state_store(paths, stride, PATH_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+/* From: nothing. To: the path's first ray, throughput 1. */
+__kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global uint *restrict rays,
+                             __global uint *restrict shadows, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    ItemPlace place = item_place(frame, t);
+    uint pixel = place.pixel, sample = place.sample;
+    Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
+    float weight;
+    Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
+    uint row = pixel / frame->width, column = pixel % frame->width;
+    Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
+    Camera camera = frame->camera;
+    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    ray_store(rays, stride, t, ray);
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    state_store(paths, stride, PATH_PIXEL, t, pixel);
+    state_store(paths, stride, PATH_SAMPLE, t, sample);
+    state_store(paths, stride, PATH_DEPTH, t, 1u);
+    state_store(paths, stride, PATH_FLAGS, t, PATH_FLAG_DELTA);
+    state_store_float(paths, stride, PATH_WEIGHT, t, weight);
+    state_store_vec3(paths, stride, PATH_BETA, t, vec3_splat(1.0f));
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
+    state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
+    state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, PATH_GATHERED, t, 0u);
+    if (frame->split_direct != 0u) {
+        state_store_float(paths, stride, PATH_LIMIT, t, RARE_OVER_LIMIT * frame->limit / film_importance(frame, film));
+        state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
+    }
+    state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        path_end(paths, rays, stride, t);
+    }
+}
+
+/* Light of a path of so many segments. */
+SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+                                       uint segments, Vec3 radiance)
+{
+    uint stride = frame->stride;
+    if (frame->split_depths != 0u)
+        state_store(paths, stride, PATH_GATHERED, t, segments);
+    Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
+}
+
+/* The part that a path of so many segments shows of its contribution. plain: the luminance of f over the sum of the densities
+ * of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of that is shown as
+ * the limit, and they show the rest (chain/mutation.h). */
+SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint t,
+                                 uint segments, float plain)
+{
+    if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
+        return 1.0f;
+    float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
+    plain *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
+    return plain > limit ? limit / plain : 1.0f;
+}
+
+/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0: never). */
+SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+                                  Vec3 radiance, float pdf_other)
+{
+    uint stride = frame->stride;
+    float weight = 1.0f, balance = 1.0f;
+    if (pdf_other > 0.0f) {
+        float pdf = state_load_float(paths, stride, PATH_PDF_W, t);
+        weight = mis_power(pdf, pdf_other);
+        balance = mis_balance(pdf, pdf_other);
+    }
+    Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), radiance);
+    uint segments = state_load(paths, stride, PATH_DEPTH, t);
+    weight *= path_shown(frame, paths, t, segments, rgb_luminance(light) * balance);
+    path_add_radiance(frame, paths, t, segments, vec3_scale(light, weight));
+}
+
+/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
+SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, Vec3 d)
+{
+    uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, t);
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        uint light = scene->infinite_lights[i];
+        float pdf_light = 0.0f;
+        if ((flags & PATH_FLAG_DELTA) == 0u)
+            pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+        path_add_met(scene->frame, paths, t, environment_light_radiance(scene, light, d), pdf_light);
+    }
+}
+
+/* The same for the area light at `surface`. */
+SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *restrict paths, uint t, uint light,
+                                       const Surface *surface, Vec3 d)
+{
+    uint stride = scene->frame->stride, flags = state_load(paths, stride, PATH_FLAGS, t);
+    Vec3 radiance = light_emitted(scene, light, surface->ng, vec3_negate(d));
+    float pdf_light = 0.0f;
+    if (vec3_is_zero(radiance))
+        return;
+    if ((flags & PATH_FLAG_DELTA) == 0u)
+        pdf_light = scene->lights[light].select_pdf *
+                    light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, t), d, surface);
+    path_add_met(scene->frame, paths, t, radiance, pdf_light);
+}
+
+/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
+__kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Ray ray = ray_load(rays, stride, t);
+    Hit hit = hit_load(hits, stride, t);
+    if (hit.primitive == NONE) {
+        if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
+            path_add_environment(scene, paths, t, ray.d);
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    Surface surface = surface_from_hit(scene, &ray, hit);
+    uint first_light = scene->shapes[surface.shape].first_light;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
+        uint light = first_light + hit.primitive - scene->shapes[surface.shape].first_primitive;
+        path_add_emission(scene, paths, t, light, &surface, ray.d);
+    }
+    if (depth >= frame->max_depth) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    float u_mix = 0.5f;
+    if (SCENE_HAS(scene, FEATURE_MIX)) {
+        Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                     state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_MIX));
+        u_mix = random_float(random.x[0]);
+    }
+    Bsdf bsdf;
+    Frame shading;
+    material_resolve(scene, u_mix, &surface, &bsdf, &shading);
+    if (bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(bsdf.color0)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    state_store_vec3(paths, stride, PATH_POINT, t, surface.p);
+    state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
+    state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
+    frame_store(paths, stride, PATH_FRAME, t, shading);
+    bsdf_store(scene, paths, stride, PATH_BSDF, t, &bsdf);
+}
+
+/* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
+__kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                               __global const uint *restrict tables, __global const uint *restrict texels,
+                               __global uint *restrict paths, __global uint *restrict shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_LIGHT));
+    uint light = light_select(scene, random.x[0], random.x[1]);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    LightSample sample = {0};
+    if (!light_sample(scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+        return;
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
+    BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
+                                frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
+    if (vec3_is_zero(value.f_cos))
+        return;
+    float pdf = scene->lights[light].select_pdf * sample.pdf_w;
+    float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
+    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
+    Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
+    float plain = rgb_luminance(light_term) / (pdf + pdf_other);
+    light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
+    light_term = vec3_scale(light_term, path_shown(frame, paths, t, depth + 1u, plain));
+    Ray shadow = light_shadow_ray(p, ng, &sample);
+    if (!ray_traceable(shadow.o, shadow.d))
+        return;
+    state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
+    ray_store(shadows, stride, t, shadow);
+}
+
+/* From: traced shadow rays. To: visible light samples gathered, no shadow ray left. */
+__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                            __global uint *restrict shadows)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    if (!(state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f))
+        return;
+    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
+    if (state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
+        path_add_radiance(frame, paths, t, state_load(paths, stride, PATH_DEPTH, t) + 1u,
+                          state_load_vec3(paths, stride, PATH_LIGHT, t));
+}
+
+/* The probability with which Russian roulette lets the path live: its throughput, 1 or more for certainly. */
+SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec3 beta,
+                                    float eta_scale)
+{
+    float survival = vec3_max_component(beta) * eta_scale;
+    if (frame->split_direct == 0u || !(survival > 0.0f))
+        return survival;
+    float before = state_load_float(paths, frame->stride, PATH_SURVIVED, t);
+    survival = float_clamp(survival, SURVIVED_LEAST / before, 1.0f);
+    state_store_float(paths, frame->stride, PATH_SURVIVED, t, before * survival);
+    return survival;
+}
+
+/* From: the vertex. To: the next ray, or the path's end by absorption or Russian roulette. */
+__kernel void pt_extend_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                              __global const uint *restrict tables, __global const uint *restrict texels,
+                              __global uint *restrict paths, __global uint *restrict rays,
+                              __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), stride = frame->stride;
+    if (t >= frame->item_count)
+        return;
+    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    if (depth == 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
+                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
+    BsdfSample sample;
+    if (!bsdf_sample(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
+                     vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), sample.weight);
+    float eta_scale = state_load_float(paths, stride, PATH_ETA_SCALE, t) * sample.eta * sample.eta;
+    float survival = depth >= ROULETTE_FIRST_DEPTH ? path_survival(frame, paths, t, beta, eta_scale) : 1.0f;
+    if (!(random_float(random.x[3]) < survival)) {
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    if (survival < 1.0f)
+        beta = vec3_scale(beta, 1.0f / survival);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    Vec3 wi = vec3_normalize(frame_to_world(shading, sample.wi));
+    Ray ray = ray_spawn(p, ng, wi);
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        path_end(paths, rays, stride, t);
+        return;
+    }
+    ray_store(rays, stride, t, ray);
+    state_store_vec3(paths, stride, PATH_BETA, t, beta);
+    state_store_float(paths, stride, PATH_PDF_W, t, sample.pdf_w);
+    state_store_float(paths, stride, PATH_ETA_SCALE, t, eta_scale);
+    state_store(paths, stride, PATH_FLAGS, t, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
+    state_store(paths, stride, PATH_DEPTH, t, depth + 1u);
+}
+
+/* What the path has gathered goes to its pixel, and is gone. A sum that is not finite counts as zero and is counted. */
+SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *restrict splats,
+                                __global uint *restrict diagnostics, uint stride, uint t, uint flags)
+{
+    Vec3 radiance =
+        vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, t), state_load_float(paths, stride, PATH_WEIGHT, t));
+    if (!vec3_finite(radiance)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        radiance = vec3_splat(0.0f);
+    }
+    state_store(splats, stride, SPLAT_PIXEL, t, flags | state_load(paths, stride, PATH_PIXEL, t));
+    state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
+    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
+}
+
+/* From: paths of two segments. To: their light, as a sample of the pixel; frame->split_direct. */
+__kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                              __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0);
+    if (t < frame->item_count)
+        path_splat(paths, splats, diagnostics, frame->stride, t, 0u);
+}
+
+/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what is
+ * no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
+__kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                       __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint t = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_FROM_LIGHT : 0u;
+    if (t >= frame->item_count)
+        return;
+    if (frame->split_depths != 0u)
+        flags |= splat_depth(frame->split_depths, state_load(paths, frame->stride, PATH_GATHERED, t));
+    path_splat(paths, splats, diagnostics, frame->stride, t, flags);
+}
+
+#endif

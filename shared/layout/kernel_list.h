@@ -1,0 +1,84 @@
+/* Every kernel with its arguments, for the backends: the CPU makes a loop for each, a device looks them up by name.
+ * Kernels themselves never include this file. A launch may have more items than the pass: a kernel returns at once
+ * when its item is not below item_count. */
+#ifndef TWINLIGHT_LAYOUT_KERNEL_LIST_H
+#define TWINLIGHT_LAYOUT_KERNEL_LIST_H
+
+#include "layout/diagnostics.h"
+
+/* X(name, number of arguments, the BufferId of each in order) */
+#define KERNEL_LIST_PATHS(X)                                                                                           \
+    X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
+    X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
+      BUFFER_HITS)                                                                                                     \
+    X(pt_sample_lights, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS)  \
+    X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
+    X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_DIAGNOSTICS)                                                                                              \
+    X(pt_splat_direct, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                               \
+    X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
+      BUFFER_HITS, BUFFER_SPLATS)
+
+/* Rays, sums, and the walks of tests. */
+#define KERNEL_LIST_OTHERS(X)                                                                                          \
+    X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
+    X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
+    X(film_add, 3, BUFFER_FRAME, BUFFER_SPLATS, BUFFER_FILM)                                                           \
+    X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
+      BUFFER_HITS)                                                                                                     \
+    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
+    X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
+    X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
+      BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
+    X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST_BIDIRECTIONAL(X)                                                                                   \
+    X(bd_start_light, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                           \
+    X(bd_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_DIAGNOSTICS)                                                                                              \
+    X(bd_shade_hits, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
+      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                                  \
+    X(bd_extend_walks, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
+    X(bd_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
+      BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
+    X(bd_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
+    X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(ib_start_light, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                             \
+    X(ib_shade_hits, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
+      BUFFER_HITS, BUFFER_VERTICES)                                                                                    \
+    X(ib_connect, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
+      BUFFER_VERTICES)                                                                                                 \
+    X(ib_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
+    X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST_CHAINS(X)                                                                                          \
+    X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
+    X(mlt_begin, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,            \
+      BUFFER_RAYS, BUFFER_SHADOWS)                                                                                     \
+    X(mlt_propose, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
+      BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
+    X(mlt_start_camera, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
+      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
+    X(mlt_walk, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
+      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
+    X(mlt_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,       \
+      BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
+    X(mlt_accept, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
+      BUFFER_VERTICES, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                                              \
+    X(mlt_end, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SPLATS,            \
+      BUFFER_PASS, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
+
+/* KERNEL_pt_start_paths ...: what Step.kernel holds. */
+#define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,
+enum { KERNEL_LIST(KERNEL_ENUMERATE) KERNEL_COUNT };
+#undef KERNEL_ENUMERATE
+
+#endif

@@ -1,0 +1,372 @@
+/* The plain-data structs that host and device share. Every member is a 4-byte uint, int or float (or a struct of
+ * them), so the layouts of C and OpenCL C are the same; tests compare the sizes.
+ *
+ * A scene reaches the kernels as four buffers: the frame's parameters, `geometry`, `tables` and `texels`. The last
+ * three are arrays of 32-bit words into which the host packed the arrays named in SceneLayout; layout/scene_view.h turns
+ * them back into typed pointers. */
+#ifndef TWINLIGHT_LAYOUT_SCENE_TYPES_H
+#define TWINLIGHT_LAYOUT_SCENE_TYPES_H
+
+#include "math/vec.h"
+
+/* ---- what a scene uses: the feature mask ---------------------------------------------------------------------- */
+
+#define FEATURE_TRIANGLE 0x1u
+#define FEATURE_BILINEAR 0x2u
+#define FEATURE_SPHERE 0x4u
+#define FEATURE_DISK 0x8u
+#define FEATURE_INSTANCE 0x10u
+#define FEATURE_ALPHA 0x20u /* alpha-textured shapes */
+#define FEATURE_NORMALS 0x40u /* per-vertex normals */
+#define FEATURE_TEXTURE 0x80u /* any parameter that is not constant */
+#define FEATURE_BUMP 0x100u /* normal maps or displacement */
+#define FEATURE_MIX 0x200u /* mix materials */
+#define FEATURE_DIFFUSE 0x400u
+#define FEATURE_CONDUCTOR 0x800u
+#define FEATURE_DIELECTRIC 0x1000u
+#define FEATURE_THIN_DIELECTRIC 0x2000u
+#define FEATURE_COATED_DIFFUSE 0x4000u
+#define FEATURE_DIFFUSE_TRANSMISSION 0x8000u
+#define FEATURE_ROUGH 0x10000u /* a microfacet lobe that is not a delta */
+#define FEATURE_AREA_LIGHT 0x20000u
+#define FEATURE_INFINITE_LIGHT 0x40000u
+#define FEATURE_DELTA_LIGHT 0x80000u /* point, spot, distant */
+#define FEATURE_LENS 0x100000u /* a camera with a lens of non-zero radius */
+#define FEATURE_TANGENTS 0x200000u /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
+#define FEATURE_COUNT 22
+
+/* ---- geometry -------------------------------------------------------------------------------------------------- */
+
+#define PRIMITIVE_TRIANGLE 0u /* a, b, c: vertices */
+#define PRIMITIVE_BILINEAR 1u /* a: index into `patches`, four vertices p00 p10 p01 p11 as in pbrt */
+#define PRIMITIVE_SPHERE 2u /* a: index into `quadrics` */
+#define PRIMITIVE_DISK 3u /* a: index into `quadrics` */
+
+/* `shape_and_kind`: bits 0-27 the index into `shapes`, bit 28 set when the shape has an alpha texture, bits 29-31 the
+ * kind. Kept in the primitive so that the intersection test of an opaque triangle reads no Shape. */
+typedef struct Primitive {
+    uint a, b, c;
+    uint shape_and_kind;
+} Primitive;
+
+#define PRIMITIVE_SHAPE_MASK 0x0fffffffu
+#define PRIMITIVE_ALPHA_BIT 0x10000000u
+#define PRIMITIVE_KIND_SHIFT 29
+
+/* Shape flags. */
+#define SHAPE_FLIP_NORMAL                                                                                              \
+    0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
+                                  negated. Quadrics and meshes without vertex normals; see geometry/surface.h for the others */
+#define SHAPE_REVERSE 0x2u /* ReverseOrientation alone */
+#define SHAPE_HAS_NORMALS 0x4u
+#define SHAPE_HAS_UV 0x8u
+
+/* What all primitives of one Shape directive share. Vertices index `positions`; the vertex normal of vertex v is
+ * normals[v - first_vertex + first_normal], its texture coordinate uvs[v - first_vertex + first_uv]. */
+typedef struct Shape {
+    uint material; /* index into `materials` */
+    uint alpha; /* texture program of the alpha texture, NONE when opaque */
+    uint first_light; /* the light of primitive i is first_light + i - first_primitive; NONE when it emits nothing */
+    uint first_primitive;
+    uint first_vertex;
+    uint first_normal;
+    uint first_uv;
+    uint flags;
+} Shape;
+
+/* Four vertices of a bilinear patch: p00, p10, p01, p11 at (u,v) = (0,0), (1,0), (0,1), (1,1). */
+typedef struct Patch {
+    uint v[4];
+} Patch;
+
+/* A sphere or disk in its object space, pbrt's parametrisation.
+ * Sphere: radius, z_min, z_max (clipping heights, equal to -+radius when whole), phi_max in radians.
+ * Disk: radius, inner_radius, z_min = height, phi_max. */
+typedef struct Quadric {
+    Affine world_from_object;
+    Affine object_from_world;
+    float radius;
+    float inner_radius;
+    float z_min;
+    float z_max;
+    float phi_max;
+    uint whole; /* 1: a full sphere under a similarity transform, so it is a sphere in world space too */
+    Vec3 center; /* of a `whole` sphere, in world space */
+    float world_radius; /* of a `whole` sphere */
+} Quadric;
+
+/* Object 0 is the world's own geometry; the others exist through instances only. */
+typedef struct Object {
+    uint first_primitive;
+    uint primitive_count;
+} Object;
+
+typedef struct Instance {
+    Affine world_from_object;
+    Affine object_from_world;
+    uint object;
+} Instance;
+
+/* ---- textures -------------------------------------------------------------------------------------------------- */
+
+/* A texture expression is a program in postfix order for a stack of TEXTURE_STACK colours: no recursion, bounded
+ * depth. The program of index i starts at texture_ops[i] and ends with TEXTURE_END. */
+#define TEXTURE_STACK 8
+
+#define TEXTURE_END 0u
+#define TEXTURE_CONSTANT 1u /* push value */
+#define TEXTURE_IMAGE 2u /* push image `index` at the mapped (u,v), times `scale` (or 1 - it when `invert`) */
+#define TEXTURE_SCALE 3u /* b a -> a b */
+#define TEXTURE_MIX 4u /* amount a b -> (1 - amount) a + amount b; amount is the mean of its channels */
+#define TEXTURE_CHECKERBOARD 5u /* a b -> a on even squares, b on odd */
+#define TEXTURE_IMAGE_FLOAT 6u /* TEXTURE_IMAGE inside a float texture: grey, the mean of RGB, or the A of RGBA */
+
+#define WRAP_REPEAT 0u
+#define WRAP_BLACK 1u
+#define WRAP_CLAMP 2u
+#define WRAP_OCTAHEDRAL 3u
+
+#define MAPPING_UV 0u /* (su u + du, sv v + dv) */
+#define MAPPING_PLANAR 1u /* (ds + p.vs, dt + p.vt) in the texture's space */
+#define MAPPING_SPHERICAL 2u
+#define MAPPING_CYLINDRICAL 3u
+#define MAPPING_3D 4u /* checkerboard of dimension 3 */
+
+typedef struct TextureOp {
+    uint code;
+    uint index; /* image */
+    uint mapping;
+    uint invert;
+    Vec3 value; /* constant */
+    float scale;
+    float uv_map[8]; /* UV: su sv du dv. planar: vs.xyz ds vt.xyz dt */
+    Affine texture_from_world; /* planar, spherical, cylindrical, 3D */
+} TextureOp;
+
+#define FILTER_BILINEAR 0u
+#define FILTER_POINT 1u
+
+#define TEXEL_U8 0u /* four texels per word for one channel, else one word per texel (3 or 4 channels) */
+#define TEXEL_F32 1u
+
+/* An image of 1, 3 or 4 channels in `texels`, row 0 at v = 1 (the top), as pbrt has it. */
+typedef struct TextureImage {
+    uint width, height, channels;
+    uint format;
+    uint first_word; /* in texels */
+    uint wrap;
+    uint filter;
+    uint lut; /* first of 256 floats in `lookup` that decode a byte; NONE for F32 */
+} TextureImage;
+
+/* A colour or number of a material: a constant, or a texture program when `program` is not NONE. */
+typedef struct ColorParam {
+    Vec3 value;
+    uint program;
+} ColorParam;
+
+typedef struct FloatParam {
+    float value;
+    uint program;
+} FloatParam;
+
+/* ---- materials ------------------------------------------------------------------------------------------------- */
+
+#define MATERIAL_DIFFUSE 0u
+#define MATERIAL_CONDUCTOR 1u
+#define MATERIAL_DIELECTRIC 2u
+#define MATERIAL_THIN_DIELECTRIC 3u
+#define MATERIAL_COATED_DIFFUSE 4u
+#define MATERIAL_DIFFUSE_TRANSMISSION 5u
+#define MATERIAL_MIX 6u
+
+#define MATERIAL_REMAP_ROUGHNESS 0x1u
+#define MATERIAL_CONDUCTOR_REFLECTANCE 0x2u /* color0 is reflectance at normal incidence; else eta color0, k color1 */
+
+/* color0: diffuse, coated, transmission: reflectance. conductor: eta or reflectance.
+ * color1: conductor: k. diffuse transmission: transmittance. coated: x the coat's optical thickness along its normal
+ * (pbrt's "thickness"), y what scene_finish makes of it: the transmittance of one internal round trip (bsdf/coat.h).
+ * roughness_u/v: as given in the scene; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
+ * mix: `mix_a` where the random number is >= amount, `mix_b` where it is below. */
+typedef struct Material {
+    uint kind;
+    uint flags;
+    ColorParam color0;
+    ColorParam color1;
+    FloatParam roughness_u;
+    FloatParam roughness_v;
+    FloatParam amount; /* mix */
+    FloatParam displacement; /* program NONE: no bump */
+    float eta; /* dielectric, coated: relative index of refraction, inside over outside */
+    float scale; /* diffuse transmission */
+    uint normal_map; /* index into `images`, NONE without */
+    uint mix_a, mix_b;
+    uint coat_table; /* coated: first float in `lookup` of the coat's albedo table (bsdf/coat.h), NONE when smooth */
+} Material;
+
+/* ---- lights ---------------------------------------------------------------------------------------------------- */
+
+#define LIGHT_AREA 0u
+#define LIGHT_POINT 1u
+#define LIGHT_SPOT 2u
+#define LIGHT_DISTANT 3u
+#define LIGHT_INFINITE 4u /* constant environment */
+#define LIGHT_INFINITE_IMAGE 5u
+
+#define LIGHT_TWO_SIDED 0x1u
+#define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
+
+typedef struct Light {
+    uint kind;
+    uint flags;
+    uint primitive; /* area */
+    uint image; /* infinite image */
+    Vec3 emission; /* area, infinite: radiance (an image's scale). point, spot: intensity. distant: irradiance on a
+                      plane facing it */
+    float area; /* area: surface area in world space */
+    Vec3 position; /* point, spot */
+    float select_pdf; /* probability of choosing this light, proportional to its power */
+    Vec3 direction; /* spot: axis. distant: direction in which the light travels. unit */
+    float cos_total; /* spot: no light outside this angle */
+    float cos_falloff; /* spot: full intensity inside this angle */
+    uint distribution; /* infinite image: index into `distributions2d` */
+    Affine world_from_light; /* infinite: of directions, scaled to a determinant of 1 or -1 */
+    Affine light_from_world;
+} Light;
+
+/* A piecewise-constant density over [0,1)^2 in `lookup`: the marginal CDF of height + 1 floats at first_marginal, then
+ * one conditional CDF of width + 1 floats per row, consecutive from first_conditional. The density of cell (x,y) over
+ * the unit square is the product of the two CDF steps times width and height. */
+typedef struct Distribution2D {
+    uint width, height;
+    uint first_marginal;
+    uint first_conditional;
+} Distribution2D;
+
+/* One bucket of an alias table (Walker 1977, Vose 1991): keep i with probability q, else take alias. */
+typedef struct AliasBucket {
+    float q;
+    uint alias;
+} AliasBucket;
+
+/* ---- camera and film ------------------------------------------------------------------------------------------- */
+
+#define CAMERA_PERSPECTIVE 0u
+#define CAMERA_ORTHOGRAPHIC 1u
+
+/* Camera space as in pbrt: left-handed, looking along +z, y up. The screen window is the part of the plane z = 1
+ * (perspective: of the image plane in units of tan(fov/2)) that the whole film shows. */
+typedef struct Camera {
+    uint kind;
+    float lens_radius;
+    float focal_distance;
+    float screen[4]; /* x_min x_max y_min y_max on the plane z = 1 (perspective) or in world units (orthographic) */
+    Affine world_from_camera;
+    Affine camera_from_world;
+} Camera;
+
+#define PIXEL_FILTER_BOX 0u
+#define PIXEL_FILTER_TRIANGLE 1u
+#define PIXEL_FILTER_GAUSSIAN 2u
+#define PIXEL_FILTER_MITCHELL 3u
+#define PIXEL_FILTER_SINC 4u
+
+/* The filter is separable: offsets in x and y are drawn independently from |f|, by inverting a table of
+ * PIXEL_FILTER_CELLS + 1 cumulative values over [-radius, radius] in `lookup`; a negative lobe gives the splat a
+ * negative sign. Box and triangle are inverted in closed form and have no table. A density that is constant within
+ * cells of width h has a variance that is h^2 / 6 too large: 1.6e-4 pixels^2 for a sinc of radius 4. */
+#define PIXEL_FILTER_CELLS 256
+
+typedef struct PixelFilter {
+    uint kind;
+    float radius_x, radius_y;
+    uint table_x, table_y; /* first float in `lookup`: cells + 1 of the CDF of |f|, then cells of the sign (+1, -1);
+                              NONE for box and triangle */
+    float weight; /* (integral of |f|) / (integral of f) over the plane: what a splat of sign +1 weighs */
+} PixelFilter;
+
+/* ---- what a kernel gets ---------------------------------------------------------------------------------------- */
+
+/* First word of every array inside its buffer. */
+typedef struct SceneLayout {
+    /* geometry */
+    uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
+    /* tables */
+    uint materials, texture_ops, images, lights, light_alias, infinite_lights, distributions2d, lookup;
+} SceneLayout;
+
+/* Which integrator a random number is for (math/rng.h, counter word 3). */
+#define PATH_STREAM_PT 0u
+#define PATH_STREAM_BD 1u
+#define PATH_STREAM_POOL 2u /* samples from which chains begin */
+#define PATH_STREAM_CHAIN 3u /* mutations */
+#define PATH_STREAM_MUTATION 4u /* which kind of them */
+
+/* Variables of a pixel besides light (kernels/aov.cl). */
+#define AOV_ALBEDO 0u
+#define AOV_NORMAL 1u
+#define AOV_DEPTH 2u
+#define AOV_COUNT 3u
+
+/* Lights that chains look for. */
+#define AIMS_MAX 8u
+
+/* Cells of the importance a side. */
+#define IMPORTANCE_SIDE 32u
+#define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
+
+/* A pool visits a pixel no more often than this while it visits the least of them once. */
+#define VISITS_MOST 32u
+
+typedef struct FrameParams {
+    SceneLayout layout;
+    uint features;
+    uint light_count;
+    uint infinite_light_count;
+    Camera camera;
+    PixelFilter filter;
+    uint width, height; /* of the whole film, pixels */
+    uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
+    uint aov; /* AOV_*: the variable that a pass of kernels/aov.cl is for */
+    uint split_direct; /* 1: path tracing keeps light of up to two segments apart (kernels/pt.cl) */
+    uint split_depths; /* kinds of sums that the film has of every depth (camera/film_sum.h); 0: splats name no depth */
+    uint max_depth; /* path segments, >= 1 */
+    uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
+    uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
+    uint pool; /* 1: bidirectional samples are a pool for chains (chain/pool.h) */
+    uint pool_items; /* of a pool: all of its items */
+    uint pool_lights, pool_lights_first; /* so many of them, from that one on, have a walk from the light */
+    float pool_lights_weight; /* all of its items over those */
+    uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */
+    uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
+    uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
+    uint unweighted; /* 1: weights are taken for 1 */
+    uint mutations; /* bit MUTATION_*: small steps that chains make (chain/chain.h) */
+    uint group_mutations; /* 1: at a step all chains make the same kind */
+    float shifts; /* of the steps of the camera's half so many are shifts (chain/shift.h) */
+    uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
+    float large_step; /* probability of a large step */
+    float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
+    float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
+    uint aim_count; /* of chains and their pools: lights that directions count from (light/aim.h) */
+    Vec3 aims[AIMS_MAX]; /* positions, or directions */
+    float aims_near[AIMS_MAX]; /* 1 of positions, 0 of directions */
+    float aims_power[AIMS_MAX]; /* over the square of the distance, of a direction's length: what they send somewhere */
+    float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/mmlt/importance.h) */
+    uint visits[IMPORTANCE_CELLS +
+                1u]; /* of a pool: those of all pixels before each cell, and of all; last 0: one of each */
+    uint seed_low, seed_high;
+    uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
+    uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
+    uint item_count;
+    uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
+    uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k at f * pass_stride + k - pass_first */
+    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots and pools */
+    uint pixel_first; /* and k counted from here; 0 but for pools */
+    int film_exponent; /* one unit of the film's sums is 2^film_exponent (camera/film_sum.h) */
+    Vec3 world_center; /* bounding sphere of the scene */
+    float world_radius;
+    float ray_reach; /* no coordinate of the origin of a ray is larger: boxes are widened for it (geometry/box.h) */
+} FrameParams;
+
+#endif

@@ -1,0 +1,76 @@
+/* Typed pointers into the scene's buffers. On a device a SceneView lives in private memory and is made anew at the head of every
+ * kernel; pointers that a kernel does not use cost nothing there. */
+#ifndef TWINLIGHT_LAYOUT_SCENE_VIEW_H
+#define TWINLIGHT_LAYOUT_SCENE_VIEW_H
+
+#include "layout/scene_types.h"
+
+typedef struct SceneView {
+    __global const FrameParams *frame;
+    uint features;
+    /* geometry */
+    __global const Vec3 *positions;
+    __global const Vec3 *normals;
+    __global const Vec2 *uvs;
+    __global const Primitive *primitives;
+    __global const Shape *shapes;
+    __global const Patch *patches;
+    __global const Quadric *quadrics;
+    __global const Object *objects;
+    __global const Instance *instances;
+    /* tables */
+    __global const Material *materials;
+    __global const TextureOp *texture_ops;
+    __global const TextureImage *images;
+    __global const Light *lights;
+    __global const AliasBucket *light_alias;
+    __global const uint *infinite_lights;
+    __global const Distribution2D *distributions2d;
+    __global const float *lookup;
+    __global const uint *texels;
+} SceneView;
+
+/* A device program is built with the scene's feature mask as a constant; C reads it at run time. */
+#ifdef TWINLIGHT_FEATURES
+#define SCENE_HAS(scene, feature) ((void)(scene), (TWINLIGHT_FEATURES & (feature)) != 0u)
+#else
+#define SCENE_HAS(scene, feature) (((scene)->features & (feature)) != 0u)
+#endif
+
+SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global const uint *geometry,
+                                     __global const uint *tables, __global const uint *texels)
+{
+    __global const SceneLayout *layout = &frame->layout;
+    SceneView view;
+    view.frame = frame;
+    view.features = frame->features;
+    view.positions = (__global const Vec3 *)(geometry + layout->positions);
+    view.normals = (__global const Vec3 *)(geometry + layout->normals);
+    view.uvs = (__global const Vec2 *)(geometry + layout->uvs);
+    view.primitives = (__global const Primitive *)(geometry + layout->primitives);
+    view.shapes = (__global const Shape *)(geometry + layout->shapes);
+    view.patches = (__global const Patch *)(geometry + layout->patches);
+    view.quadrics = (__global const Quadric *)(geometry + layout->quadrics);
+    view.objects = (__global const Object *)(geometry + layout->objects);
+    view.instances = (__global const Instance *)(geometry + layout->instances);
+    view.materials = (__global const Material *)(tables + layout->materials);
+    view.texture_ops = (__global const TextureOp *)(tables + layout->texture_ops);
+    view.images = (__global const TextureImage *)(tables + layout->images);
+    view.lights = (__global const Light *)(tables + layout->lights);
+    view.light_alias = (__global const AliasBucket *)(tables + layout->light_alias);
+    view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
+    view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
+    view.lookup = (__global const float *)(tables + layout->lookup);
+    view.texels = texels;
+    return view;
+}
+
+/* At the head of a kernel: `scene` is a pointer to its view. The loops of the CPU backend make one for all items, and say so
+ * before (backend_cpu/kernel_loop.h). */
+#ifndef KERNEL_SCENE
+#define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
+    SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \
+    const SceneView *scene = &scene_made
+#endif
+
+#endif

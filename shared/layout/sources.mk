@@ -1,0 +1,10 @@
+SHARED_FILES += \
+	shared/layout/diagnostics.h \
+	shared/layout/distribution.h \
+	shared/layout/item.h \
+	shared/layout/kernel_list.h \
+	shared/layout/path_types.h \
+	shared/layout/scene_types.h \
+	shared/layout/scene_view.h \
+	shared/layout/state.h \
+	shared/layout/struct_members.h

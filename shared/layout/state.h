@@ -1,0 +1,135 @@
+/* Access to structure-of-arrays state: field f of item t lives at f * stride + t, so that
+ * neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
+#ifndef TWINLIGHT_LAYOUT_STATE_H
+#define TWINLIGHT_LAYOUT_STATE_H
+
+#include "layout/path_types.h"
+
+/* A backend whose buffers all have one stride may name it before: then every field has a constant address but for t. */
+#ifdef STATE_STRIDE
+#define STATE_PLACE(stride, field, t) ((void)(stride), (size_t)(field)*STATE_STRIDE + (t))
+#else
+#define STATE_PLACE(stride, field, t) ((size_t)(field) * (stride) + (t))
+#endif
+
+SHARED_FUNCTION uint state_load(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return buffer[STATE_PLACE(stride, field, t)];
+}
+
+SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field, uint t, uint value)
+{
+    buffer[STATE_PLACE(stride, field, t)] = value;
+}
+
+SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return word_float(buffer + STATE_PLACE(stride, field, t));
+}
+
+SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint t, float value)
+{
+    word_set_float(buffer + STATE_PLACE(stride, field, t), value);
+}
+
+/* A Vec3 takes three fields from `field` on. */
+SHARED_FUNCTION Vec3 state_load_vec3(__global const uint *buffer, uint stride, uint field, uint t)
+{
+    return vec3(state_load_float(buffer, stride, field, t), state_load_float(buffer, stride, field + 1, t),
+                state_load_float(buffer, stride, field + 2, t));
+}
+
+SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint field, uint t, Vec3 value)
+{
+    state_store_float(buffer, stride, field, t, value.x);
+    state_store_float(buffer, stride, field + 1, t, value.y);
+    state_store_float(buffer, stride, field + 2, t, value.z);
+}
+
+/* Fields of BUFFER_RAYS and of the first part of BUFFER_SHADOWS. A ray with t_max <= 0 is not traced. */
+#define RAY_ORIGIN 0u
+#define RAY_DIRECTION 3u
+#define RAY_T_MAX 6u
+#define RAY_WORDS 7u
+
+/* BUFFER_SHADOWS: after the ray, 1 when something lies between. */
+#define SHADOW_OCCLUDED 7u
+#define SHADOW_WORDS 8u
+
+/* BUFFER_HITS */
+#define HIT_T 0u
+#define HIT_PRIMITIVE 1u
+#define HIT_INSTANCE 2u
+#define HIT_U 3u
+#define HIT_V 4u
+#define HIT_WORDS 5u
+
+/* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. Every pixel has as many samples as splats
+ * without SPLAT_FROM_LIGHT; those with it come from paths that could have met any pixel. Those with SPLAT_RARE also count
+ * among what path tracing does not show (chain/mutation.h). */
+#define SPLAT_FROM_LIGHT 0x80000000u
+#define SPLAT_RARE 0x40000000u
+#define SPLAT_FLAGS (SPLAT_FROM_LIGHT | SPLAT_RARE)
+
+/* With frame->split_depths, between flags and pixel: how many segments the path has, from this to that. */
+#define SPLAT_DEPTH_SHIFT 25u
+#define SPLAT_DEPTH_MIN 3u
+#define SPLAT_DEPTH_MAX 31u
+
+SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
+{
+    return split_depths != 0u ? segments << SPLAT_DEPTH_SHIFT : 0u;
+}
+
+/* Path tracing shows so many times as much of a path as a pool. */
+#define RARE_OVER_LIMIT 4.0f
+#define SPLAT_PIXEL 0u
+#define SPLAT_COLOR 1u
+#define SPLAT_WORDS 4u
+
+/* BUFFER_COUNTS: live rays counted by kernels/count.cl. */
+#define COUNT_CLOSEST 0u
+#define COUNT_SHADOW 1u
+#define COUNT_WORDS 2u
+
+/* Rays that one item of a counting launch looks at: few enough for the device to be busy, many enough for the sums to
+ * meet seldom. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
+#define COUNT_RAYS 64u
+
+SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint t, Ray ray)
+{
+    state_store_vec3(rays, stride, RAY_ORIGIN, t, ray.o);
+    state_store_vec3(rays, stride, RAY_DIRECTION, t, ray.d);
+    state_store_float(rays, stride, RAY_T_MAX, t, ray.t_max);
+}
+
+SHARED_FUNCTION Ray ray_load(__global const uint *rays, uint stride, uint t)
+{
+    Ray ray;
+    ray.o = state_load_vec3(rays, stride, RAY_ORIGIN, t);
+    ray.d = state_load_vec3(rays, stride, RAY_DIRECTION, t);
+    ray.t_max = state_load_float(rays, stride, RAY_T_MAX, t);
+    return ray;
+}
+
+SHARED_FUNCTION void hit_store(__global uint *hits, uint stride, uint t, Hit hit)
+{
+    state_store_float(hits, stride, HIT_T, t, hit.t);
+    state_store(hits, stride, HIT_PRIMITIVE, t, hit.primitive);
+    state_store(hits, stride, HIT_INSTANCE, t, hit.instance);
+    state_store_float(hits, stride, HIT_U, t, hit.u);
+    state_store_float(hits, stride, HIT_V, t, hit.v);
+}
+
+SHARED_FUNCTION Hit hit_load(__global const uint *hits, uint stride, uint t)
+{
+    Hit hit;
+    hit.t = state_load_float(hits, stride, HIT_T, t);
+    hit.primitive = state_load(hits, stride, HIT_PRIMITIVE, t);
+    hit.instance = state_load(hits, stride, HIT_INSTANCE, t);
+    hit.u = state_load_float(hits, stride, HIT_U, t);
+    hit.v = state_load_float(hits, stride, HIT_V, t);
+    return hit;
+}
+
+#endif

@@ -1,0 +1,201 @@
+/* Every struct that crosses between host and device, and every member of it, in order: STRUCT(type), then MEMBER(type,
+ * member) for each of its members. math/test_platform_bits.c holds that it is complete. */
+#ifndef TWINLIGHT_LAYOUT_STRUCT_MEMBERS_H
+#define TWINLIGHT_LAYOUT_STRUCT_MEMBERS_H
+
+#define STRUCT_MEMBERS(STRUCT, MEMBER)                                                                                 \
+    STRUCT(Vec2)                                                                                                       \
+    MEMBER(Vec2, x)                                                                                                    \
+    MEMBER(Vec2, y)                                                                                                    \
+    STRUCT(Vec3)                                                                                                       \
+    MEMBER(Vec3, x)                                                                                                    \
+    MEMBER(Vec3, y)                                                                                                    \
+    MEMBER(Vec3, z)                                                                                                    \
+    STRUCT(Affine)                                                                                                     \
+    MEMBER(Affine, m)                                                                                                  \
+    STRUCT(Primitive)                                                                                                  \
+    MEMBER(Primitive, a)                                                                                               \
+    MEMBER(Primitive, b)                                                                                               \
+    MEMBER(Primitive, c)                                                                                               \
+    MEMBER(Primitive, shape_and_kind)                                                                                  \
+    STRUCT(Shape)                                                                                                      \
+    MEMBER(Shape, material)                                                                                            \
+    MEMBER(Shape, alpha)                                                                                               \
+    MEMBER(Shape, first_light)                                                                                         \
+    MEMBER(Shape, first_primitive)                                                                                     \
+    MEMBER(Shape, first_vertex)                                                                                        \
+    MEMBER(Shape, first_normal)                                                                                        \
+    MEMBER(Shape, first_uv)                                                                                            \
+    MEMBER(Shape, flags)                                                                                               \
+    STRUCT(Patch)                                                                                                      \
+    MEMBER(Patch, v)                                                                                                   \
+    STRUCT(Quadric)                                                                                                    \
+    MEMBER(Quadric, world_from_object)                                                                                 \
+    MEMBER(Quadric, object_from_world)                                                                                 \
+    MEMBER(Quadric, radius)                                                                                            \
+    MEMBER(Quadric, inner_radius)                                                                                      \
+    MEMBER(Quadric, z_min)                                                                                             \
+    MEMBER(Quadric, z_max)                                                                                             \
+    MEMBER(Quadric, phi_max)                                                                                           \
+    MEMBER(Quadric, whole)                                                                                             \
+    MEMBER(Quadric, center)                                                                                            \
+    MEMBER(Quadric, world_radius)                                                                                      \
+    STRUCT(Object)                                                                                                     \
+    MEMBER(Object, first_primitive)                                                                                    \
+    MEMBER(Object, primitive_count)                                                                                    \
+    STRUCT(Instance)                                                                                                   \
+    MEMBER(Instance, world_from_object)                                                                                \
+    MEMBER(Instance, object_from_world)                                                                                \
+    MEMBER(Instance, object)                                                                                           \
+    STRUCT(TextureOp)                                                                                                  \
+    MEMBER(TextureOp, code)                                                                                            \
+    MEMBER(TextureOp, index)                                                                                           \
+    MEMBER(TextureOp, mapping)                                                                                         \
+    MEMBER(TextureOp, invert)                                                                                          \
+    MEMBER(TextureOp, value)                                                                                           \
+    MEMBER(TextureOp, scale)                                                                                           \
+    MEMBER(TextureOp, uv_map)                                                                                          \
+    MEMBER(TextureOp, texture_from_world)                                                                              \
+    STRUCT(TextureImage)                                                                                               \
+    MEMBER(TextureImage, width)                                                                                        \
+    MEMBER(TextureImage, height)                                                                                       \
+    MEMBER(TextureImage, channels)                                                                                     \
+    MEMBER(TextureImage, format)                                                                                       \
+    MEMBER(TextureImage, first_word)                                                                                   \
+    MEMBER(TextureImage, wrap)                                                                                         \
+    MEMBER(TextureImage, filter)                                                                                       \
+    MEMBER(TextureImage, lut)                                                                                          \
+    STRUCT(ColorParam)                                                                                                 \
+    MEMBER(ColorParam, value)                                                                                          \
+    MEMBER(ColorParam, program)                                                                                        \
+    STRUCT(FloatParam)                                                                                                 \
+    MEMBER(FloatParam, value)                                                                                          \
+    MEMBER(FloatParam, program)                                                                                        \
+    STRUCT(Material)                                                                                                   \
+    MEMBER(Material, kind)                                                                                             \
+    MEMBER(Material, flags)                                                                                            \
+    MEMBER(Material, color0)                                                                                           \
+    MEMBER(Material, color1)                                                                                           \
+    MEMBER(Material, roughness_u)                                                                                      \
+    MEMBER(Material, roughness_v)                                                                                      \
+    MEMBER(Material, amount)                                                                                           \
+    MEMBER(Material, displacement)                                                                                     \
+    MEMBER(Material, eta)                                                                                              \
+    MEMBER(Material, scale)                                                                                            \
+    MEMBER(Material, normal_map)                                                                                       \
+    MEMBER(Material, mix_a)                                                                                            \
+    MEMBER(Material, mix_b)                                                                                            \
+    MEMBER(Material, coat_table)                                                                                       \
+    STRUCT(Light)                                                                                                      \
+    MEMBER(Light, kind)                                                                                                \
+    MEMBER(Light, flags)                                                                                               \
+    MEMBER(Light, primitive)                                                                                           \
+    MEMBER(Light, image)                                                                                               \
+    MEMBER(Light, emission)                                                                                            \
+    MEMBER(Light, area)                                                                                                \
+    MEMBER(Light, position)                                                                                            \
+    MEMBER(Light, select_pdf)                                                                                          \
+    MEMBER(Light, direction)                                                                                           \
+    MEMBER(Light, cos_total)                                                                                           \
+    MEMBER(Light, cos_falloff)                                                                                         \
+    MEMBER(Light, distribution)                                                                                        \
+    MEMBER(Light, world_from_light)                                                                                    \
+    MEMBER(Light, light_from_world)                                                                                    \
+    STRUCT(Distribution2D)                                                                                             \
+    MEMBER(Distribution2D, width)                                                                                      \
+    MEMBER(Distribution2D, height)                                                                                     \
+    MEMBER(Distribution2D, first_marginal)                                                                             \
+    MEMBER(Distribution2D, first_conditional)                                                                          \
+    STRUCT(AliasBucket)                                                                                                \
+    MEMBER(AliasBucket, q)                                                                                             \
+    MEMBER(AliasBucket, alias)                                                                                         \
+    STRUCT(Camera)                                                                                                     \
+    MEMBER(Camera, kind)                                                                                               \
+    MEMBER(Camera, lens_radius)                                                                                        \
+    MEMBER(Camera, focal_distance)                                                                                     \
+    MEMBER(Camera, screen)                                                                                             \
+    MEMBER(Camera, world_from_camera)                                                                                  \
+    MEMBER(Camera, camera_from_world)                                                                                  \
+    STRUCT(PixelFilter)                                                                                                \
+    MEMBER(PixelFilter, kind)                                                                                          \
+    MEMBER(PixelFilter, radius_x)                                                                                      \
+    MEMBER(PixelFilter, radius_y)                                                                                      \
+    MEMBER(PixelFilter, table_x)                                                                                       \
+    MEMBER(PixelFilter, table_y)                                                                                       \
+    MEMBER(PixelFilter, weight)                                                                                        \
+    STRUCT(SceneLayout)                                                                                                \
+    MEMBER(SceneLayout, positions)                                                                                     \
+    MEMBER(SceneLayout, normals)                                                                                       \
+    MEMBER(SceneLayout, uvs)                                                                                           \
+    MEMBER(SceneLayout, primitives)                                                                                    \
+    MEMBER(SceneLayout, shapes)                                                                                        \
+    MEMBER(SceneLayout, patches)                                                                                       \
+    MEMBER(SceneLayout, quadrics)                                                                                      \
+    MEMBER(SceneLayout, objects)                                                                                       \
+    MEMBER(SceneLayout, instances)                                                                                     \
+    MEMBER(SceneLayout, materials)                                                                                     \
+    MEMBER(SceneLayout, texture_ops)                                                                                   \
+    MEMBER(SceneLayout, images)                                                                                        \
+    MEMBER(SceneLayout, lights)                                                                                        \
+    MEMBER(SceneLayout, light_alias)                                                                                   \
+    MEMBER(SceneLayout, infinite_lights)                                                                               \
+    MEMBER(SceneLayout, distributions2d)                                                                               \
+    MEMBER(SceneLayout, lookup)                                                                                        \
+    STRUCT(FrameParams)                                                                                                \
+    MEMBER(FrameParams, layout)                                                                                        \
+    MEMBER(FrameParams, features)                                                                                      \
+    MEMBER(FrameParams, light_count)                                                                                   \
+    MEMBER(FrameParams, infinite_light_count)                                                                          \
+    MEMBER(FrameParams, camera)                                                                                        \
+    MEMBER(FrameParams, filter)                                                                                        \
+    MEMBER(FrameParams, width)                                                                                         \
+    MEMBER(FrameParams, height)                                                                                        \
+    MEMBER(FrameParams, crop_x0)                                                                                       \
+    MEMBER(FrameParams, crop_y0)                                                                                       \
+    MEMBER(FrameParams, crop_x1)                                                                                       \
+    MEMBER(FrameParams, crop_y1)                                                                                       \
+    MEMBER(FrameParams, aov)                                                                                           \
+    MEMBER(FrameParams, split_direct)                                                                                  \
+    MEMBER(FrameParams, split_depths)                                                                                  \
+    MEMBER(FrameParams, max_depth)                                                                                     \
+    MEMBER(FrameParams, min_depth)                                                                                     \
+    MEMBER(FrameParams, roulette_depth)                                                                                \
+    MEMBER(FrameParams, pool)                                                                                          \
+    MEMBER(FrameParams, pool_items)                                                                                    \
+    MEMBER(FrameParams, pool_lights)                                                                                   \
+    MEMBER(FrameParams, pool_lights_first)                                                                             \
+    MEMBER(FrameParams, pool_lights_weight)                                                                            \
+    MEMBER(FrameParams, strategies)                                                                                    \
+    MEMBER(FrameParams, mis_exponent)                                                                                  \
+    MEMBER(FrameParams, only_s)                                                                                        \
+    MEMBER(FrameParams, only_t)                                                                                        \
+    MEMBER(FrameParams, unweighted)                                                                                    \
+    MEMBER(FrameParams, mutations)                                                                                     \
+    MEMBER(FrameParams, group_mutations)                                                                               \
+    MEMBER(FrameParams, shifts)                                                                                        \
+    MEMBER(FrameParams, keep_chains)                                                                                   \
+    MEMBER(FrameParams, large_step)                                                                                    \
+    MEMBER(FrameParams, limit)                                                                                         \
+    MEMBER(FrameParams, brightness)                                                                                    \
+    MEMBER(FrameParams, aim_count)                                                                                     \
+    MEMBER(FrameParams, aims)                                                                                          \
+    MEMBER(FrameParams, aims_near)                                                                                     \
+    MEMBER(FrameParams, aims_power)                                                                                    \
+    MEMBER(FrameParams, importance)                                                                                    \
+    MEMBER(FrameParams, visits)                                                                                        \
+    MEMBER(FrameParams, seed_low)                                                                                      \
+    MEMBER(FrameParams, seed_high)                                                                                     \
+    MEMBER(FrameParams, stride)                                                                                        \
+    MEMBER(FrameParams, first_item)                                                                                    \
+    MEMBER(FrameParams, item_count)                                                                                    \
+    MEMBER(FrameParams, sample_index)                                                                                  \
+    MEMBER(FrameParams, pass_first)                                                                                    \
+    MEMBER(FrameParams, pass_stride)                                                                                   \
+    MEMBER(FrameParams, pixel_stride)                                                                                  \
+    MEMBER(FrameParams, pixel_first)                                                                                   \
+    MEMBER(FrameParams, film_exponent)                                                                                 \
+    MEMBER(FrameParams, world_center)                                                                                  \
+    MEMBER(FrameParams, world_radius)                                                                                  \
+    MEMBER(FrameParams, ray_reach)
+
+#endif

@@ -1,0 +1,52 @@
+/* Lights as path tracing sees them: choose one, draw a point or direction on it, ask for the density of that. */
+#ifndef TWINLIGHT_LIGHT_LIGHT_H
+#define TWINLIGHT_LIGHT_LIGHT_H
+
+#include "geometry/ray.h"
+#include "layout/distribution.h"
+#include "light/area.h"
+#include "light/delta.h"
+#include "light/infinite.h"
+
+/* A light, with probability lights[i].select_pdf (proportional to power). The scene must have one. */
+SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
+{
+    return alias_sample(scene->light_alias, scene->frame->light_count, bits0, bits1);
+}
+
+/* Draws light that arrives at `ref` from `light` when nothing lies between. False: no contribution; then *sample means
+ * nothing. */
+SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
+{
+    uint kind = scene->lights[light].kind;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
+        return area_light_sample(scene, light, ref, u, sample);
+    if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
+        return infinite_light_sample(scene, light, u, sample);
+    if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
+        return delta_light_sample(scene, light, ref, sample);
+    return false;
+}
+
+/* The segment between the point p of a surface with geometric normal ng and its light sample. */
+SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
+{
+    if (sample->infinite != 0u)
+        return ray_spawn(p, ng, sample->wi);
+    return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
+}
+
+/* Solid-angle density at `ref` that light_sample, given the light, has for the direction `wi` (unit): to the point
+ * `hit` on it (p, ng, u, v are read) when it is an area light; `hit` is not read for infinite lights. 0 for delta
+ * lights. */
+SHARED_FUNCTION float light_pdf_w(const SceneView *scene, uint light, Vec3 ref, Vec3 wi, const Surface *hit)
+{
+    uint kind = scene->lights[light].kind;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
+        return area_light_pdf_w(scene, light, ref, wi, hit);
+    if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
+        return environment_pdf_w(scene, light, wi);
+    return 0.0f;
+}
+
+#endif

@@ -1,0 +1,7 @@
+SHARED_FILES += \
+	shared/light/aim.h \
+	shared/light/area.h \
+	shared/light/delta.h \
+	shared/light/emit.h \
+	shared/light/infinite.h \
+	shared/light/light.h

@@ -1,0 +1,208 @@
+/* The one place that knows which language is being compiled: C11 or OpenCL C 1.2.
+ *
+ * Every other file of shared/ is written as OpenCL C with three restrictions that make it C11 as well: own vector
+ * structs instead of float3, the names below instead of the language's mathematics, and no pointers, bool, size_t,
+ * enums or doubles in structs that cross between host and device. */
+#ifndef TWINLIGHT_MATH_PLATFORM_H
+#define TWINLIGHT_MATH_PLATFORM_H
+
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#define SHARED_FUNCTION inline static
+#define float_bits(x) as_uint(x)
+#define bits_float(x) as_float(x)
+#define word_float(word) as_float(*(word))
+#define word_set_float(word, value) (*(word) = as_uint(value))
+#define float_sqrt(x) sqrt(x)
+#define float_abs(x) fabs(x)
+#define float_floor(x) floor(x)
+/* Items run at once and share the counters. */
+#define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
+#define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
+/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. So does an exchange, which is made if that
+ * was `before`. */
+#define atomic_count_add(count, n) atomic_add((volatile __global uint *)(count), n)
+#ifdef cl_khr_int64_base_atomics
+#pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
+#define atomic_sum_add(sum, n) atom_add((volatile __global ulong *)(sum), n)
+#define atomic_sum_load(sum) (*(volatile __global ulong *)(sum))
+#define atomic_sum_exchange(sum, before, after) atom_cmpxchg((volatile __global ulong *)(sum), before, after)
+#endif
+
+typedef float4 Float4;
+typedef uint4 Uint4;
+#define lane_of(v, i) ((v).s##i)
+#define uint4_make(a, b, c, d) ((uint4)((a), (b), (c), (d)))
+#define float4_splat(x) ((float4)(x))
+#define float4_bits(a) as_uint4(a)
+#define float4_at_most(a, b) as_uint4((a) <= (b))
+#define float4_min(a, b) fmin(a, b)
+#define float4_max(a, b) fmax(a, b)
+#ifdef FP_FAST_FMAF
+#define float4_mad(a, b, c) fma(a, float4_splat(b), float4_splat(c))
+#else
+#define float4_mad(a, b, c) ((a) * (b) + (c))
+#endif
+
+#else
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* OpenCL's names. */
+typedef unsigned char uchar;
+typedef uint32_t uint;
+typedef uint64_t ulong;
+
+#define __kernel static inline __attribute__((always_inline))
+#define __global
+#define __constant static const
+#ifdef PLATFORM_INLINE_ALL
+#define SHARED_FUNCTION static inline __attribute__((unused, always_inline))
+#else
+#define SHARED_FUNCTION static inline __attribute__((unused))
+#endif
+
+/* The item that a kernel works on. One copy per translation unit and thread; the thunks of layout/kernel_list.h set it. */
+static _Thread_local uint platform_item __attribute__((unused));
+#define get_global_id(dimension) ((size_t)platform_item)
+
+#ifdef TWINLIGHT_DOUBLE
+#include "math/platform_double.h"
+#else
+
+SHARED_FUNCTION uint float_bits(float x)
+{
+    uint bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+SHARED_FUNCTION float bits_float(uint bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* The float that a word of state holds. */
+#define word_float(word) bits_float(*(word))
+#define word_set_float(word, value) (*(word) = float_bits(value))
+
+#define float_sqrt(x) sqrtf(x)
+#define float_abs(x) fabsf(x)
+#define float_floor(x) floorf(x)
+
+/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the operators
+ * of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad differ from
+ * device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use them, which
+ * decide no bit of a result. */
+typedef float Float4 __attribute__((vector_size(16), may_alias));
+#define float4_splat(x) ((Float4){(x), (x), (x), (x)})
+#define float4_mad(a, b, c) ((a) * (b) + (c))
+
+#endif
+
+typedef uint Uint4 __attribute__((vector_size(16), may_alias));
+#define lane_of(v, i) ((v)[i])
+#define uint4_make(a, b, c, d) ((Uint4){(a), (b), (c), (d)})
+#define float4_bits(a) ((Uint4)(a))
+#define float4_at_most(a, b) ((Uint4)((a) <= (b)))
+
+#if defined(__SSE__)
+/* gcc makes six instructions of the text below. */
+#define float4_min(a, b) ((Float4)__builtin_ia32_minps(a, b))
+#define float4_max(a, b) ((Float4)__builtin_ia32_maxps(a, b))
+#else
+SHARED_FUNCTION Float4 float4_min(Float4 a, Float4 b)
+{
+    Uint4 less = (Uint4)(a < b);
+    return (Float4)(((Uint4)a & less) | ((Uint4)b & ~less));
+}
+
+SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
+{
+    Uint4 more = (Uint4)(a > b);
+    return (Float4)(((Uint4)a & more) | ((Uint4)b & ~more));
+}
+#endif
+
+/* Every thread has its own counters. */
+#define counter_increment(counter) (++*(counter))
+#define counter_add(counter, n) (*(counter) += (n))
+/* The film is everybody's. */
+#define atomic_count_add(count, n) __atomic_fetch_add(count, n, __ATOMIC_RELAXED)
+#define atomic_sum_add(sum, n) __atomic_fetch_add(sum, n, __ATOMIC_RELAXED)
+#define atomic_sum_load(sum) __atomic_load_n(sum, __ATOMIC_RELAXED)
+#define atomic_sum_exchange(sum, before, after) __sync_val_compare_and_swap(sum, before, after)
+
+#endif
+
+/* fmin and fmax leave open which of +0/-0 and which operand of a NaN pair they return; these do not: a NaN in `a`
+ * gives `b`. */
+#define float_min(a, b) ((a) < (b) ? (a) : (b))
+#define float_max(a, b) ((a) > (b) ? (a) : (b))
+#define float_clamp(x, low, high) float_min(float_max(x, low), high)
+
+#define FLOAT_MAX 3.402823466e+38f
+#define FLOAT_INFINITY bits_float(0x7f800000u)
+/* "No such index" in every 32-bit index of the scene. */
+#define NONE 0xffffffffu
+
+SHARED_FUNCTION bool float_finite(float x)
+{
+    return (float_bits(x) & 0x7f800000u) != 0x7f800000u;
+}
+
+/* What --enable-double has its own of (math/platform_double.h). */
+#ifndef PLATFORM_DOUBLE
+
+#define PI 3.14159265358979323846f
+#define INV_PI 0.31830988618379067154f
+#define INV_2PI 0.15915494309189533577f
+#define INV_4PI 0.07957747154594766788f
+#define PI_OVER_2 1.57079632679489661923f
+#define PI_OVER_4 0.78539816339744830961f
+
+#define FLOAT_SIGN_BIT 0x80000000u
+
+/* a or b by selecting among integers, which compiles to moves and not to branches that nobody can predict. */
+#define float_select(condition, a, b) bits_float((condition) ? float_bits(a) : float_bits(b))
+
+SHARED_FUNCTION float float_copy_sign(float magnitude, float sign)
+{
+    return bits_float((float_bits(magnitude) & ~FLOAT_SIGN_BIT) | (float_bits(sign) & FLOAT_SIGN_BIT));
+}
+
+/* The next float after x in the direction of `toward` (x itself when that is 0 or x is not finite). */
+SHARED_FUNCTION float float_step(float x, float toward)
+{
+    if (toward == 0.0f || !float_finite(x))
+        return x;
+    if (x == 0.0f)
+        return toward > 0.0f ? bits_float(1u) : bits_float(0x80000001u);
+    uint bits = float_bits(x);
+    return bits_float((x > 0.0f) == (toward > 0.0f) ? bits + 1u : bits - 1u);
+}
+
+/* The mantissa in [1, 2) of a positive finite x, which is it times 2^exponent. */
+SHARED_FUNCTION float float_mantissa(float x, int *exponent)
+{
+    int shift = 0;
+    if (x < 1.17549435e-38f) { /* denormal */
+        x = x * 16777216.0f;
+        shift = 24;
+    }
+    uint bits = float_bits(x);
+    *exponent = (int)(bits >> 23) - 127 - shift;
+    return bits_float((bits & 0x007fffffu) | 0x3f800000u);
+}
+
+#endif
+
+#endif

@@ -1,0 +1,8 @@
+SHARED_FILES += \
+	shared/math/elementary.h \
+	shared/math/platform.h \
+	shared/math/platform_double.h \
+	shared/math/rng.h \
+	shared/math/scaled.h \
+	shared/math/vec.h \
+	shared/math/warp.h

@@ -1,0 +1,195 @@
+/* Connections of bidirectional paths: what they contribute and the densities that only they know. */
+#ifndef TWINLIGHT_PATH_BD_CONNECT_H
+#define TWINLIGHT_PATH_BD_CONNECT_H
+
+#include "camera/camera.h"
+#include "camera/film_splat.h"
+#include "layout/diagnostics.h"
+#include "path/bd_random.h"
+#include "path/bd_walk.h"
+#include "path/strategy.h"
+
+/* A connection before it is known whether anything lies between. */
+typedef struct Connection {
+    Vec3 contribution; /* unweighted */
+    Ray shadow;
+    Vec2 film; /* t = 1: where the film sees y */
+    uint target; /* t = 1: pixel of the splat */
+    float target_weight; /* of the pixel filter */
+    StrategyEnds ends;
+} Connection;
+
+/* f(wo, wi) |cos wi| at a vertex of the light's side, with the factor of shading normals. */
+SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex *vertex, Vec3 wi)
+{
+    Vec3 wi_frame = frame_to_local(vertex->frame, wi);
+    BsdfValue value = bsdf_eval(scene, &vertex->bsdf, vertex->wo, wi_frame, TRANSPORT_IMPORTANCE);
+    if (!vec3_is_zero(value.f_cos))
+        value.f_cos = vec3_scale(value.f_cos, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
+                                                             vertex->wo.z, wi_frame.z));
+    return value;
+}
+
+/* t = 1: y = y_{s-1}, s >= 2, seen from a point on the lens. random: lens. */
+SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Random4 random, Connection *connection)
+{
+    CameraConnection camera;
+    if ((y->bsdf.flags & BSDF_SMOOTH) != 0u ||
+        !camera_connect(scene->frame, y->p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera))
+        return false;
+    connection->film = camera.film;
+    BsdfValue f = vertex_eval_light(scene, y, camera.wi);
+    connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
+    connection->shadow = ray_between(y->p, y->ng, camera.p, vec3_splat(0.0f));
+    connection->ends.camera_y1 = camera.pdf * float_abs(vec3_dot(camera.wi, y->ng));
+    connection->ends.camera_y2 = f.pdf_rev_w * y->back;
+    return true;
+}
+
+/* s = 1: a point on a light drawn for z = z_{t-1}, t >= 2. random: which light (x, y), where on it. */
+SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
+{
+    if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
+        return false;
+    uint light = light_select(scene, random.x[0], random.x[1]);
+    LightSample sample = {0};
+    if (!light_sample(scene, light, z->p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+        return false;
+    BsdfValue f = bsdf_eval(scene, &z->bsdf, z->wo, frame_to_local(z->frame, sample.wi), TRANSPORT_RADIANCE);
+    float select = scene->lights[light].select_pdf;
+    connection->contribution =
+        vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (select * sample.pdf_w));
+    connection->shadow = light_shadow_ray(z->p, z->ng, &sample);
+    StrategyEnds *ends = &connection->ends;
+    float at_z = float_abs(vec3_dot(sample.wi, z->ng));
+    ends->light_z2 = f.pdf_rev_w * z->back;
+    ends->hittable = sample.delta == 0u;
+    ends->connect = 1.0f;
+    if (sample.infinite != 0u) {
+        ends->own_y0 = select * sample.pdf_w;
+        ends->camera_y1 = f.pdf_w;
+        ends->light_z1 = light_emit_pdf_disc(scene) * at_z;
+        return true;
+    }
+    float distance2 = vec3_length_squared(vec3_sub(sample.p, z->p));
+    ends->light_z1 = light_emit_pdf_w(scene, light, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
+    if (sample.delta != 0u) {
+        ends->own_y0 = select;
+        ends->camera_y1 = 0.0f; /* never met */
+        return true;
+    }
+    float to_area = solid_angle_to_area(sample.wi, sample.ng, distance2);
+    ends->own_y0 = select * sample.pdf_emit;
+    ends->camera_y1 = f.pdf_w * to_area;
+    ends->connect = sample.pdf_emit > 0.0f ? sample.pdf_w * to_area / sample.pdf_emit : 0.0f;
+    return true;
+}
+
+/* s >= 2, t >= 2: two surfaces. */
+SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z, Connection *connection)
+{
+    Vec3 d = vec3_sub(y->p, z->p);
+    float distance2 = vec3_length_squared(d);
+    if (((y->bsdf.flags | z->bsdf.flags) & BSDF_SMOOTH) != 0u || !(distance2 > 0.0f))
+        return false;
+    Vec3 w = vec3_scale(d, 1.0f / float_sqrt(distance2));
+    BsdfValue fz = bsdf_eval(scene, &z->bsdf, z->wo, frame_to_local(z->frame, w), TRANSPORT_RADIANCE);
+    if (vec3_is_zero(fz.f_cos))
+        return false;
+    BsdfValue fy = vertex_eval_light(scene, y, vec3_negate(w));
+    connection->contribution =
+        vec3_scale(vec3_mul(vec3_mul(z->beta, fz.f_cos), vec3_mul(y->beta, fy.f_cos)), 1.0f / distance2);
+    connection->shadow = ray_between(z->p, z->ng, y->p, y->ng);
+    StrategyEnds *ends = &connection->ends;
+    ends->light_z1 = fy.pdf_w * solid_angle_to_area(w, z->ng, distance2);
+    ends->light_z2 = fz.pdf_rev_w * z->back;
+    ends->camera_y1 = fz.pdf_w * solid_angle_to_area(w, y->ng, distance2);
+    ends->camera_y2 = fy.pdf_rev_w * y->back;
+    return true;
+}
+
+/* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not read.
+ * random: of whichever it is. */
+SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
+                                  Random4 random, Connection *connection)
+{
+    connection->target = NONE;
+    connection->ends.connect = 1.0f;
+    if (t == 1u)
+        return connect_camera(scene, y, random, connection);
+    if (s == 1u)
+        return connect_light(scene, z, random, connection);
+    return connect_surfaces(scene, y, z, connection);
+}
+
+/* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */
+SHARED_FUNCTION bool connection_aim(const SceneView *scene, Random4 random, Connection *connection)
+{
+    connection->target =
+        film_splat_pixel(scene, connection->film, vec2(random_float(random.x[2]), random_float(random.x[3])),
+                         &connection->target_weight);
+    return connection->target != NONE;
+}
+
+/* Whether there is a contribution and a ray that can tell whether it arrives. */
+SHARED_FUNCTION bool connection_traceable(const Connection *connection)
+{
+    return !vec3_is_zero(connection->contribution) && connection->shadow.t_max > 0.0f &&
+           ray_traceable(connection->shadow.o, connection->shadow.d);
+}
+
+/* What the weight has to know of the stored y_0 (s >= 2). */
+SHARED_FUNCTION void connection_light_end(__global const uint *restrict paths, uint stride, uint item,
+                                          StrategyEnds *ends)
+{
+    ends->hittable = (state_load(paths, stride, BD_EMITTER_FLAGS, item) & EMITTER_DELTA) == 0u;
+    ends->connect = state_load_float(paths, stride, BD_CONNECT, item);
+}
+
+SHARED_FUNCTION void connection_store(__global uint *restrict paths, __global uint *restrict shadows, uint stride,
+                                      uint item, const Connection *connection, float weight)
+{
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_scale(connection->contribution, weight));
+    state_store(paths, stride, BD_TARGET, item, connection->target);
+    state_store_float(paths, stride, BD_TARGET_WEIGHT, item, connection->target_weight);
+    ray_store(shadows, stride, item, connection->shadow);
+}
+
+SHARED_FUNCTION void splat_store(__global uint *restrict splats, __global uint *restrict diagnostics, uint stride,
+                                 uint item, uint pixel, Vec3 color)
+{
+    if (!vec3_finite(color)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
+        color = vec3_splat(0.0f);
+    }
+    state_store(splats, stride, SPLAT_PIXEL, item, pixel);
+    state_store_vec3(splats, stride, SPLAT_COLOR, item, color);
+}
+
+/* Whether a shadow ray was cast and has found nothing; it is cast no more. */
+SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, uint item)
+{
+    bool cast = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
+    if (cast)
+        state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    return cast && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u;
+}
+
+/* A connection whose shadow ray is traced: gathered for the path's pixel, or, from the lens (t = 1), put out for the
+ * film. */
+SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint *restrict splats,
+                                    __global uint *restrict diagnostics, uint stride, uint item, bool from_lens,
+                                    bool visible)
+{
+    Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
+    uint target = state_load(paths, stride, BD_TARGET, item);
+    if (from_lens && visible && target != NONE)
+        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | target,
+                    vec3_scale(contribution, state_load_float(paths, stride, BD_TARGET_WEIGHT, item)));
+    else if (from_lens)
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
+    else if (visible)
+        bd_add_radiance(paths, stride, item, contribution);
+}
+
+#endif

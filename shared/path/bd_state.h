@@ -1,0 +1,88 @@
+/* What a bidirectional path keeps between kernels: a header and the walk under way (BUFFER_PATHS), its vertices
+ * (BUFFER_VERTICES) and their densities (BUFFER_DENSITIES), one 32-bit word a field.
+ *
+ * Vertices y_0, y_1 ... are the light's, y_0 on the light; z_0 is on the lens and is not stored, z_1, z_2 ... are the
+ * camera's. The strategy (s, t) connects y_{s-1} with z_{t-1} and makes a path of s + t - 1 segments. */
+#ifndef TWINLIGHT_PATH_BD_STATE_H
+#define TWINLIGHT_PATH_BD_STATE_H
+
+#include "layout/scene_view.h"
+#include "layout/state.h"
+#include "math/scaled.h"
+
+#define SIDE_LIGHT 0u
+#define SIDE_CAMERA 1u
+
+/* ---- the header -------------------------------------------------------------------------------------------------- */
+
+#define BD_PIXEL 0u /* y * width + x of the whole film: where the camera's path began */
+#define BD_SAMPLE 1u /* which sample of the pixel */
+#define BD_WEIGHT 2u /* of the pixel filter */
+#define BD_RADIANCE 3u /* gathered for the pixel, 3 */
+#define BD_LENGTHS 6u /* how many vertices y are stored, 3 of z << 16 */
+#define BD_LIGHT_DELTA 7u /* bit i: y_i scattered by a delta lobe */
+#define BD_CAMERA_DELTA 8u /* bit i: z_i did */
+#define BD_EMITTER 9u /* of y_0: light index */
+#define BD_EMITTER_FLAGS 10u /* EMITTER_* */
+#define BD_CONNECT 11u /* density of drawing y_0 for y_1 (s = 1) over that of emitting from it */
+/* The walk under way */
+#define BD_SIDE 12u
+#define BD_DEPTH 13u /* segments so far on this side; 0: it has ended */
+#define BD_BETA 14u /* throughput, 3 */
+#define BD_PDF 17u /* density of the last direction, per solid angle (or per area across it: WALK_PARALLEL) */
+#define BD_WALK_FLAGS 18u /* WALK_* */
+#define BD_ROULETTE_SCALE 19u /* Russian roulette goes by the throughput times this: pool_roulette_weigh, eta^2 */
+/* The connection under way */
+#define BD_S 20u
+#define BD_T 21u
+#define BD_CONTRIBUTION 22u /* if nothing lies between, 3 */
+#define BD_TARGET 25u /* pixel it goes to; NONE: the path's own */
+#define BD_TARGET_WEIGHT 26u /* of the pixel filter, there */
+#define BD_COVER 27u /* of a pool: film_splat_cover where the camera's path began */
+/* Of a chain (chain/shift.h); a pool has others in their place */
+#define BD_SHIFT_NUMBERS 27u /* coordinates that draw the directions at z_1 and z_2, 2 each */
+#define BD_SHIFT_DENSITY 33u /* of the last direction, of its lobe alone; 0: it cannot be drawn at will */
+/* Of a pool (chain/pool.h) */
+#define BD_CANDIDATE_SUM 28u
+#define BD_CANDIDATE 29u
+#define BD_CANDIDATE_LUMINANCE 30u /* of the candidate without roulette, as a chain sees it */
+#define BD_CONNECTION_SURVIVAL 31u /* what roulette left of both walks to the connection under way */
+#define BD_SURVIVAL 32u /* probability with which roulette has let the walk under way come so far */
+#define BD_IMPORTANCE 33u /* of the film position where the camera's path began */
+#define BD_TARGET_IMPORTANCE 34u /* of the one that the connection under way is seen at (t = 1) */
+#define BD_GATHERED 35u /* frame->split_depths: segments of the path that has brought BD_RADIANCE */
+#define BD_HEADER_WORDS 36u
+
+#define EMITTER_INFINITE 0x1u /* y_0 is a direction */
+#define EMITTER_DELTA 0x2u /* no path can meet it */
+
+#define WALK_PARALLEL 0x1u /* the last ray is one of a bundle of parallel ones */
+#define WALK_DELTA 0x2u /* it came from a delta lobe */
+
+/* ---- vertices ---------------------------------------------------------------------------------------------------- */
+
+#define VERTEX_POINT 0u /* 3; of y_0 of an infinite light: the direction of travel */
+#define VERTEX_NG 3u /* geometric normal, 3 */
+#define VERTEX_FRAME_N 6u /* shading frame, 3 */
+#define VERTEX_FRAME_T 9u /* 3 */
+#define VERTEX_WO 12u /* towards the vertex before it, in the frame, 3 */
+#define VERTEX_BETA 15u /* throughput up to here, 3 */
+#define VERTEX_BSDF_KIND 18u
+#define VERTEX_BSDF_FLAGS 19u
+#define VERTEX_BSDF_COLOR0 20u /* 3 */
+#define VERTEX_BSDF_COLOR1 23u /* 3 */
+#define VERTEX_BSDF_ALPHA_X 26u
+#define VERTEX_BSDF_ALPHA_Y 27u
+#define VERTEX_BSDF_ETA 28u
+#define VERTEX_BSDF_COAT 29u
+#define VERTEX_SURVIVAL 30u /* BD_SURVIVAL there */
+#define VERTEX_BACK 31u /* Vertex.back (path/bd_walk.h) */
+#define VERTEX_WORDS 32u
+
+/* ---- densities --------------------------------------------------------------------------------------------------- */
+
+#define DENSITY_OWN 0u /* as the side that stores the vertex makes it, per area */
+#define DENSITY_OTHER 1u /* as the other side would */
+#define DENSITY_WORDS 2u
+
+#endif

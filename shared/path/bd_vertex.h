@@ -1,0 +1,164 @@
+/* A vertex of a bidirectional path as it is stored, and densities between vertices. */
+#ifndef TWINLIGHT_PATH_BD_VERTEX_H
+#define TWINLIGHT_PATH_BD_VERTEX_H
+
+#include "bsdf/bsdf_state.h"
+#include "camera/camera.h"
+#include "geometry/ray.h"
+#include "geometry/surface.h"
+#include "light/emit.h"
+#include "light/light.h"
+#include "path/bd_state.h"
+
+/* First field of vertex i of a side: y_0, y_1 ... behind each other, then z_1, z_2 ... */
+SHARED_FUNCTION uint vertex_base(__global const FrameParams *frame, uint side, uint i)
+{
+    return (side == SIDE_LIGHT ? i : frame->max_depth + i - 1u) * VERTEX_WORDS;
+}
+
+SHARED_FUNCTION uint density_base(__global const FrameParams *frame, uint side, uint i)
+{
+    return (side == SIDE_LIGHT ? i : frame->max_depth + i - 1u) * DENSITY_WORDS;
+}
+
+/* A stored vertex as connections need it. */
+typedef struct Vertex {
+    Vec3 p, ng;
+    Vec3 wo; /* in the frame */
+    Vec3 beta;
+    float back; /* turns a solid-angle density here into an area density at the vertex before it (walk_back) */
+    Frame frame;
+    Bsdf bsdf;
+} Vertex;
+
+/* What the next segment of a walk has to know of the vertex that it leaves. */
+SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint t, const Vertex *vertex)
+{
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, vertex->p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, t, vertex->ng);
+}
+
+SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint t,
+                                  const Vertex *vertex)
+{
+    vertex_place_store(vertices, stride, base, t, vertex);
+    frame_store(vertices, stride, base + VERTEX_FRAME_N, t, vertex->frame);
+    state_store_vec3(vertices, stride, base + VERTEX_WO, t, vertex->wo);
+    state_store_vec3(vertices, stride, base + VERTEX_BETA, t, vertex->beta);
+    state_store_float(vertices, stride, base + VERTEX_BACK, t, vertex->back);
+    bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, t, &vertex->bsdf);
+}
+
+SHARED_FUNCTION Vertex vertex_load(const SceneView *scene, __global const uint *vertices, uint stride, uint base,
+                                   uint t)
+{
+    Vertex vertex;
+    vertex.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
+    vertex.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
+    vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, t);
+    vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, t);
+    vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, t);
+    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, t);
+    vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, t);
+    return vertex;
+}
+
+/* Whether nothing can be connected with the stored vertex. */
+SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint t)
+{
+    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u;
+}
+
+/* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
+ * into one per area there. */
+SHARED_FUNCTION float solid_angle_to_area(Vec3 w, Vec3 n, float distance2)
+{
+    return float_abs(vec3_dot(w, n)) / distance2;
+}
+
+/* What a stored solid-angle density at `p` becomes per area at the vertex before it: `from`, `ng`, on the light's side
+ * y_0 with flags EMITTER_*. Of a delta light's position it is never used in a strategy that exists. */
+SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
+{
+    if ((emitter_flags & EMITTER_INFINITE) != 0u)
+        return 1.0f;
+    Vec3 d = vec3_sub(from, p);
+    float distance2 = vec3_length_squared(d);
+    if (!(distance2 > 0.0f))
+        return 0.0f;
+    if ((emitter_flags & EMITTER_DELTA) != 0u)
+        return 1.0f / distance2;
+    return solid_angle_to_area(vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
+}
+
+/* walk_back at p, vertex i of a side, i >= 1; `before`: base of the vertex before it. Of the lens it is never used. */
+SHARED_FUNCTION float walk_back_stored(__global const uint *restrict paths, __global const uint *restrict vertices,
+                                       uint stride, uint t, uint side, uint i, uint before, Vec3 p)
+{
+    if (side == SIDE_CAMERA && i == 1u)
+        return 1.0f;
+    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
+    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, t),
+                     state_load_vec3(vertices, stride, before + VERTEX_NG, t), flags);
+}
+
+/* Shading normals make a BSDF differ from its adjoint by this factor, which paths from the light carry (Veach 1997,
+ * section 5.3.2): wo and wi in world space, their cosines with the shading normal. */
+SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
+{
+    float numerator = float_abs(cosine_o) * float_abs(vec3_dot(wi, ng));
+    float denominator = float_abs(vec3_dot(wo, ng)) * float_abs(cosine_i);
+    return denominator > 0.0f ? numerator / denominator : 0.0f;
+}
+
+/* Densities of a delta lobe's directions are probabilities, and only the ratio of both ways means anything. Reflection
+ * and refraction keep n^2 times the projected solid angle, so relative to that measure the same delta stands on both
+ * ways and cancels; what it takes to get to solid angles remains. */
+SHARED_FUNCTION void delta_densities(const BsdfSample *sample, Vec3 wo, float *forward, float *reverse)
+{
+    *forward = sample->pdf_w * (float_abs(sample->wi.z) * (sample->eta * sample->eta));
+    *reverse = sample->pdf_rev_w * float_abs(wo.z);
+}
+
+/* Density of drawing the point (p, ng) of the light for `from` (s = 1), over that of emitting from it. They differ for
+ * spheres, which are drawn by the cone that `from` sees. `w`: unit, from `from` to p. */
+SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 w, float distance2,
+                                          const Surface *point)
+{
+    if (scene->lights[light].kind != LIGHT_AREA)
+        return 1.0f;
+    float emitted = light_emit_pdf_p(scene, light, point);
+    float drawn = area_light_pdf_w(scene, light, from, w, point) * solid_angle_to_area(w, point->ng, distance2);
+    return emitted > 0.0f ? drawn / emitted : 0.0f;
+}
+
+/* BD_CONNECT of y_0, stored at `base`, for y_1 at p. */
+SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
+                                            __global const uint *vertices, uint stride, uint t, uint base, Vec3 p)
+{
+    uint light = state_load(paths, stride, BD_EMITTER, t);
+    if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
+        scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
+        return 1.0f;
+    Surface point = {0}; /* spheres ask for no more than this */
+    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
+    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
+    Vec3 d = vec3_sub(point.p, p);
+    float distance2 = vec3_length_squared(d);
+    if (!(distance2 > 0.0f))
+        return 1.0f;
+    return light_connect_ratio(scene, light, p, vec3_scale(d, 1.0f / float_sqrt(distance2)), distance2, &point);
+}
+
+/* Per area, the density with which the walk has made the point it has just met. */
+SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
+                                   float distance2, uint side, uint depth, uint flags, float pdf)
+{
+    if (side == SIDE_CAMERA && depth == 1u)
+        return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
+    if ((flags & WALK_PARALLEL) != 0u)
+        return pdf * float_abs(vec3_dot(ray->d, surface->ng));
+    return pdf * solid_angle_to_area(ray->d, surface->ng, distance2);
+}
+
+#endif

@@ -1,0 +1,286 @@
+/* One vertex of a bidirectional path after the other: what the walks from the light and from the camera share. */
+#ifndef TWINLIGHT_PATH_BD_WALK_H
+#define TWINLIGHT_PATH_BD_WALK_H
+
+#include "bsdf/bsdf.h"
+#include "bsdf/material.h"
+#include "layout/diagnostics.h"
+#include "light/aim.h"
+#include "math/rng.h"
+#include "path/bd_vertex.h"
+#include "path/strategy.h"
+
+/* ---- a step ------------------------------------------------------------------------------------------------------ */
+
+SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+{
+    state_store(paths, stride, BD_DEPTH, t, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+}
+
+/* Adds to what the path's pixel gets. */
+SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
+{
+    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, t);
+    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_add(sum, radiance));
+}
+
+/* The first ray of a walk. */
+SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
+                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray, Vec3 beta,
+                                float pdf, uint flags)
+{
+    ray_store(rays, stride, t, ray);
+    state_store(paths, stride, BD_SIDE, t, side);
+    state_store(paths, stride, BD_DEPTH, t, 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, beta);
+    state_store_float(paths, stride, BD_PDF, t, pdf);
+    state_store(paths, stride, BD_WALK_FLAGS, t, flags);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, 1.0f / vec3_max_component(beta));
+    state_store_float(paths, stride, BD_SURVIVAL, t, 1.0f);
+    if (!ray_traceable(ray.o, ray.d)) {
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        walk_end(paths, rays, stride, t);
+    }
+}
+
+/* The vertex at a surface that a walk of throughput beta has met along d. False when nothing leaves it. u_mix: decides
+ * mix materials. */
+SHARED_FUNCTION bool vertex_make(const SceneView *scene, Surface *surface, Vec3 d, Vec3 beta, float u_mix,
+                                 Vertex *vertex)
+{
+    material_resolve(scene, u_mix, surface, &vertex->bsdf, &vertex->frame);
+    if (vertex->bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(vertex->bsdf.color0))
+        return false;
+    vertex->p = surface->p;
+    vertex->ng = surface->ng;
+    vertex->wo = frame_to_local(vertex->frame, vec3_negate(d));
+    vertex->beta = beta;
+    return true;
+}
+
+/* Where a walk goes on. */
+typedef struct WalkStep {
+    Ray ray;
+    Vec3 beta;
+    float forward; /* density of the new direction, per solid angle */
+    float reverse; /* of the way back, per area at the vertex before */
+    float roulette_scale;
+    float survival; /* probability of roulette here */
+    uint delta;
+} WalkStep;
+
+/* Roulette leaves at least so many of a pool's walks alive. What the pool shows of a path is limited by what chains see of it,
+ * who know no roulette: the paths of a walk that has survived by chance carry more, the inverse of its chance. Without this a
+ * glossy room has twice the square error in the same time, much of it single dots, of 75 times the limit; were all walks to
+ * live, a quarter more, as there would be fewer. */
+#define POOL_SURVIVED_LEAST 0.35f
+
+/* The least probability with which roulette lets the walk go on. */
+SHARED_FUNCTION float walk_survival_least(__global const FrameParams *frame, __global const uint *paths, uint t)
+{
+    return frame->pool != 0u ? POOL_SURVIVED_LEAST / state_load_float(paths, frame->stride, BD_SURVIVAL, t) : 0.0f;
+}
+
+/* Where in a lobe. */
+SHARED_FUNCTION Vec2 scatter_point(Random4 random)
+{
+    return vec2(random_float(random.x[1]), random_float(random.x[2]));
+}
+
+/* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which
+ * leaves the weights alone: they need not know of it to sum to one. random: lobe, direction, roulette. least:
+ * walk_survival_least. */
+SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth,
+                                  float roulette_scale, float least, Random4 random, WalkStep *step)
+{
+    bool roulette = depth >= scene->frame->roulette_depth;
+    BsdfSample sample;
+    uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
+    Vec2 u = scatter_point(random), u_base = u;
+    if (side == SIDE_CAMERA && scene->frame->aim_count > 0u && bsdf_has_base(scene, &vertex->bsdf))
+        u_base = scatter_point(aim_numbers(scene->frame, vertex->p, vertex->frame, random));
+    if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
+        return false;
+    Vec3 wi = frame_to_world(vertex->frame, sample.wi);
+    step->beta = vec3_mul(vertex->beta, sample.weight);
+    if (side == SIDE_LIGHT)
+        step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
+                                                           vertex->wo.z, sample.wi.z));
+    step->roulette_scale = side == SIDE_CAMERA ? roulette_scale * sample.eta * sample.eta : roulette_scale;
+    float survival = roulette ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
+    if (survival > 0.0f) /* not what is not a number */
+        survival = float_max(survival, least);
+    if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
+        return false;
+    step->survival = float_min(survival, 1.0f);
+    if (survival < 1.0f)
+        step->beta = vec3_scale(step->beta, 1.0f / survival);
+    step->ray = ray_spawn(vertex->p, vertex->ng, wi);
+    step->delta = sample.delta;
+    step->forward = sample.pdf_w;
+    step->reverse = sample.pdf_rev_w;
+    if (sample.delta != 0u)
+        delta_densities(&sample, vertex->wo, &step->forward, &step->reverse);
+    step->reverse *= vertex->back;
+    return true;
+}
+
+SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t,
+                                     uint depth, const WalkStep *step)
+{
+    state_store(paths, stride, BD_DEPTH, t, depth + 1u);
+    state_store_vec3(paths, stride, BD_BETA, t, step->beta);
+    state_store_float(paths, stride, BD_PDF, t, step->forward);
+    state_store(paths, stride, BD_WALK_FLAGS, t, step->delta != 0u ? WALK_DELTA : 0u);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, step->roulette_scale);
+    state_store_float(paths, stride, BD_SURVIVAL, t, step->survival * state_load_float(paths, stride, BD_SURVIVAL, t));
+    ray_store(rays, stride, t, step->ray);
+}
+
+/* Keeps in mind that vertex `depth` of a side scatters by a delta lobe, if it does. */
+SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint t, uint side, uint depth,
+                               const WalkStep *step)
+{
+    uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    if (step->delta != 0u)
+        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+}
+
+/* ---- what a ray has met ------------------------------------------------------------------------------------------- */
+
+typedef struct WalkMeeting {
+    Ray ray;
+    Vec3 from_ng; /* geometric normal where the ray left; its direction for the camera's first */
+    float own; /* density with which the walk has made the point; of a miss, of its direction */
+    uint light; /* that the primitive is; NONE */
+    uint instance, primitive; /* of the hit */
+    bool missed;
+    /* Unless missed: */
+    Surface surface;
+    Vec3 from; /* where the ray left */
+    float distance2;
+    float back; /* Vertex.back there */
+} WalkMeeting;
+
+/* From: the ray under way and its hit. `before`: base of the vertex that it left. */
+SHARED_FUNCTION void walk_meet(const SceneView *scene, __global const uint *restrict paths,
+                               __global const uint *restrict rays, __global const uint *restrict hits,
+                               __global const uint *restrict vertices, uint t, uint before, WalkMeeting *meeting)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
+    bool first = side == SIDE_CAMERA && depth == 1u;
+    Hit hit = hit_load(hits, stride, t);
+    meeting->ray = ray_load(rays, stride, t);
+    meeting->missed = hit.primitive == NONE;
+    meeting->instance = hit.instance;
+    meeting->primitive = hit.primitive;
+    meeting->own = state_load_float(paths, stride, BD_PDF, t);
+    meeting->from_ng = first ? meeting->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
+    meeting->light = NONE;
+    if (meeting->missed)
+        return;
+    meeting->surface = surface_from_hit(scene, &meeting->ray, hit);
+    meeting->from = first || (flags & WALK_PARALLEL) != 0u
+                        ? meeting->ray.o
+                        : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+    meeting->distance2 = vec3_length_squared(vec3_sub(meeting->surface.p, meeting->from));
+    meeting->own = walk_density(scene->frame, &meeting->ray, &meeting->surface, meeting->distance2, side, depth, flags,
+                                meeting->own);
+    meeting->back = walk_back_stored(paths, vertices, stride, t, side, depth, before, meeting->surface.p);
+    uint first_light = scene->shapes[meeting->surface.shape].first_light;
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
+        meeting->light = first_light + hit.primitive - scene->shapes[meeting->surface.shape].first_primitive;
+}
+
+/* Makes the vertex, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is
+ * full. */
+SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *restrict paths,
+                                      __global uint *restrict rays, __global const uint *restrict vertices, uint t,
+                                      uint before, float u_mix, WalkMeeting *meeting, Vertex *vertex)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
+        !vertex_make(scene, &meeting->surface, meeting->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
+                     vertex)) {
+        walk_end(paths, rays, stride, t);
+        return false;
+    }
+    /* Before the vertex may take the place of y_0. */
+    if (side == SIDE_LIGHT && depth == 1u)
+        state_store_float(paths, stride, BD_CONNECT, t,
+                          emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex->p));
+    vertex->back = meeting->back;
+    return true;
+}
+
+/* The same, and stores it at `base`. */
+SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                 __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
+                                 WalkMeeting *meeting)
+{
+    uint stride = scene->frame->stride;
+    Vertex vertex;
+    if (!walk_vertex_make(scene, paths, rays, vertices, t, before, u_mix, meeting, &vertex))
+        return false;
+    vertex_store(scene, vertices, stride, base, t, &vertex);
+    state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
+    return true;
+}
+
+/* Draws where the walk goes on from its last vertex; false when it has ended. random: lobe, direction, roulette. */
+SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, __global uint *restrict paths,
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint t,
+                                       const Vertex *vertex, Random4 random, WalkStep *step)
+{
+    uint stride = scene->frame->stride;
+    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, t);
+    float least = walk_survival_least(scene->frame, paths, t);
+    if (walk_scatter(scene, vertex, side, depth, roulette_scale, least, random, step)) {
+        if (ray_traceable(step->ray.o, step->ray.d))
+            return true;
+        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+    }
+    walk_end(paths, rays, stride, t);
+    return false;
+}
+
+/* From the vertex stored at `base`. */
+SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint t,
+                                uint base, Random4 random, WalkStep *step)
+{
+    Vertex vertex = vertex_load(scene, vertices, scene->frame->stride, base, t);
+    return walk_leave_vertex(scene, paths, rays, diagnostics, t, &vertex, random, step);
+}
+
+/* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */
+
+/* What the light met sends back along the ray, and what the weight needs to know. */
+SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkMeeting *meeting, StrategyEnds *ends)
+{
+    const Surface *surface = &meeting->surface;
+    uint light = meeting->light;
+    Vec3 towards = vec3_negate(meeting->ray.d);
+    ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
+    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * meeting->back;
+    ends->connect = light_connect_ratio(scene, light, meeting->from, meeting->ray.d, meeting->distance2, surface);
+    ends->hittable = true;
+    return light_emitted(scene, light, surface->ng, towards);
+}
+
+/* The same for a light at infinity. ng: geometric normal of the vertex that d leaves. */
+SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, Vec3 d, Vec3 ng, StrategyEnds *ends)
+{
+    ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+    ends->light_z2 = light_emit_pdf_disc(scene) * float_abs(vec3_dot(d, ng));
+    ends->connect = 1.0f;
+    ends->hittable = true;
+    return environment_light_radiance(scene, light, d);
+}
+
+#endif

@@ -1,0 +1,64 @@
+/* Weights of bidirectional paths from their stored state. */
+#ifndef TWINLIGHT_PATH_BD_WEIGHT_H
+#define TWINLIGHT_PATH_BD_WEIGHT_H
+
+#include "path/bd_walk.h"
+#include "path/strategy.h"
+
+SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, __global const uint *paths,
+                                            __global const uint *densities, uint t)
+{
+    DensityView view;
+    view.light = densities;
+    view.camera = densities + (size_t)frame->max_depth * DENSITY_WORDS * frame->stride;
+    view.stride = frame->stride;
+    view.t = t;
+    view.compact = false;
+    view.light_end = 0u;
+    view.camera_end = 0u;
+    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, t);
+    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, t);
+    return view;
+}
+
+/* Whether anything is to be made by the strategy (s, t). */
+SHARED_FUNCTION bool strategy_wanted(__global const FrameParams *frame, uint s, uint t)
+{
+    return s + t > frame->min_depth && strategy_taken(frame->strategies, s, s + t - 1u) &&
+           (frame->only_s == NONE || (frame->only_s == s && frame->only_t == t));
+}
+
+/* What a contribution of the strategy (s, t) is multiplied by: its weight; 1 when weights are turned off; 0 when only
+ * another strategy is wanted. */
+SHARED_FUNCTION StrategyWeights bd_weights(__global const FrameParams *frame, uint s, uint t, const DensityView *view,
+                                           const StrategyEnds *ends)
+{
+    StrategyWeights weights = {0.0f, 0.0f};
+    if (!strategy_wanted(frame, s, t))
+        return weights;
+    if (frame->unweighted == 0u)
+        return strategy_weights(frame->strategies, frame->mis_exponent, s, t, view, ends);
+    weights.own = 1.0f;
+    return weights;
+}
+
+SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint t, const DensityView *view,
+                                const StrategyEnds *ends)
+{
+    return bd_weights(frame, s, t, view, ends).own;
+}
+
+/* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
+{
+    Vec3 sum = vec3_splat(0.0f);
+    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+        StrategyEnds ends = {0};
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
+        if (!vec3_is_zero(radiance))
+            sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
+    }
+    return sum;
+}
+
+#endif

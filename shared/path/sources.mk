@@ -1,0 +1,13 @@
+SHARED_FILES += \
+	shared/path/bd_connect.h \
+	shared/path/bd_random.h \
+	shared/path/bd_start.h \
+	shared/path/bd_state.h \
+	shared/path/bd_vertex.h \
+	shared/path/bd_walk.h \
+	shared/path/bd_weight.h \
+	shared/path/ib_weight.h \
+	shared/path/mis.h \
+	shared/path/path_random.h \
+	shared/path/path_state.h \
+	shared/path/strategy.h

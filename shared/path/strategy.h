@@ -1,0 +1,124 @@
+/* The weight of one bidirectional strategy among those of its set, from the densities of the path's vertices in both
+ * directions (Veach 1997, section 10.2; path/mis.h). */
+#ifndef TWINLIGHT_PATH_STRATEGY_H
+#define TWINLIGHT_PATH_STRATEGY_H
+
+#include "path/bd_state.h"
+#include "path/mis.h"
+
+/* What only the connection knows. y_{s-1} and z_{t-1} are its ends. Densities are per area; of a light at infinity,
+ * per solid angle. Unused ones (s or t too small) are not read. */
+typedef struct StrategyEnds {
+    float light_z1; /* of z_{t-1}, made from y_{s-1}; s = 0: of emitting there */
+    float light_z2; /* of z_{t-2}, made from z_{t-1} */
+    float camera_y1; /* of y_{s-1}, made from z_{t-1} */
+    float camera_y2; /* of y_{s-2}, made from y_{s-1} */
+    float own_y0; /* s = 1: of emitting from the point drawn */
+    float connect; /* density of drawing the path's point on the light for its neighbour, over that of emitting there */
+    bool hittable; /* paths can meet the light */
+} StrategyEnds;
+
+/* Where the densities of an item are: those of y_0 ... and z_1 ..., each word at stride. Stored in full, a vertex has
+ * DENSITY_WORDS words. Compact, it has one: only the ratio of both densities counts, but for the last two vertices of a
+ * side, whose density as the other side makes them is the connection's to know. */
+typedef struct DensityView {
+    __global const uint *light, *camera;
+    uint stride, t;
+    uint light_delta, camera_delta; /* bit i: the vertex scattered by a delta lobe */
+    bool compact;
+    uint light_end, camera_end; /* compact: y and z of this index on have their own density, those before the ratio */
+} DensityView;
+
+/* Density of vertex i as its side makes it and as the other side does, both known but for a factor that they share. */
+SHARED_FUNCTION float density_own(const DensityView *view, uint side, uint i)
+{
+    __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
+    uint index = side == SIDE_LIGHT ? i : i - 1u;
+    if (!view->compact)
+        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->t);
+    uint end = side == SIDE_LIGHT ? view->light_end : view->camera_end;
+    return i >= end ? state_load_float(words, view->stride, index, view->t) : 1.0f;
+}
+
+SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
+{
+    __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
+    uint index = side == SIDE_LIGHT ? i : i - 1u;
+    return state_load_float(words, view->stride, view->compact ? index : index * DENSITY_WORDS + DENSITY_OTHER,
+                            view->t);
+}
+
+/* What a path's densities say of the strategies that could have made it. */
+typedef struct StrategyWeights {
+    float own; /* the weight of the one that did */
+    float plain; /* the weights of path tracing's, s <= 1, together */
+} StrategyWeights;
+
+/* The strategy with s vertices from the light takes part. *plain: the sum of those of path tracing. */
+SHARED_FUNCTION void strategy_sum_take(MisSum *sum, Scaled *plain, uint s, float connect)
+{
+    Scaled part = mis_sum_take(sum, scaled_from(s == 1u ? connect : 1.0f));
+    if (s < 2u)
+        *plain = scaled_add(*plain, part);
+}
+
+/* Whether an edge between vertex i and vertex i - 1 (0: the side's end, which is never a delta) can be a connection. */
+SHARED_FUNCTION bool edge_connectable(uint delta, uint i)
+{
+    uint ends = (1u << i) | (i > 1u ? 1u << (i - 1u) : 0u);
+    return (delta & ends) == 0u;
+}
+
+/* Adds the strategies with more vertices from the light than s: t' = t - 1 ... 1. */
+SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, Scaled *plain, uint set, uint s, uint t, const DensityView *view,
+                                         const StrategyEnds *ends)
+{
+    uint k = s + t - 1u;
+    for (uint i = t - 1u; i >= 1u; --i) {
+        float light = i == t - 1u ? ends->light_z1 : i == t - 2u ? ends->light_z2 : density_other(view, SIDE_CAMERA, i);
+        mis_sum_step(sum, light, density_own(view, SIDE_CAMERA, i));
+        uint other = k - i + 1u;
+        if (strategy_taken(set, other, k) && edge_connectable(view->camera_delta, i))
+            strategy_sum_take(sum, plain, other, ends->connect);
+    }
+}
+
+/* Adds those with fewer: s' = s - 1 ... 0. */
+SHARED_FUNCTION void strategy_sum_light(MisSum *sum, Scaled *plain, uint set, uint s, uint t, const DensityView *view,
+                                        const StrategyEnds *ends)
+{
+    uint k = s + t - 1u;
+    for (uint i = s; i-- > 0u;) {
+        float camera = i == s - 1u   ? ends->camera_y1
+                       : i + 2u == s ? ends->camera_y2
+                                     : density_other(view, SIDE_LIGHT, i);
+        float light = s == 1u ? ends->own_y0 : density_own(view, SIDE_LIGHT, i);
+        mis_sum_step(sum, camera, light);
+        bool possible = i > 0u ? edge_connectable(view->light_delta, i) : ends->hittable;
+        if (strategy_taken(set, i, k) && possible)
+            strategy_sum_take(sum, plain, i, ends->connect);
+    }
+}
+
+/* Weights of the strategy (s, t), t >= 1. `exponent`: 1 for the balance heuristic, 2 for the power heuristic. */
+SHARED_FUNCTION StrategyWeights strategy_weights(uint set, uint exponent, uint s, uint t, const DensityView *view,
+                                                 const StrategyEnds *ends)
+{
+    MisSum sum = mis_sum_begin(exponent);
+    Scaled factor = scaled_from(s == 1u ? ends->connect : 1.0f), plain = scaled_zero();
+    DensityView path = *view;
+    /* By whatever lobe the walks went on from the ends, the connection is none of them. */
+    path.camera_delta &= (1u << (t - 1u)) - 1u;
+    path.light_delta &= s > 0u ? (1u << (s - 1u)) - 1u : 0u;
+    strategy_sum_camera(&sum, &plain, set, s, t, &path, ends);
+    mis_sum_turn(&sum);
+    strategy_sum_light(&sum, &plain, set, s, t, &path, ends);
+    if (s < 2u)
+        plain = scaled_add(plain, mis_sum_power(&sum, factor));
+    StrategyWeights weights;
+    weights.own = mis_sum_weight(&sum, factor);
+    weights.plain = mis_sum_part(&sum, factor, plain);
+    return weights;
+}
+
+#endif

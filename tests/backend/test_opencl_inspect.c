@@ -1,0 +1,145 @@
+/* The whole state of every path, step by step: what the device holds is what the CPU holds, and --verify sees when it is
+ * not. */
+#include "backend/test_opencl.h"
+#include "support/verify_fixture.h"
+
+#include "backend_ocl.h"
+#include "layout/state.h"
+
+#include <string.h>
+
+static const atomic_int NEVER = 0;
+
+/* On the CPU and on a device. */
+static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyPair *pair)
+{
+    RenderSetup setups[2] = {setup, setup};
+    setups[1].backend = device;
+    verify_pair_open(setups, pair);
+}
+
+/* Scenes that together have every shape, material, light and texture; batches smaller and larger than verify's blocks,
+ * and one that is no multiple of a work-group. */
+START_TEST(test_state_is_the_same)
+{
+    const struct {
+        const char *text;
+        uint batch;
+        const Integrator *integrator;
+        int depth;
+        uint items;
+    } cases[] = {{OPENCL_TEST_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 1000, integrator_pt(), 7, 20000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_ibpt(), 5, 3000},
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000}};
+    if (!test_device_promises())
+        return;
+    RenderSetup setup = {.text = cases[_i].text,
+                         .max_depth = cases[_i].depth,
+                         .seed = 11,
+                         .batch = cases[_i].batch,
+                         .integrator = cases[_i].integrator};
+    Error error = {0};
+    VerifyReport report;
+    VerifyPair pair;
+    pair_open(setup, backend_ocl(), &pair);
+    ck_assert_msg(verify_run(pair.sides, &pair.frame, &pair.list, cases[_i].items, &NEVER, &report, &error), "%s",
+                  error.message);
+    ck_assert_uint_eq(report.items, cases[_i].items);
+    ck_assert_uint_gt(report.prefixes, 9);
+    ck_assert_uint_le(report.prefixes, pair.list.count);
+    verify_pair_close(&pair);
+}
+END_TEST
+
+typedef struct SplatSum {
+    uint items;
+    uint64_t sum;
+} SplatSum;
+
+static void splat_sum(void *context, const uint *splats, uint count, uint stride)
+{
+    SplatSum *sum = context;
+    for (uint field = 0; field < SPLAT_WORDS; ++field)
+        for (uint t = 0; t < count; ++t)
+            sum->sum += (uint64_t)splats[(size_t)field * stride + t] * (field + 1);
+    sum->items += count;
+}
+
+static void inspect_sum(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride)
+{
+    (void)first;
+    if (buffer == BUFFER_SPLATS)
+        splat_sum(context, words, count, stride);
+}
+
+/* What inspect hands over is what run puts into the film, for a pass that begins anywhere. */
+START_TEST(test_inspect_is_run)
+{
+    RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 5, .batch = 100, .threads = 1};
+    SplatSum run = {0}, inspected = {0};
+    BackendStatistics before, after;
+    Error error = {0};
+    VerifyPair pair;
+    pair_open(setup, backend_ocl(), &pair);
+    Backend *device = pair.sides[1].backend;
+    pair.frame.first_item = 123;
+    pair.frame.item_count = 357;
+    ck_assert(backend_ocl()->run(device, &pair.frame, &pair.list, &(SplatSink){.splats = splat_sum, .context = &run},
+                                 &NEVER, NULL, &error));
+    backend_ocl()->statistics(device, &before);
+    ck_assert(backend_ocl()->inspect(device, &pair.frame, &pair.list, inspect_sum, &inspected, &error));
+    backend_ocl()->statistics(device, &after);
+    ck_assert_uint_eq(run.items, 357);
+    ck_assert_uint_eq(inspected.items, 357);
+    ck_assert_uint_eq(run.sum, inspected.sum);
+    ck_assert_uint_eq(before.closest_rays, after.closest_rays); /* inspecting is not rendering */
+    verify_pair_close(&pair);
+}
+END_TEST
+
+/* A device that gets one bit of one word wrong, at an item of the second block, from the first closest hits on. */
+START_TEST(test_fault_is_named)
+{
+    RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 3};
+    const Fault fault = {.kind = STEP_TRACE_CLOSEST, .buffer = BUFFER_HITS, .field = HIT_U, .item = 9000};
+    BackendInterface faulty = fault_backend(backend_ocl(), &fault);
+    Error error = {0};
+    VerifyReport report;
+    VerifyPair pair;
+    if (!test_device_promises())
+        return;
+    pair_open(setup, &faulty, &pair);
+    ck_assert(!verify_run(pair.sides, &pair.frame, &pair.list, 10000, &NEVER, &report, &error));
+    ck_assert_msg(strstr(error.message, "closest hits (segment 1), item 9000: hit u is"), "%s", error.message);
+    ck_assert_uint_eq(report.items, 8192);
+    verify_pair_close(&pair);
+}
+END_TEST
+
+/* A batch that cannot be launched is an error, not a difference. */
+START_TEST(test_failure)
+{
+    RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 3, .batch = 1024};
+    Error error = {0};
+    VerifyReport report;
+    VerifyPair pair;
+    setenv("TWINLIGHT_TEST_FAIL_BATCH", "5", 1);
+    pair_open(setup, backend_ocl(), &pair);
+    ck_assert(!verify_run(pair.sides, &pair.frame, &pair.list, 5000, &NEVER, &report, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "CL_OUT_OF_RESOURCES"));
+    verify_pair_close(&pair);
+}
+END_TEST
+
+TCase *opencl_inspect_tests(void)
+{
+    TCase *inspect = tcase_create("inspect");
+    tcase_set_timeout(inspect, 120);
+    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 5);
+    tcase_add_test(inspect, test_inspect_is_run);
+    tcase_add_test(inspect, test_fault_is_named);
+    tcase_add_test(inspect, test_failure);
+    return inspect;
+}

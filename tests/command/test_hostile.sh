@@ -1,0 +1,91 @@
+#!/bin/sh
+# Large scene files that hold nothing good, read in bounded memory: 8 MiB each, and with TWINLIGHT_TEST_EFFORT (as in
+# `make check-long`) 1 GiB each, which needs as much room in TMPDIR. What is refused at a limit takes no more memory the
+# larger the file is; numbers, of which a list may have as many as it likes, take twice their file and what growing
+# leaves over.
+set -u
+
+# shellcheck source=tests/support/cli.sh
+. "${srcdir:-.}/tests/support/cli.sh"
+
+if [ -n "${TWINLIGHT_TEST_EFFORT-}" ]; then mebibytes=1024; else mebibytes=8; fi
+bytes=$((mebibytes * 1048576))
+
+# within KIB COMMAND...: with so much address space.
+within() {
+    # shellcheck disable=SC3045 # dash and bash have it
+    (ulimit -v "$1" && shift && exec "$@")
+}
+
+# Programs, libraries and what the reader's limits allow. Sanitizers reserve terabytes: there messages alone are checked.
+fixed=524288
+within $fixed "$program" --version >out 2>&1 || fixed=unlimited
+
+# refused TEXT [KIB]: hostile.pbrt, with so much memory beyond what any scene may take.
+refused() {
+    memory=$fixed
+    [ "$fixed" = unlimited ] || memory=$((fixed + ${2-0}))
+    within "$memory" "$program" info hostile.pbrt >out 2>err
+    [ $? -eq 1 ] && grep -qF "hostile.pbrt:$1" err
+    result "$1" $?
+}
+
+# A file's worth of copies of a text, each on a line of its own, or all on one.
+lines() {
+    yes "$1" | head -c $bytes
+}
+
+line() {
+    yes "$1" | tr '\n' ' ' | head -c $bytes
+}
+
+# A file's worth of one character, as tr has it.
+characters() {
+    head -c $bytes /dev/zero | tr '\0' "$1"
+}
+
+# ---- refused at a limit -------------------------------------------------------------------------------------------
+
+{ echo WorldBegin && lines AttributeBegin; } >hostile.pbrt
+refused '65538:1: error: AttributeBegin nested more than 65536 deep'
+{ echo WorldBegin && line AttributeBegin; } >hostile.pbrt
+refused '2:983041: error: AttributeBegin nested more than 65536 deep'
+{ echo WorldBegin && lines 'ObjectBegin "a"'; } >hostile.pbrt
+refused '3:1: error: ObjectBegin inside an object definition'
+{ echo WorldBegin && line '['; } >hostile.pbrt
+refused '2:1: error: expected a directive, found ['
+{ echo 'WorldBegin Shape "sphere"' && lines '"float a" 1'; } >hostile.pbrt
+refused '1026:1: error: more than 1024 parameters in one directive'
+{ echo 'WorldBegin Shape "sphere" "string a" [' && line '""'; } >hostile.pbrt
+refused '2:3073: error: more than 1024 strings in one directive'
+{ echo WorldBegin && lines 'Attribute "shape" "float a" 1'; } >hostile.pbrt
+refused '1026:1: error: more than 1024 parameters of Attribute directives in force'
+{ echo WorldBegin && seq -f 'CoordinateSystem "%.0f"' $((mebibytes * 40000)); } >hostile.pbrt
+refused '65537:1: error: more than 65536 coordinate systems'
+echo >empty.inc
+{ echo WorldBegin && lines 'Include "empty.inc"'; } >hostile.pbrt
+refused '65537:9: error: more than 65536 files included'
+
+# ---- one thing without end ----------------------------------------------------------------------------------------
+
+characters a >hostile.pbrt
+refused '1:1: error: a word of more than 65536 characters'
+characters '\0' >hostile.pbrt
+refused '1:1: error: a word of more than 65536 characters'
+{ printf '"' && characters a; } >hostile.pbrt
+refused '1:1: error: a string of more than 65536 characters'
+{ printf '#' && characters a; } >hostile.pbrt
+refused "1:$((bytes + 2)): error: the file ends before WorldBegin"
+characters ' ' >hostile.pbrt
+refused "1:$((bytes + 1)): error: the file ends before WorldBegin"
+characters '\n' >hostile.pbrt
+refused "$((bytes + 1)):1: error: the file ends before WorldBegin"
+
+# ---- as long as the file ------------------------------------------------------------------------------------------
+
+{ echo 'WorldBegin Shape "trianglemesh" "point3 P" [' && line 1; } >hostile.pbrt
+refused "2:$((bytes + 1)): error: expected a value or ], found the end of the file" $((mebibytes * 4096))
+{ echo 'WorldBegin Shape "trianglemesh" "integer indices" [' && line 1; } >hostile.pbrt
+refused "2:$((bytes + 1)): error: expected a value or ], found the end of the file" $((mebibytes * 4096))
+
+checks_end

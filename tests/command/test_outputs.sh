@@ -1,0 +1,271 @@
+#!/bin/sh
+# What is rendered comes to disk whatever happens, and nothing else is overwritten: memory, signals, saves that fail, files
+# that dead processes left, names that lead to the same file. Runs as tests/command/test_cli.sh does.
+set -u
+
+# shellcheck source=tests/support/cli.sh
+. "${srcdir:-.}/tests/support/cli.sh"
+
+milliseconds() {
+    echo $(($(date +%s%N) / 1000000))
+}
+
+# no_temporary WHAT
+no_temporary() {
+    [ -z "$(find . -name '*~')" ]
+    result "$1: a temporary file is left" $?
+}
+
+# ---- names of one file --------------------------------------------------------------------------------------------
+
+expect 1 'the statistics would overwrite the image: ./o.exr' render --stats=./o.exr -o o.exr "$scene"
+mkdir there
+ln -s there linked
+expect 1 'the statistics would overwrite the image' render --stats=linked/o.exr -o there/o.exr "$scene"
+expect 1 'the statistics would overwrite the image' render "--stats=$work/o.exr" -o o.exr "$scene"
+ln -s o.exr dangling.exr
+expect 1 'the statistics would overwrite the image' render --stats=dangling.exr -o o.exr "$scene"
+file_missing o.exr
+[ -L dangling.exr ]
+result 'a symbolic link is gone' $?
+
+# A symbolic link is written through, whether what it points to is there or not.
+for turn in first second; do
+    render -o dangling.exr "$scene"
+    file_exists o.exr
+    [ -L dangling.exr ]
+    result "the $turn rendering replaced a symbolic link" $?
+done
+rm -f o.exr dangling.exr dangling.png
+
+# Files of the scene: its own, what it includes, textures.
+render -o texture.exr "$scene"
+cp texture.png kept.png
+printf 'Include "part.exr"\n' >whole.pbrt
+printf '%s\n' 'WorldBegin Texture "t" "spectrum" "imagemap" "string filename" "texture.png"' \
+    'Material "diffuse" "texture reflectance" "t" LightSource "infinite" Shape "sphere"' >part.exr
+cp part.exr kept.pbrt
+expect 1 'the PNG would overwrite a file that the scene reads: texture.png' \
+    render --resolution=4x4 --samples=1 -o texture.exr whole.pbrt
+expect 1 'the image would overwrite a file that the scene reads: part.exr' \
+    render --resolution=4x4 --samples=1 -o part.exr whole.pbrt
+expect 1 'the sheet would overwrite a file that the scene reads' \
+    pyramid --resolution=4x4 --samples=1 --max-depth=2 -o ./texture.png whole.pbrt
+cmp -s texture.png kept.png && cmp -s part.exr kept.pbrt
+result 'a file of the scene was overwritten' $?
+# shellcheck disable=SC2094 # that is the test
+"$program" render --quiet --resolution=4x4 --samples=1 -o streams.exr "$scene" >out 2>streams.exr
+[ $? -eq 1 ]
+result 'the image overwrites the messages' $?
+rm -f streams.exr
+
+render --seed=2 -o a.exr "$scene"
+render --seed=3 -o b.exr "$scene"
+cp a.exr kept.exr
+ln a.exr hard.exr
+expect 1 'the error image would overwrite the image' compare -o ./a.exr a.exr b.exr
+expect 1 'the error image would overwrite the image' compare -o hard.exr a.exr b.exr
+expect 1 'the error image would overwrite the reference' compare -o b.exr a.exr b.exr
+expect 1 'the pictures side by side would overwrite the error image' compare -o c.png --side-by-side=./c.png a.exr b.exr
+cmp -s a.exr kept.exr
+result 'compare has overwritten an image' $?
+cp "$scene" bench.json
+expect 1 'the data would overwrite a scene' bench -o bench.html --times=1s bench.json
+cmp -s bench.json "$scene"
+result 'bench has overwritten a scene' $?
+
+# ---- strays -------------------------------------------------------------------------------------------------------
+
+: >a.exr.999999-0~
+: >a.exr.12-x~
+: >aa.exr.999999-0~
+: >held.exr.999999-0~
+flock held.exr.999999-0~ sleep 60 &
+holder=$!
+tries=0
+while flock -n held.exr.999999-0~ true && [ "$tries" -lt 100 ]; do
+    sleep 0.1
+    tries=$((tries + 1))
+done
+render -o a.exr "$scene"
+render -o held.exr "$scene"
+file_missing a.exr.999999-0~
+[ -e a.exr.12-x~ ] && [ -e aa.exr.999999-0~ ]
+result 'a file that is no stray of this name is removed' $?
+[ -e held.exr.999999-0~ ]
+result 'the temporary file of a living process is removed' $?
+kill $holder
+wait $holder 2>/dev/null
+rm -f ./*~
+
+# ---- memory -------------------------------------------------------------------------------------------------------
+
+# Sanitizers reserve terabytes of address space.
+# shellcheck disable=SC3045 # dash and bash have it
+if (ulimit -v 921600 && "$program" --version) >out 2>&1; then
+    (
+        ulimit -v 921600
+        "$program" render --quiet --integrator=pt --resolution=3000x2000 --samples=1 --threads=2 -o large.exr "$scene"
+    ) >out 2>err
+    result '3000 x 2000 pixels in 900 MB: exit status' $?
+    file_exists large.exr
+    file_exists large.png
+    rm -f large.*
+else
+    echo 'skipped: no limit of address space'
+fi
+
+# ---- stopping -----------------------------------------------------------------------------------------------------
+
+# begin ARGUMENT...: a long rendering in the background, process number in $process.
+begin() {
+    rm -f s.exr s.png s.json
+    $with_signals "$program" render --time=180s --threads=2 --stats=s.json -o s.exr "$@" >out 2>err &
+    process=$!
+}
+
+# ended WHAT MILLISECONDS: the rendering ends with a picture and status 130, so long after `sent`.
+ended() {
+    wait $process
+    status=$?
+    took=$(($(milliseconds) - sent))
+    [ $status -eq 130 ]
+    result "$1: exit status $status" $?
+    [ $took -le "$2" ]
+    result "$1: it took $took ms" $?
+    file_exists s.exr
+    file_exists s.png
+    grep -q '"stopped": true' s.json
+    result "$1: the statistics do not say so" $?
+    no_temporary "$1"
+}
+
+# A scene whose first sample of every pixel takes minutes: mirrors, and paths without end. Writing takes a moment, too.
+slow=${scene%/*}/glossy.pbrt
+for integrator in pt bdpt ibpt mmlt; do
+    begin --quiet --integrator=$integrator --resolution=1000x4000 --max-depth=31 "$slow"
+    sleep 4
+    sent=$(milliseconds)
+    kill -s TERM $process
+    ended "SIGTERM during the first sample, $integrator" 9000
+    grep -q 'warning: [0-9]* of 4000000 pixels have no sample' err
+    result "$integrator: no word of pixels without samples" $?
+done
+
+# `timeout` signals its child and then its group: two signals are one. The last two are of writes that cannot be done.
+for signal in INT TERM HUP XFSZ PIPE; do
+    begin --quiet --resolution=32x32 "$scene"
+    sleep 1
+    sent=$(milliseconds)
+    kill -s "$signal" $process
+    kill -s TERM $process
+    ended "SIG$signal and SIGTERM at once" 20000
+done
+
+# A stop before anything is rendered, which a list of chains announces, replaces no picture.
+begin --quiet --threads=1 --resolution=400x400 --max-depth=31 --dump-bad=bad.json "$slow"
+cp a.exr s.exr
+until [ -n "$(find . -name 'bad.json.*~')" ]; do
+    kill -s 0 $process || break
+done
+kill -s TERM $process
+wait $process
+[ $? -eq 130 ]
+result 'a stop before the first sample: exit status' $?
+cmp -s a.exr s.exr
+result 'an empty picture has replaced another' $?
+grep -q 'warning: s.exr is left as it was' err
+result 'no word of a picture that is left as it was' $?
+
+# Nobody reads the messages any more: the files are there, statistics too.
+("$program" render --time=1s --resolution=32x32 --stats=s.json -o s.exr "$scene" 2>&1 >/dev/null; echo $? >status) | true
+wait_for status
+[ "$(cat status)" -eq 0 ]
+result "messages that nobody reads: exit status $(cat status)" $?
+file_exists s.exr
+file_exists s.json
+
+# An inherited ignored signal stays ignored.
+(
+    trap '' INT HUP
+    exec "$program" render --quiet --resolution=32x32 --time=3s --stats=s.json -o s.exr "$scene"
+) >out 2>err &
+process=$!
+sleep 1
+kill -s INT $process
+kill -s HUP $process
+wait $process
+result 'ignored signals end a rendering' $?
+grep -q '"stopped": false' s.json
+result 'ignored signals end a rendering' $?
+
+# ---- writing ------------------------------------------------------------------------------------------------------
+
+# A pipe whose reader waits makes writing take long.
+mkfifo late.png
+{ sleep 3 && cat >/dev/null; } <late.png &
+reader=$!
+"$program" render --resolution=400x400 --samples=1 --threads=2 --integrator=pt --png=late.png -o late.exr "$scene" >out 2>err
+result 'a PNG to a pipe: exit status' $?
+wait $reader
+grep -q '^writing late.png' err
+result 'a long write does not say so' $?
+
+# A second signal while something is written ends the program, and leaves no temporary file: here that of --dump-bad, which
+# is open all the time, as the picture's would be.
+# shellcheck disable=SC2217 # it only has to keep the pipe open
+sleep 60 <late.png &
+reader=$!
+begin --quiet --resolution=400x400 --png=late.png --dump-bad=bad.json "$scene"
+sleep 2
+[ -n "$(find . -name 'bad.json.*~')" ]
+result 'there is no temporary file to be left' $?
+kill -s TERM $process
+wait_for s.exr
+sleep 2
+kill -s TERM $process
+wait $process
+[ $? -eq 130 ]
+result 'a second signal: exit status' $?
+no_temporary 'a second signal'
+kill $reader
+wait $reader 2>/dev/null
+rm -f late.* bad.json
+
+# ---- saves that fail ----------------------------------------------------------------------------------------------
+
+# The folder is not there for a while.
+mkdir disk
+$with_signals "$program" render --time=180s --threads=2 --resolution=32x32 --save-every=0.2s --stats=s.json -o disk/s.exr \
+    "$scene" >out 2>err &
+process=$!
+wait_for disk/s.exr
+mv disk gone
+sleep 1
+mv gone disk
+sleep 1
+rm -f disk/s.exr
+wait_for disk/s.exr
+kill -s TERM $process
+wait $process
+[ $? -eq 130 ]
+result 'saves that fail for a while: exit status' $?
+file_exists disk/s.exr
+[ "$(grep -c 'warning: cannot write disk/s.exr.*saving is tried again' err)" -eq 1 ]
+result 'saves that fail: not one warning' $?
+grep -q 'could be saved again' err
+result 'nothing says that saving works again' $?
+
+# The last one is an error, and what was there before stays.
+"$program" render --quiet --time=2s --threads=2 --resolution=32x32 -o disk/t.exr "$scene" >out 2>err &
+process=$!
+sleep 1
+cp a.exr disk/t.exr
+mv disk gone
+wait $process
+[ $? -eq 1 ]
+result 'the last save fails: exit status' $?
+cmp -s a.exr gone/t.exr
+result 'a save that failed has changed the old file' $?
+
+checks_end

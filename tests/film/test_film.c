@@ -1,0 +1,581 @@
+#include "support/test_util.h"
+
+#include "camera/film_sum.h"
+#include "film/film.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+TCase *film_output_tcase(void);
+TCase *film_files_tcase(void);
+
+static const int CROP_WHOLE[4] = {0, 0, 4, 3};
+
+static Film film_make(int width, int height, const int *crop)
+{
+    Film film;
+    Error error = {0};
+    ck_assert_msg(film_init(&film, width, height, crop, &error), "%s", error.message);
+    return film;
+}
+
+static void splat_set(uint *splats, uint stride, uint t, uint pixel, float r, float g, float b)
+{
+    state_store(splats, stride, SPLAT_PIXEL, t, pixel);
+    state_store_vec3(splats, stride, SPLAT_COLOR, t, vec3(r, g, b));
+}
+
+static void film_add_one(Film *film, uint pixel, float r, float g, float b)
+{
+    uint splat[SPLAT_WORDS];
+    splat_set(splat, 1, 0, pixel, r, g, b);
+    film_add_splats(film, splat, 1, 1);
+}
+
+/* 0.3 added 2^30 times: in float32 the sum stops at 8,388,608. A merge with a copy doubles both sum and count. */
+START_TEST(test_billion_additions_exact)
+{
+    const int crop[4] = {0, 0, 1, 1};
+    Error error;
+    Film film = film_make(1, 1, crop), copy = film_make(1, 1, crop);
+    int64_t unit = (int64_t)floor((double)0.3f * 0x1p30 + 0.5);
+    for (int i = 0; i < 1 << 14; ++i)
+        film_add_one(&film, 0, 0.3f, -0.3f, 0.0f);
+    for (int i = 14; i < 30; ++i) {
+        for (int c = 0; c < 3; ++c)
+            copy.sums[c] = film.sums[c];
+        copy.counts[0] = film.counts[0];
+        ck_assert(film_merge(&film, &copy, &error));
+    }
+    ck_assert_int_eq(film.sums[0], unit << 30);
+    ck_assert_int_eq(film.sums[1], -(unit << 30));
+    ck_assert_int_eq(film.sums[2], 0);
+    ck_assert_uint_eq(film.counts[0], 1u << 30);
+    ck_assert_uint_eq(film.saturated, 0);
+    float rgb[3];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_double_eq_tol((double)rgb[0], (double)0.3f, 0x1p-31);
+    film_destroy(&film);
+    film_destroy(&copy);
+}
+END_TEST
+
+/* The long test makes them, 10^9 one by one, some of them at once. */
+START_TEST(test_billion_additions_made)
+{
+    enum { BATCH = 4000, BATCHES = 250000 };
+    static uint splats[SPLAT_WORDS * BATCH];
+    const int crop[4] = {0, 0, 1, 1};
+    if (test_effort() == 1)
+        return;
+    Film film = film_make(1, 1, crop);
+    for (uint t = 0; t < BATCH; ++t)
+        splat_set(splats, BATCH, t, 0, 0.3f, -0.3f, 1e-3f);
+    for (int i = 0; i < BATCHES; ++i)
+        film_add_splats(&film, splats, BATCH, BATCH);
+    ck_assert_int_eq(film.sums[0], 1000000000 * (int64_t)floor((double)0.3f * 0x1p30 + 0.5));
+    ck_assert_int_eq(film.sums[1], -film.sums[0]);
+    ck_assert_int_eq(film.sums[2], 1000000000 * (int64_t)floor((double)1e-3f * 0x1p30 + 0.5));
+    ck_assert_uint_eq(film.counts[0], 1000000000);
+    film_destroy(&film);
+}
+END_TEST
+
+#define SPLATS 40000u
+#define THREADS 4u
+
+typedef struct ThreadJob {
+    Film *film;
+    const uint *splats;
+    uint count;
+} ThreadJob;
+
+static void *thread_add(void *argument)
+{
+    const ThreadJob *job = argument;
+    film_add_splats(job->film, job->splats, job->count, SPLATS);
+    return NULL;
+}
+
+/* Splats over twelve orders of magnitude and both signs, from a linear congruential generator. */
+static void splats_fill(uint *splats)
+{
+    uint state = 1;
+    for (uint t = 0; t < SPLATS; ++t) {
+        float rgb[3];
+        for (int c = 0; c < 3; ++c) {
+            state = state * 1664525u + 1013904223u;
+            rgb[c] = ldexpf((float)(int)state / 0x1p31f, (int)(state >> 3) % 40 - 30);
+        }
+        splat_set(splats, SPLATS, t, (state >> 7) % 13 == 12 ? NONE : (state >> 7) % 13, rgb[0], rgb[1], rgb[2]);
+    }
+}
+
+/* Item t of the shuffled buffer is item 12347 t mod SPLATS of the other (the two are coprime). */
+static void splats_shuffle(const uint *splats, uint *shuffled)
+{
+    for (uint t = 0; t < SPLATS; ++t)
+        for (uint f = 0; f < SPLAT_WORDS; ++f)
+            state_store(shuffled, SPLATS, f, t, state_load(splats, SPLATS, f, (uint)((uint64_t)t * 12347 % SPLATS)));
+}
+
+static void films_compare(const Film *a, const Film *b)
+{
+    ck_assert_mem_eq((const void *)a->sums, (const void *)b->sums, 12 * 3 * sizeof *a->sums);
+    ck_assert_mem_eq((const void *)a->counts, (const void *)b->counts, 12 * sizeof *a->counts);
+    ck_assert_uint_eq(a->saturated, b->saturated);
+}
+
+START_TEST(test_order_does_not_matter)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats), *shuffled = malloc(SPLATS * SPLAT_WORDS * 4);
+    splats_fill(splats);
+    splats_shuffle(splats, shuffled);
+    Film one = film_make(4, 3, CROP_WHOLE), two = film_make(4, 3, CROP_WHOLE), many = film_make(4, 3, CROP_WHOLE);
+    film_add_splats(&one, splats, SPLATS, SPLATS);
+    film_add_splats(&two, shuffled, SPLATS, SPLATS);
+    pthread_t threads[THREADS];
+    ThreadJob jobs[THREADS];
+    for (uint i = 0; i < THREADS; ++i) {
+        jobs[i] = (ThreadJob){&many, shuffled + i * (SPLATS / THREADS), SPLATS / THREADS};
+        pthread_create(&threads[i], NULL, thread_add, &jobs[i]);
+    }
+    for (uint i = 0; i < THREADS; ++i)
+        pthread_join(threads[i], NULL);
+    films_compare(&one, &two);
+    films_compare(&one, &many);
+    ck_assert_int_ne(one.sums[0], 0);
+    film_destroy(&one);
+    film_destroy(&two);
+    film_destroy(&many);
+    free(splats);
+    free(shuffled);
+}
+END_TEST
+
+START_TEST(test_merge_equals_one_film)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats);
+    Error error;
+    splats_fill(splats);
+    Film whole = film_make(4, 3, CROP_WHOLE), first = film_make(4, 3, CROP_WHOLE), rest = film_make(4, 3, CROP_WHOLE);
+    film_add_splats(&whole, splats, SPLATS, SPLATS);
+    film_add_splats(&first, splats, 12345, SPLATS);
+    film_add_splats(&rest, splats + 12345, SPLATS - 12345, SPLATS);
+    ck_assert(film_merge(&first, &rest, &error));
+    films_compare(&whole, &first);
+    film_destroy(&whole);
+    film_destroy(&first);
+    film_destroy(&rest);
+    free(splats);
+}
+END_TEST
+
+/* Splats of rare paths are in the sums of all, and by themselves; other films like this one have no such sums, and merging
+ * leaves them alone. */
+START_TEST(test_rare)
+{
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE), other;
+    ck_assert(film_light_reserve(&film, &error) && film_rare_reserve(&film, &error));
+    ck_assert(film_init_like(&other, &film, &error));
+    ck_assert_ptr_null(other.rare_sums);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_RARE, 8.0f, 8.0f, 8.0f);
+    film_add_one(&film, NONE, 8.0f, 8.0f, 8.0f);
+    ck_assert_int_eq(film.light_sums[15], (int64_t)3 << 30);
+    ck_assert_int_eq(film.sums[15], (int64_t)8 << 30);
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    ck_assert_int_eq(film.rare_sums[16], (int64_t)11 << 30);
+    ck_assert_uint_eq(film.counts[5], 1);
+    film_add_one(&other, 5 | SPLAT_RARE, 1.0f, 1.0f, 1.0f);
+    ck_assert_int_eq(other.sums[15], (int64_t)1 << 30);
+    ck_assert(film_merge(&film, &other, &error) && film_merge(&other, &film, &error));
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    film_clear(&film);
+    ck_assert_int_eq(film.rare_sums[15], 0);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
+/* Splats that name their path's number of segments are in the sums of all, and once more by themselves: those from the light,
+ * and in a film that has rare ones its own and the rare ones, too. */
+START_TEST(test_depths)
+{
+    const uint four = splat_depth(3, 4), five = splat_depth(3, 5);
+    const int whole[4] = {0, 0, 8192, 4096};
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE), other, huge = {.width = 8192, .height = 4096};
+    ck_assert_uint_eq(splat_depth(0, 4), 0);
+    ck_assert(film_light_reserve(&film, &error) && film_init_like(&other, &film, &error));
+    ck_assert(film_rare_reserve(&film, &error) && film_depths_reserve(&film, 5, &error));
+    ck_assert(film_depths_reserve(&other, 5, &error));
+    ck_assert_uint_eq(film.depth_kinds, 3);
+    ck_assert_uint_eq(other.depth_kinds, 1);
+    ck_assert_uint_eq(film_sum_words(&film), 117 + 3 * 3 * 36);
+    ck_assert_uint_eq(film_sum_words(&other), 81 + 3 * 36);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | four, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE | five, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_RARE | five, 8.0f, 8.0f, 8.0f);
+    film_add_one(&film, 5, 16.0f, 16.0f, 16.0f);
+    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | splat_depth(3, 6), 32.0f, 0.0f, 0.0f);
+    ck_assert_int_eq(film.light_sums[15], (int64_t)35 << 30);
+    ck_assert_int_eq(film.sums[15], (int64_t)24 << 30);
+    ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
+    const int64_t expected[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 8, 10}}; /* 3, 4, 5 segments; light, own, rare */
+    for (uint segments = 3; segments <= 5; ++segments)
+        for (uint kind = 0; kind < 3; ++kind)
+            ck_assert_int_eq(film_depth_sums(&film, segments, kind)[15], expected[segments - 3][kind] << 30);
+    ck_assert(film_merge(&other, &film, &error) && film_merge(&other, &film, &error));
+    ck_assert_int_eq(film_depth_sums(&other, 5, FILM_KIND_LIGHT)[15], (int64_t)4 << 30);
+    film_clear(&other);
+    ck_assert_int_eq(film_depth_sums(&other, 5, FILM_KIND_LIGHT)[15], 0);
+    memcpy(huge.crop, whole, sizeof whole);
+    ck_assert(!film_depths_reserve(&huge, 5, &error));
+    ck_assert_msg(strstr(error.message, "8192 x 4096") != NULL, "%s", error.message);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
+/* What a device keeps: 12 pixels of three sums, three counters, counts by twos, and the light's and the rare ones when there are
+ * any. */
+START_TEST(test_sums_of_a_device)
+{
+    ulong words[3 * 12 + 3 + 6 + 2 * 3 * 12] = {0};
+    Error error = {0};
+    Film film = film_make(4, 3, CROP_WHOLE);
+    ck_assert_uint_eq(film_sum_words(&film), 45);
+    ck_assert(film_light_reserve(&film, &error));
+    ck_assert_uint_eq(film_sum_words(&film), 81);
+    ck_assert(film_rare_reserve(&film, &error));
+    ck_assert_uint_eq(film_sum_words(&film), 117);
+    film_add_one(&film, 2, 1.0f, 2.0f, 3.0f);
+    film_add_one(&film, 2 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
+    words[3 * 2 + 1] = (ulong)-5;
+    words[36] = 7;
+    words[37] = 8;
+    words[38] = 9;
+    ((uint *)(words + 39))[2] = 4;
+    words[45 + 3 * 2 + 2] = 6;
+    words[81 + 3 * 2 + 1] = 8;
+    film_add_sums(&film, words);
+    ck_assert_int_eq(film.sums[6], 1 << 30);
+    ck_assert_int_eq(film.sums[7], ((int64_t)2 << 30) - 5);
+    ck_assert_int_eq(film.light_sums[8], (1 << 30) + 6);
+    ck_assert_int_eq(film.rare_sums[7], 8);
+    ck_assert_uint_eq(film.counts[2], 5);
+    ck_assert_uint_eq(film.saturated, 7);
+    ck_assert_uint_eq(film.not_finite, 9);
+    ck_assert_uint_eq(film.vanished, 8);
+    words[3 * 2 + 1] = (ulong)1 << 61;
+    film_add_sums(&film, words);
+    ck_assert_uint_eq(film_full_pixels(&film), 0);
+    film_add_sums(&film, words); /* the sum comes to 2^62 */
+    ck_assert_uint_eq(film_full_pixels(&film), 1);
+    for (int i = 0; i < 6; ++i) /* and would come to 2^63 twice */
+        film_add_sums(&film, words);
+    ck_assert_int_eq(film.sums[7], INT64_MAX);
+    film_destroy(&film);
+}
+END_TEST
+
+/* Halves go away from zero; the default unit is 2^-30. */
+START_TEST(test_rounding)
+{
+    const float values[] = {0x1p-31f, -0x1p-31f, 0x1.fffffep-32f, -0x1.fffffep-32f, 0x1.8p-30f, 1.0f, -0.0f, 1e-45f};
+    const int64_t expected[] = {1, -1, 0, 0, 2, 1 << 30, 0, 0};
+    for (int i = 0; i < 8; ++i) {
+        Film film = film_make(4, 3, CROP_WHOLE);
+        film_add_one(&film, 5, values[i], 0.0f, values[i]);
+        ck_assert_int_eq(film.sums[15], expected[i]);
+        ck_assert_int_eq(film.sums[17], expected[i]);
+        film_destroy(&film);
+    }
+}
+END_TEST
+
+/* Whole numbers against doubles, which are exact here: a float has 24 bits and the scale is a power of two. */
+static void units_compare(uint bits, int exponent)
+{
+    float value = bits_float(bits);
+    double exact = ldexp(fabs((double)value), -exponent), most = value < 0.0f ? 0x1p48 : 0x1p62;
+    bool clamped, more = exact > most;
+    ulong units = film_units(value, exponent, &clamped);
+    TEST_TRUE(clamped == more && units == (ulong)floor((more ? most : exact) + 0.5));
+}
+
+START_TEST(test_units_of_any_float)
+{
+    uint state = 1;
+    for (int exponent = -200; exponent <= 110; ++exponent) {
+        for (uint field = 0; field < 255; ++field) { /* around every power of two, and in between */
+            units_compare(field << 23, exponent);
+            units_compare(field << 23 | 1u, exponent);
+            units_compare(field << 23 | 0x7fffffu, exponent);
+            units_compare(field << 23 | 0x400000u | 0x80000000u, exponent);
+            state = state * 1664525u + 1013904223u;
+            units_compare(field << 23 | state >> 9, exponent);
+        }
+    }
+}
+END_TEST
+
+START_TEST(test_saturation)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    film_add_one(&film, 0, 1e30f, 1.0f, -FLOAT_MAX);
+    ck_assert_uint_eq(film.saturated, 1);
+    ck_assert_int_eq(film.sums[0], (int64_t)1 << 62);
+    ck_assert_int_eq(film.sums[1], 1 << 30);
+    ck_assert_int_eq(film.sums[2], -((int64_t)1 << 48));
+    film_add_one(&film, 1, 0x1p32f, 0.0f, 0.0f); /* 2^62 units, the largest that is not clamped */
+    ck_assert_uint_eq(film.saturated, 1);
+    film_destroy(&film);
+}
+END_TEST
+
+/* A sum that would leave 64 bits stays where it is, is read as 2^62 units, and its pixel counts as full. */
+START_TEST(test_full)
+{
+    Error error;
+    Film film = film_make(4, 3, CROP_WHOLE), other = film_make(4, 3, CROP_WHOLE);
+    float rgb[36];
+    for (int i = 0; i < 1 << 18; ++i)
+        film_add_one(&film, 1, 0x1p18f, -0x1p18f, 0x1p11f);
+    ck_assert_int_eq(film.sums[3], INT64_MAX);
+    ck_assert_int_eq(film.sums[4], -INT64_MAX);
+    ck_assert_int_eq(film.sums[5], (int64_t)1 << 59);
+    ck_assert_uint_eq(film_full_pixels(&film), 1);
+    film_add_one(&film, 1, -1.0f, 1.0f, 0.0f);
+    film_add_one(&other, 1, -1.0f, 1.0f, 0.0f);
+    ck_assert(film_merge(&film, &other, &error) && film_merge(&other, &film, &error));
+    for (int i = 0; i < 2; ++i) {
+        const Film *full = i == 0 ? &film : &other;
+        ck_assert_int_eq(full->sums[3], INT64_MAX);
+        ck_assert_int_eq(full->sums[4], -INT64_MAX);
+        film_resolve(full, 1.0f, rgb);
+        ck_assert_float_eq(rgb[3], (float)(0x1p32 / full->counts[1]));
+        ck_assert_float_eq(rgb[4], -rgb[3]);
+    }
+    ck_assert_int_eq(film_sum_shown(INT64_MIN), -((int64_t)1 << 62));
+    ck_assert_int_eq(film_sum_rounded(-0x1p61 - 512.0), -((int64_t)1 << 61) - 512);
+    ck_assert_int_eq(film_sum_rounded(-0x1p62), -INT64_MAX);
+    ck_assert_int_eq(film_sum_rounded(HUGE_VAL), INT64_MAX);
+    film_destroy(&film);
+    film_destroy(&other);
+}
+END_TEST
+
+/* Pixel i is 2^-i as bright as the first, and one contribution in five is a small negative one. */
+static void splats_fill_bright(uint *splats)
+{
+    uint state = 1;
+    for (uint t = 0; t < SPLATS; ++t) {
+        state = state * 1664525u + 1013904223u;
+        float value = (float)(state >> 8) / 0x1p24f * (t % 5 == 0 ? -0x1p-12f : ldexpf(1.0f, -(int)(t % 12)));
+        splat_set(splats, SPLATS, t, t % 12, value, value, value);
+    }
+}
+
+/* Sums that are full, that come to more than is read of them, and that stay below are read alike whatever the order. */
+START_TEST(test_order_of_full_sums)
+{
+    uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats), *shuffled = malloc(SPLATS * SPLAT_WORDS * 4);
+    Film films[4];
+    float rgb[4][36];
+    pthread_t threads[THREADS];
+    ThreadJob jobs[THREADS];
+    Error error;
+    splats_fill_bright(splats);
+    splats_shuffle(splats, shuffled);
+    for (int i = 0; i < 4; ++i) {
+        films[i] = film_make(4, 3, CROP_WHOLE);
+        films[i].quantum_exponent = -60;
+    }
+    film_add_splats(&films[0], splats, SPLATS, SPLATS);
+    film_add_splats(&films[1], shuffled, SPLATS, SPLATS);
+    for (uint i = 0; i < THREADS; ++i) {
+        jobs[i] = (ThreadJob){&films[2], shuffled + i * (SPLATS / THREADS), SPLATS / THREADS};
+        pthread_create(&threads[i], NULL, thread_add, &jobs[i]);
+    }
+    for (uint i = 0; i < THREADS; ++i)
+        pthread_join(threads[i], NULL);
+    for (uint first = 0; first < SPLATS; first += SPLATS / 8) {
+        Film part = film_make(4, 3, CROP_WHOLE);
+        part.quantum_exponent = -60;
+        film_add_splats(&part, splats + first, SPLATS / 8, SPLATS);
+        ck_assert(film_merge(&films[3], &part, &error));
+        film_destroy(&part);
+    }
+    for (int i = 0; i < 4; ++i) {
+        film_resolve(&films[i], 1.0f, rgb[i]);
+        ck_assert_mem_eq(rgb[0], rgb[i], sizeof rgb[0]);
+        ck_assert_uint_eq(film_full_pixels(&films[i]), 9);
+        ck_assert_float_ge(rgb[i][24], 0x1.fffp1f / (float)films[i].counts[8]);
+        film_destroy(&films[i]);
+    }
+    free(splats);
+    free(shuffled);
+}
+END_TEST
+
+/* What is less than half a unit in every channel is counted, and nothing that shows or is black. */
+START_TEST(test_vanished)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    film_add_one(&film, 1, 0x1p-32f, 0.0f, -1e-45f);
+    ck_assert_uint_eq(film.vanished, 1);
+    film_add_one(&film, 1, 0x1p-32f, 0x1p-31f, 0.0f);
+    film_add_one(&film, 1, 0.0f, -0.0f, 0.0f);
+    film_add_one(&film, 1, NAN, 0x1p-32f, 0.0f);
+    film_add_one(&film, 99, 0x1p-32f, 0.0f, 0.0f);
+    ck_assert_uint_eq(film.vanished, 1);
+    film_clear(&film);
+    ck_assert_uint_eq(film.vanished, 0);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_not_finite_counts_as_zero)
+{
+    Film film = film_make(4, 3, CROP_WHOLE);
+    float rgb[36];
+    film_add_one(&film, 7, NAN, 1.0f, 1.0f);
+    film_add_one(&film, 7, 1.0f, INFINITY, 1.0f);
+    film_add_one(&film, 7, 1.0f, 1.0f, -INFINITY);
+    film_add_one(&film, 7, 4.0f, 2.0f, 1.0f);
+    ck_assert_uint_eq(film.not_finite, 3);
+    ck_assert_uint_eq(film.counts[7], 4);
+    film_resolve(&film, 2.0f, rgb);
+    ck_assert_float_eq(rgb[21], 2.0f);
+    ck_assert_float_eq(rgb[22], 1.0f);
+    ck_assert_float_eq(rgb[23], 0.5f);
+    ck_assert_float_eq(rgb[0], 0.0f);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_crop)
+{
+    const int crop[4] = {1, 1, 3, 2};
+    Film film = film_make(4, 3, crop);
+    for (uint pixel = 0; pixel < 14; ++pixel)
+        film_add_one(&film, pixel, 1.0f + (float)pixel, 0.0f, 0.0f);
+    film_add_one(&film, NONE, 1.0f, 1.0f, 1.0f);
+    float rgb[6];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_float_eq(rgb[0], 6.0f);
+    ck_assert_float_eq(rgb[3], 7.0f);
+    ck_assert_uint_eq(film.counts[0] + film.counts[1], 2);
+    film_destroy(&film);
+}
+END_TEST
+
+/* The parts of a device's buffer (film_view_words) do not overlap, also with an odd number of pixels, and fit film_words. */
+START_TEST(test_buffer)
+{
+    static ulong words[1024];
+    for (uint pixels = 1; pixels < 10; ++pixels) {
+        FilmView view = {.depth_kinds = 3};
+        film_view_words(&view, words, pixels);
+        ck_assert_ptr_eq(view.sums, words);
+        ck_assert(view.saturated >= view.sums + 3 * pixels);
+        ck_assert(view.vanished > view.saturated && view.not_finite > view.vanished);
+        ck_assert((void *)view.counts >= (void *)(view.not_finite + 1));
+        ck_assert((void *)view.light_sums >= (void *)(view.counts + pixels));
+        ck_assert(view.rare_sums >= view.light_sums + 3 * pixels);
+        ck_assert(view.depth_sums >= view.rare_sums + 3 * pixels);
+        ck_assert_ptr_eq(view.depth_sums, words + film_words(pixels, 2));
+    }
+}
+END_TEST
+
+START_TEST(test_quantum)
+{
+    const double means[] = {1.0, 0.75, 1.5, 1e-40, 1e30, 0.0, -1.0, NAN, INFINITY};
+    const int expected[] = {-26, -27, -26, -159, 73, -30, -30, -30, -30};
+    Film film = film_make(4, 3, CROP_WHOLE);
+    for (int i = 0; i < 9; ++i) {
+        film_quantum_set(&film, means[i]);
+        ck_assert_int_eq(film.quantum_exponent, expected[i]);
+    }
+    film_quantum_set(&film, 1e30);
+    film_add_one(&film, 0, 1e30f, 3e30f, 1e10f);
+    float rgb[36];
+    film_resolve(&film, 1.0f, rgb);
+    ck_assert_float_eq_tol(rgb[0], 1e30f, 1e23f);
+    ck_assert_float_eq_tol(rgb[1], 3e30f, 3e23f);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_merge_refuses_other_films)
+{
+    const int crop[4] = {0, 0, 3, 3};
+    Error error;
+    Film film = film_make(4, 3, CROP_WHOLE), wide = film_make(5, 3, CROP_WHOLE), cropped = film_make(4, 3, crop);
+    Film coarse = film_make(4, 3, CROP_WHOLE), full = film_make(4, 3, CROP_WHOLE);
+    coarse.quantum_exponent = -20;
+    film.counts[3] = 2;
+    full.counts[3] = UINT32_MAX - 1;
+    ck_assert(!film_merge(&film, &wide, &error));
+    ck_assert_str_eq(error.message, "error: films of different sizes cannot be merged: 4 x 3 and 5 x 3");
+    ck_assert(!film_merge(&film, &cropped, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "0,0,4,3 and 0,0,3,3"));
+    ck_assert(!film_merge(&film, &coarse, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "2^-30 and 2^-20"));
+    ck_assert(!film_merge(&film, &full, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "4294967295 samples"));
+    Film *films[] = {&film, &wide, &cropped, &coarse, &full};
+    for (int i = 0; i < 5; ++i)
+        film_destroy(films[i]);
+}
+END_TEST
+
+START_TEST(test_init_refuses)
+{
+    const int crops[][4] = {{2, 0, 2, 3}, {0, 0, 5, 3}, {-1, 0, 4, 3}, {0, 3, 4, 3}};
+    Film film;
+    Error error;
+    for (int i = 0; i < 4; ++i)
+        ck_assert(!film_init(&film, 4, 3, crops[i], &error));
+    ck_assert(!film_init(&film, 0, 3, CROP_WHOLE, &error));
+    const int huge[4] = {0, 0, 1, 1};
+    ck_assert(!film_init(&film, 70000, 70000, huge, &error));
+    film_destroy(&film);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("film");
+    TCase *tcase = tcase_create("film");
+    tcase_set_timeout(tcase, 300); /* of the long test */
+    tcase_add_test(tcase, test_billion_additions_exact);
+    tcase_add_test(tcase, test_billion_additions_made);
+    tcase_add_test(tcase, test_order_does_not_matter);
+    tcase_add_test(tcase, test_merge_equals_one_film);
+    tcase_add_test(tcase, test_rare);
+    tcase_add_test(tcase, test_depths);
+    tcase_add_test(tcase, test_sums_of_a_device);
+    tcase_add_test(tcase, test_rounding);
+    tcase_add_test(tcase, test_units_of_any_float);
+    tcase_add_test(tcase, test_saturation);
+    tcase_add_test(tcase, test_full);
+    tcase_add_test(tcase, test_order_of_full_sums);
+    tcase_add_test(tcase, test_vanished);
+    tcase_add_test(tcase, test_not_finite_counts_as_zero);
+    tcase_add_test(tcase, test_crop);
+    tcase_add_test(tcase, test_buffer);
+    tcase_add_test(tcase, test_quantum);
+    tcase_add_test(tcase, test_merge_refuses_other_films);
+    tcase_add_test(tcase, test_init_refuses);
+    suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, film_output_tcase());
+    suite_add_tcase(suite, film_files_tcase());
+    return test_run(suite);
+}

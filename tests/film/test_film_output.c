@@ -1,0 +1,267 @@
+/* What is written to files: EXR, PNG, whole and by bands. */
+#include "support/test_files.h"
+#include "support/test_util.h"
+
+#include "image/color.h"
+#include "image/despeckle.h"
+#include "image/exr.h"
+#include "image/png_write.h"
+#include "image/read.h"
+#include "math/platform.h"
+#include "render/picture.h"
+
+#include <openexr.h>
+#include <sys/stat.h>
+
+TCase *film_output_tcase(void);
+
+#define WIDTH 37
+#define HEIGHT 21
+
+/* Every kind of float, and noise. */
+static void picture_fill(float *rgb)
+{
+    const float special[] = {0.0f, -0.0f, 1e-45f, 1e-38f, 3.4e38f, INFINITY, -INFINITY, 65504.0f, -2.5f};
+    unsigned state = 7;
+    for (size_t i = 0; i < 3 * WIDTH * HEIGHT; ++i)
+        rgb[i] = i < 9 ? special[i] : (float)(test_random_unit(&state) * 2.0);
+}
+
+static bool rgb_write(const char *path, const float *rgb, int width, int height, const int *crop, Error *error)
+{
+    const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
+    const ExrAttribute attributes[] = {exr_whole("seed", 4294967296u), exr_whole("n", 7),
+                                       exr_text("software", "twinlight"), exr_text("scene", "a b\xc3\xa4")};
+    return exr_write(path, channels, 3, width, height, crop, attributes, 4, error);
+}
+
+START_TEST(test_exr_keeps_every_bit)
+{
+    float rgb[3 * WIDTH * HEIGHT];
+    Error error = {0};
+    Image image;
+    picture_fill(rgb);
+    ck_assert_msg(rgb_write(test_path("a.exr"), rgb, WIDTH, HEIGHT, NULL, &error), "%s", error.message);
+    ck_assert_msg(image_read(test_path("a.exr"), &image, &error), "%s", error.message);
+    ck_assert_int_eq(image.width, WIDTH);
+    ck_assert_int_eq(image.height, HEIGHT);
+    ck_assert_int_eq(image.channels, 3);
+    ck_assert(image.is_float && !image.srgb_encoded);
+    ck_assert_mem_eq(image.data, rgb, sizeof rgb);
+    image_destroy(&image);
+}
+END_TEST
+
+/* Random bits with a few zeros compress to some bytes more or less than their size. Among thousands of chunks some keep
+ * exactly their size, which OpenEXR before 3.4.8 writes in a way that no reader understands. */
+START_TEST(test_exr_noise)
+{
+    enum { SIDE = 16, LINES = 16 * 2000 };
+    size_t count = (size_t)SIDE * LINES;
+    float *noise = malloc(count * sizeof *noise);
+    Error error = {0};
+    Image image;
+    unsigned state = 11;
+    ck_assert_ptr_nonnull(noise);
+    for (size_t i = 0; i < count; ++i) {
+        uint bits = (uint)(test_random_unit(&state) * 65536.0) << 16 | (uint)(test_random_unit(&state) * 65536.0);
+        bool zero = i % (SIDE * 16) < i / (SIDE * 16) % 32;
+        noise[i] = zero ? 0.0f : bits_float((bits & 0x7f800000u) == 0x7f800000u ? bits ^ 0x00800000u : bits);
+    }
+    const ExrChannel channels[] = {{"Y", noise, 1, false}};
+    ck_assert_msg(exr_write(test_path("n.exr"), channels, 1, SIDE, LINES, NULL, NULL, 0, &error), "%s", error.message);
+    ck_assert_msg(image_read(test_path("n.exr"), &image, &error), "%s", error.message);
+    ck_assert_int_eq(image.channels, 1);
+    ck_assert_mem_eq(image.data, noise, count * sizeof *noise);
+    image_destroy(&image);
+    free(noise);
+}
+END_TEST
+
+START_TEST(test_exr_bytes_are_reproducible)
+{
+    float rgb[3 * WIDTH * HEIGHT];
+    Error error;
+    size_t sizes[2];
+    picture_fill(rgb);
+    ck_assert(rgb_write(test_path("a.exr"), rgb, WIDTH, HEIGHT, NULL, &error));
+    sleep(1); /* a time stamp would differ */
+    ck_assert(rgb_write(test_path("b.exr"), rgb, WIDTH, HEIGHT, NULL, &error));
+    unsigned char *a = test_file_read(test_path("a.exr"), &sizes[0]);
+    unsigned char *b = test_file_read(test_path("b.exr"), &sizes[1]);
+    ck_assert_uint_eq(sizes[0], sizes[1]);
+    ck_assert_mem_eq(a, b, sizes[0]);
+    ck_assert_int_eq(test_folder_entries(), 2);
+    free(a);
+    free(b);
+}
+END_TEST
+
+/* The crop is the data window, the film the display window. */
+START_TEST(test_exr_crop)
+{
+    const int crop[4] = {5, 3, 5 + WIDTH, 3 + HEIGHT};
+    float rgb[3 * WIDTH * HEIGHT];
+    Error error;
+    Image image;
+    picture_fill(rgb);
+    ck_assert(rgb_write(test_path("crop.exr"), rgb, 100, 50, crop, &error));
+    ck_assert(image_read(test_path("crop.exr"), &image, &error));
+    ck_assert_int_eq(image.width, WIDTH);
+    ck_assert_mem_eq(image.data, rgb, sizeof rgb);
+    image_destroy(&image);
+    exr_context_t context = NULL;
+    exr_attr_box2i_t display, data;
+    const char *text = NULL;
+    ck_assert_int_eq(exr_start_read(&context, test_path("crop.exr"), NULL), EXR_ERR_SUCCESS);
+    exr_get_display_window(context, 0, &display);
+    exr_get_data_window(context, 0, &data);
+    exr_attr_get_string(context, 0, "software", NULL, &text);
+    ck_assert_int_eq(display.max.x, 99);
+    ck_assert_int_eq(display.max.y, 49);
+    ck_assert_int_eq(data.min.x, 5);
+    ck_assert_int_eq(data.min.y, 3);
+    ck_assert_int_eq(data.max.x, 4 + WIDTH);
+    ck_assert_int_eq(data.max.y, 2 + HEIGHT);
+    ck_assert_str_eq(text, "twinlight");
+    exr_finish(&context);
+}
+END_TEST
+
+/* Layers, given out of order, with different strides and as halves. */
+START_TEST(test_exr_layers)
+{
+    float data[4 * WIDTH * HEIGHT];
+    Error error = {0};
+    Image image;
+    for (int i = 0; i < 4 * WIDTH * HEIGHT; ++i)
+        data[i] = (float)(i % 2048) + (i == 0 ? 1e6f : 0.0f);
+    const ExrChannel channels[] = {{"direct.R", data, 1, false},
+                                   {"R", data, 4, true},
+                                   {"B", data + 2, 4, true},
+                                   {"G", data + 1, 4, true},
+                                   {"A", data + 3, 4, false}};
+    ck_assert_msg(exr_write(test_path("l.exr"), channels, 5, WIDTH, HEIGHT, NULL, NULL, 0, &error), "%s",
+                  error.message);
+    ck_assert_msg(image_read(test_path("l.exr"), &image, &error), "%s", error.message);
+    ck_assert_int_eq(image.channels, 4);
+    for (size_t i = 0; i < 4 * WIDTH * HEIGHT; ++i)
+        TEST_NEAR(image_value(&image, i), i == 0 ? 65504.0f : data[i], 0.0);
+    image_destroy(&image);
+    const ExrChannel twice[] = {{"R", data, 1, false}, {"R", data, 1, false}};
+    ck_assert(!exr_write(test_path("t.exr"), twice, 2, WIDTH, HEIGHT, NULL, NULL, 0, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "two channels are named \"R\""));
+    ck_assert_int_eq(test_folder_entries(), 1);
+}
+END_TEST
+
+/* Bands are what whole pictures are cut into: every row of every layer, at every band's edge. */
+START_TEST(test_bands)
+{
+    enum { ROWS = 2 * EXR_BAND_ROWS + 5 };
+    const int crop[4] = {2, 1, 2 + WIDTH, 1 + ROWS};
+    static float rgb[3 * WIDTH * ROWS], despeckled[3 * WIDTH * ROWS];
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALBEDO)};
+    const PictureSettings settings = {.scale = 4.0f, .despeckle = 1.5, .layers = &layers};
+    PictureMemory memory;
+    Picture picture;
+    Film film;
+    Error error;
+    unsigned state = 5;
+    ck_assert(film_init(&film, WIDTH + 9, ROWS + 9, crop, &error) &&
+              film_init_like(&layers.aovs[AOV_ALBEDO], &film, &error));
+    for (size_t i = 0; i < 3 * WIDTH * ROWS; ++i) {
+        film.sums[i] = 2 * (int64_t)(test_random_unit(&state) * 0x1p31);
+        layers.aovs[AOV_ALBEDO].sums[i] = film.sums[i] / 2;
+        film.counts[i / 3] = layers.aovs[AOV_ALBEDO].counts[i / 3] = (uint32_t)(i / 3 % 4);
+    }
+    film_resolve(&film, 4.0f, rgb);
+    despeckle(rgb, WIDTH, ROWS, 0, ROWS, 1.5f, despeckled);
+    ck_assert_uint_eq(film_empty_pixels(&film), (WIDTH * ROWS + 3) / 4);
+    ck_assert(picture_memory_init(&memory, &settings, WIDTH, ROWS, 5, &error));
+    picture_init(&picture, &settings, &film, &memory);
+    ck_assert_uint_eq(picture.group_count, 3);
+    for (int y = 0; y < ROWS; y += EXR_BAND_ROWS) {
+        int count = ROWS - y < EXR_BAND_ROWS ? ROWS - y : EXR_BAND_ROWS;
+        size_t bytes = 3 * WIDTH * (size_t)count * sizeof *rgb;
+        picture_band(&picture, y, count);
+        ck_assert_mem_eq(picture.channels[0].data, rgb + 3 * WIDTH * y, bytes);
+        ck_assert_mem_eq(picture.groups[2].values, despeckled + 3 * WIDTH * y, bytes);
+        for (int i = 0; i < 3 * WIDTH * count; ++i)
+            ck_assert(picture.groups[1].values[i] == rgb[3 * WIDTH * y + i] / 8.0f);
+    }
+    ck_assert_mem_eq(picture_row(&picture, ROWS - 1), rgb + 3 * WIDTH * (ROWS - 1), 3 * WIDTH * sizeof *rgb);
+    picture_memory_destroy(&memory);
+    film_destroy(&layers.aovs[AOV_ALBEDO]);
+    film_destroy(&film);
+}
+END_TEST
+
+START_TEST(test_unwritable)
+{
+    float rgb[3 * WIDTH * HEIGHT] = {0};
+    Error error;
+    ck_assert(!rgb_write("no/such/folder/a.exr", rgb, WIDTH, HEIGHT, NULL, &error));
+    ck_assert_str_eq(error.message, "error: cannot write no/such/folder/a.exr: No such file or directory");
+    ck_assert(!png_write("no/such/folder/a.png", rgb, WIDTH, HEIGHT, 0.0f, &error));
+    ck_assert_str_eq(error.message, "error: cannot write no/such/folder/a.png: No such file or directory");
+    ck_assert(!rgb_write(test_folder, rgb, WIDTH, HEIGHT, NULL, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "Is a directory"));
+    /* A device that is always full: written in place, reported, and still a device afterwards. */
+    struct stat status;
+    if (stat("/dev/full", &status) != 0)
+        return;
+    ck_assert(!rgb_write("/dev/full", rgb, WIDTH, HEIGHT, NULL, &error));
+    ck_assert_str_eq(error.message, "error: cannot write /dev/full: No space left on device");
+    ck_assert(!png_write("/dev/full", rgb, WIDTH, HEIGHT, 0.0f, &error));
+    ck_assert_str_eq(error.message, "error: cannot write /dev/full: No space left on device");
+    ck_assert(stat("/dev/full", &status) == 0 && S_ISCHR(status.st_mode));
+}
+END_TEST
+
+START_TEST(test_png)
+{
+    const float rgb[] = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, NAN, 0.25f, 0.001f, 0.125f, INFINITY, -INFINITY, 1e-45f};
+    const unsigned char expected[] = {0, 255, 188, 0, 255, 0, 137, 3, 99, 255, 0, 0};
+    const unsigned char brighter[] = {0, 255, 255, 0, 255, 0, 188, 7, 137, 255, 0, 0};
+    Error error = {0};
+    Image image;
+    ck_assert_msg(png_write(test_path("a.png"), rgb, 2, 2, 0.0f, &error), "%s", error.message);
+    ck_assert_msg(image_read(test_path("a.png"), &image, &error), "%s", error.message);
+    ck_assert(!image.is_float && image.srgb_encoded && image.channels == 3 && image.width == 2);
+    ck_assert_mem_eq(image.data, expected, sizeof expected);
+    image_destroy(&image);
+    ck_assert(png_write(test_path("a.png"), rgb, 2, 2, 1.0f, &error));
+    ck_assert(image_read(test_path("a.png"), &image, &error));
+    ck_assert_mem_eq(image.data, brighter, sizeof brighter);
+    image_destroy(&image);
+}
+END_TEST
+
+START_TEST(test_srgb_function)
+{
+    /* IEC 61966-2-1: the two branches meet, ends are fixed, the functions are inverse. */
+    ck_assert_double_eq_tol(color_srgb_decode(0.04045), 0.0031308, 1e-7);
+    ck_assert_double_eq(color_srgb_decode(0.0), 0.0);
+    ck_assert_double_eq_tol(color_srgb_decode(1.0), 1.0, 1e-15);
+    ck_assert_double_eq_tol(color_srgb_decode(0.5), 0.21404114048, 1e-10);
+    for (double x = -2.0; x < 2.0; x += 0.01)
+        TEST_NEAR(color_srgb_decode(color_srgb_encode(x)), x, 1e-7);
+}
+END_TEST
+
+TCase *film_output_tcase(void)
+{
+    TCase *tcase = tcase_create("output");
+    tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
+    tcase_add_test(tcase, test_exr_keeps_every_bit);
+    tcase_add_test(tcase, test_exr_noise);
+    tcase_add_test(tcase, test_exr_bytes_are_reproducible);
+    tcase_add_test(tcase, test_exr_crop);
+    tcase_add_test(tcase, test_exr_layers);
+    tcase_add_test(tcase, test_bands);
+    tcase_add_test(tcase, test_unwritable);
+    tcase_add_test(tcase, test_png);
+    tcase_add_test(tcase, test_srgb_function);
+    return tcase;
+}

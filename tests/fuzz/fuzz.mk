@@ -1,0 +1,56 @@
+# The readers of scenes and images and of command lines against arbitrary bytes. tests/fuzz_NAME, a test, tries the
+# inputs of tests/corpus/NAME: seeds, and what fuzzers found that covers more (fuzz-*: of 2e7 executions on scenes, 7e6
+# on images and 3e7 on command lines). `make fuzz` builds them with libFuzzer and sanitizers and runs each for
+# FUZZ_SECONDS from there.
+EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
+FUZZ_TARGETS = scene image options
+check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options
+tests_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c tests/fuzz/fuzz_replay.c
+tests_fuzz_scene_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/scene bad"'
+tests_fuzz_scene_LDADD = libtwinlight_host.la
+tests_fuzz_image_SOURCES = tests/fuzz/fuzz_image.c tests/fuzz/fuzz_replay.c
+tests_fuzz_image_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/image"'
+tests_fuzz_image_LDADD = libtwinlight_host.la
+tests_fuzz_options_SOURCES = tests/fuzz/fuzz_options.c tests/fuzz/fuzz_replay.c
+tests_fuzz_options_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/options"'
+tests_fuzz_options_LDADD = libtwinlight_host.la
+
+# Larger images would take the time of thousands of others.
+FUZZ_CC = clang
+FUZZ_SECONDS = 60
+FUZZ_SANITIZERS = fuzzer,address,undefined
+FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=$(FUZZ_SANITIZERS) -fno-sanitize-recover=undefined \
+	-DIMAGE_PIXELS_MAX=65536u
+FUZZ_COMPILE = $(FUZZ_CC) $(FUZZ_CFLAGS) $(DEFS) -I. $(AM_CPPFLAGS) -pthread $(OPENEXR_CFLAGS) $(PNG_CFLAGS) \
+	$(ZLIB_CFLAGS) $(STB_CFLAGS)
+.PHONY: fuzz fuzz-programs
+fuzz-programs: build_commit.h
+	$(MKDIR_P) fuzz-objects
+	for file in $(libtwinlight_host_la_SOURCES); do case $$file in *.c) \
+	  $(FUZZ_COMPILE) -c $(srcdir)/$$file -o fuzz-objects/$$(echo $${file%.c} | tr / _).o || exit 1;; \
+	esac; done
+	for target in $(FUZZ_TARGETS); do $(FUZZ_COMPILE) $(srcdir)/tests/fuzz/fuzz_$$target.c fuzz-objects/*.o -o fuzz_$$target \
+	  $(libtwinlight_host_la_LIBADD) || exit 1; done
+
+fuzz: fuzz-programs
+	for target in $(FUZZ_TARGETS); do $(MKDIR_P) fuzz-found/$$target; dictionary=$(srcdir)/tests/corpus/$$target.dict; \
+	  ./fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=1 \
+	    -artifact_prefix=fuzz-found/$$target- $$(test -f $$dictionary && echo -dict=$$dictionary) \
+	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
+CLEANFILES += fuzz_scene fuzz_image fuzz_options
+
+# The readers and small renderings on the CPU under valgrind, which sees what sanitizers do not: uninitialised values, and
+# the inside of libraries. Half a minute.
+VALGRIND = valgrind --quiet --error-exitcode=9 --leak-check=full --suppressions=$(srcdir)/tests/valgrind.supp
+VALGRIND_TESTED = $(FUZZ_TARGETS:%=tests/fuzz_%$(EXEEXT)) tests/test_import$(EXEEXT) tests/test_texture$(EXEEXT) \
+	twinlight$(EXEEXT)
+.PHONY: check-valgrind
+check-valgrind: $(VALGRIND_TESTED)
+	for target in $(FUZZ_TARGETS); do srcdir=$(srcdir) $(VALGRIND) tests/fuzz_$$target >valgrind.log || exit 1; done
+	for case in bad files limits params; do \
+	  srcdir=$(srcdir) CK_FORK=no CK_RUN_CASE=$$case $(VALGRIND) tests/test_import || exit 1; done
+	srcdir=$(srcdir) CK_FORK=no CK_RUN_CASE=files $(VALGRIND) tests/test_texture
+	for integrator in pt ibpt bdpt mmlt; do \
+	  $(VALGRIND) ./twinlight render --quiet --backend=cpu --threads=2 --integrator=$$integrator --resolution=12x8 \
+	    --samples=2 --max-depth=5 --output=valgrind.exr $(srcdir)/scenes/showcase.pbrt || exit 1; done
+CLEANFILES += valgrind.log valgrind.exr valgrind.png

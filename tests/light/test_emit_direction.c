@@ -1,0 +1,250 @@
+/* Directions of rays that leave point lights, spots and light from infinity, and the points that the latter come
+ * through. */
+#include "light/emit.h"
+#include "light/test_emit.h"
+#include "support/light_fixture.h"
+
+enum { CELLS = 12, SUB = 24, SAMPLES = 40000 };
+
+static const double ROTATION[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6};
+
+enum { POINT, WIDE_SPOT, NARROW_SPOT, HARD_SPOT, CONSTANT, LATLONG, OCTAHEDRAL, STRETCHED, DISTANT, LIGHT_CASES };
+
+/* Eight chi-square tests of directions, five of points on the disc (Sidak: 1e-3 together). */
+#define P_MIN (1e-3 / 13.0)
+
+static Light spot(double total, double falloff)
+{
+    return (Light){.kind = LIGHT_SPOT,
+                   .emission = {2, 2, 2},
+                   .position = {1, 2, 3},
+                   .direction = {0.48f, 0.64f, -0.6f},
+                   .cos_total = (float)cos(total),
+                   .cos_falloff = (float)cos(falloff)};
+}
+
+static void add_image(LightFixture *f, uint flags)
+{
+    float texels[3 * 128];
+    for (uint i = 0; i < 128; ++i) {
+        Vec2 r = fixture_random(21, i);
+        texels[3 * i] = texels[3 * i + 1] = texels[3 * i + 2] = r.x < 0.3f ? 1e-3f : 1e-3f + r.y * r.y;
+    }
+    fixture_add_environment(f, texels, flags != 0u ? 16 : 8, 8, flags, ROTATION);
+}
+
+/* The transform that gives the image's directions in the world becomes S R with S = diag(2, 1, 1/2). */
+static void stretch(LightFixture *f)
+{
+    static const float SCALE[3] = {2.0f, 1.0f, 0.5f};
+    Light *light = &ARRAY_AT(&f->scene.lights, Light, 0);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            light->world_from_light.m[4 * i + j] *= SCALE[i];
+            light->light_from_world.m[4 * j + i] /= SCALE[i];
+        }
+}
+
+static void setup(LightFixture *f, int which)
+{
+    fixture_init(f);
+    f->scene.frame.world_radius = 3.0f;
+    f->scene.frame.world_center = vec3(1.0f, -2.0f, 5.0f);
+    switch (which) {
+    case POINT:
+        fixture_add_light(f, (Light){.kind = LIGHT_POINT, .emission = {2, 2, 2}, .position = {1, 2, 3}});
+        break;
+    case WIDE_SPOT:
+        fixture_add_light(f, spot(2.5, 0.3));
+        break;
+    case NARROW_SPOT:
+        fixture_add_light(f, spot(0.02, 0.015));
+        break;
+    case HARD_SPOT:
+        fixture_add_light(f, spot(0.5, 0.5));
+        break;
+    case CONSTANT:
+        fixture_add_light(f, (Light){.kind = LIGHT_INFINITE, .emission = {2, 2, 2}});
+        break;
+    case DISTANT:
+        fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {2, 2, 2}, .direction = {0.6f, 0.0f, -0.8f}});
+        break;
+    default:
+        add_image(f, which == LATLONG ? LIGHT_EQUIRECTANGULAR : 0u);
+    }
+    if (which == STRETCHED)
+        stretch(f);
+    fixture_finish(f);
+}
+
+/* The directions are cut into cells by angle and cosine around an axis, down to the cosine `low`. */
+typedef struct Cells {
+    Frame frame;
+    double low;
+} Cells;
+
+static Cells cells_make(const LightFixture *f, int which)
+{
+    Cells cells = {frame_from_normal(vec3(0.0f, 0.0f, 1.0f)), -1.0};
+    const Light *light = &ARRAY_AT(&f->scene.lights, Light, 0);
+    if (light->kind == LIGHT_SPOT) {
+        cells.frame = frame_from_normal(light->direction);
+        cells.low = which == WIDE_SPOT ? -1.0 : 2.0 * (double)light->cos_total - 1.0; /* wider than the cone */
+    }
+    return cells;
+}
+
+static Vec3 cells_direction(const Cells *cells, double a, double b)
+{
+    double versine = (1.0 - cells->low) * a, r = sqrt(versine * (2.0 - versine));
+    Vec3 w = vec3((float)(r * cos(2.0 * M_PI * b)), (float)(r * sin(2.0 * M_PI * b)), (float)(1.0 - versine));
+    return frame_to_world(cells->frame, w);
+}
+
+static int cells_find(const Cells *cells, Vec3 d)
+{
+    Vec3 w = frame_to_local(cells->frame, d);
+    double x = (double)w.x, y = (double)w.y, phi = atan2(y, x) / (2.0 * M_PI);
+    double sine2 = x * x + y * y, versine = w.z > 0.0f ? sine2 / (1.0 + (double)w.z) : 1.0 - (double)w.z;
+    int i = (int)fmin(versine / (1.0 - cells->low) * CELLS, CELLS - 1);
+    return i * CELLS + (int)fmin((phi < 0.0 ? phi + 1.0 : phi) * CELLS, CELLS - 1);
+}
+
+/* light_emit_pdf_w integrates to 1, and directions are distributed so. */
+START_TEST(test_directions)
+{
+    double expected[CELLS * CELLS] = {0.0}, observed[CELLS * CELLS] = {0.0}, total = 0.0;
+    const int n = CELLS * SUB;
+    LightFixture f;
+    setup(&f, _i);
+    Cells cells = cells_make(&f, _i);
+    double share = 2.0 * M_PI * (1.0 - cells.low) / ((double)n * n);
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            Vec3 d = cells_direction(&cells, (y + 0.5) / n, (x + 0.5) / n);
+            double mass = (double)light_emit_pdf_w(&f.view, 0, vec3(0, 0, 0), d) * share;
+            expected[y / SUB * CELLS + x / SUB] += mass;
+            total += mass;
+        }
+    ck_assert_msg(fabs(total - 1.0) < 4e-3, "case %d: the density integrates to %g", _i, total);
+    for (uint i = 0; i < SAMPLES; ++i) {
+        LightEmission e;
+        TEST_TRUE(light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e));
+        observed[cells_find(&cells, e.w)] += 1.0;
+    }
+    for (int i = 0; i < CELLS * CELLS; ++i)
+        expected[i] *= SAMPLES / total;
+    double p = test_chi_square(observed, expected, CELLS * CELLS);
+    ck_assert_msg(p > P_MIN, "case %d: chi-square p = %g", _i, p);
+    fixture_destroy(&f);
+}
+END_TEST
+
+/* The record is what the functions say later, but for directions that rounding moves across a texel's border. */
+START_TEST(test_records)
+{
+    LightFixture f;
+    int differs = 0, count = 5000;
+    setup(&f, _i);
+    uint kind = ARRAY_AT(&f.scene.lights, Light, 0).kind;
+    bool far = kind >= LIGHT_DISTANT;
+    for (uint i = 0; i < (uint)count; ++i) {
+        LightEmission e;
+        if (!light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e))
+            continue;
+        TEST_NEAR(vec3_length(e.w), 1.0, 1e-6);
+        TEST_TRUE(e.infinite == far && e.cosine == 1.0f && vec3_is_zero(e.ng));
+        TEST_TRUE(e.delta_position == (kind == LIGHT_POINT || kind == LIGHT_SPOT));
+        TEST_TRUE(e.delta_direction == (kind == LIGHT_DISTANT));
+        TEST_TRUE(light_emit_pdf_p(&f.view, 0, NULL) == e.pdf_p);
+        TEST_TRUE(e.pdf_p == (far ? light_emit_pdf_disc(&f.view) : 1.0f));
+        differs += fabs((double)light_emit_pdf_w(&f.view, 0, e.ng, e.w) / (double)e.pdf_w - 1.0) > 1e-4;
+        if (kind >= LIGHT_INFINITE)
+            differs +=
+                fabs((double)environment_radiance(&f.view, vec3_negate(e.w)).y / (double)e.radiance.y - 1.0) > 1e-3;
+        if (kind != LIGHT_POINT && kind != LIGHT_SPOT)
+            continue;
+        /* Intensity: what light_sample finds at distance 1. */
+        LightSample s;
+        TEST_TRUE(light_sample(&f.view, 0, vec3_add(e.p, e.w), vec2(0.5f, 0.5f), &s));
+        /* A narrow spot's edge is 8.7e-5 wide in the cosine, 1.2e-7 of which rounds away. */
+        differs += fabs((double)(s.radiance.x - e.radiance.x)) > (_i == NARROW_SPOT ? 0.02 : 1e-3);
+    }
+    ck_assert_msg(differs <= count / 500, "case %d: %d of %d differ", _i, differs, count);
+    fixture_destroy(&f);
+}
+END_TEST
+
+/* Points come uniformly from the disc that touches the bounding sphere. */
+START_TEST(test_disc)
+{
+    double observed[CELLS * CELLS] = {0.0}, expected[CELLS * CELLS];
+    LightFixture f;
+    setup(&f, _i);
+    for (uint i = 0; i < SAMPLES; ++i) {
+        LightEmission e;
+        TEST_TRUE(light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e));
+        Vec3 local = frame_to_local(frame_from_normal(e.w), vec3_sub(e.p, f.scene.frame.world_center));
+        TEST_NEAR(local.z, -3.0, 1e-5);
+        double x = (double)local.x / 3.0, y = (double)local.y / 3.0, square = x * x + y * y;
+        TEST_TRUE(square < 1.00001);
+        int row = (int)fmin(square * CELLS, CELLS - 1);
+        observed[row * CELLS + (int)fmin((atan2(y, x) / (2.0 * M_PI) + 0.5) * CELLS, CELLS - 1)] += 1.0;
+    }
+    for (int i = 0; i < CELLS * CELLS; ++i)
+        expected[i] = (double)SAMPLES / (CELLS * CELLS);
+    double p = test_chi_square(observed, expected, CELLS * CELLS);
+    ck_assert_msg(p > P_MIN, "case %d: chi-square p = %g", _i, p);
+    ck_assert_double_eq_tol((double)light_emit_pdf_disc(&f.view), 1.0 / (9.0 * M_PI), 1e-6);
+    fixture_destroy(&f);
+}
+END_TEST
+
+/* A spot's ratio of intensity to density is at most 9/8 of its least: light paths of all directions weigh about the
+ * same. A spot without an opening, and light from infinity on an empty scene, emit nothing. */
+START_TEST(test_bounds)
+{
+    LightFixture f;
+    LightEmission e;
+    setup(&f, WIDE_SPOT);
+    double integral = 2.0 * M_PI * (double)spot_emit_integral(f.scene.lights.data);
+    for (uint i = 0; i < 5000; ++i) {
+        TEST_TRUE(light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e));
+        TEST_TRUE((double)e.radiance.x / (double)e.pdf_w < 1.1251 * 2.0 * integral);
+    }
+    ARRAY_AT(&f.scene.lights, Light, 0).cos_falloff = ARRAY_AT(&f.scene.lights, Light, 0).cos_total = 1.0f;
+    ck_assert(!light_emit(&f.view, 0, vec2(0.5f, 0.5f), vec2(0.5f, 0.5f), &e));
+    fixture_destroy(&f);
+    for (int which = CONSTANT; which <= DISTANT; ++which) {
+        setup(&f, which);
+        f.scene.frame.world_radius = 0.0f;
+        ck_assert(!light_emit(&f.view, 0, vec2(0.5f, 0.5f), vec2(0.3f, 0.4f), &e));
+        fixture_destroy(&f);
+    }
+}
+END_TEST
+
+/* Spots that shine nearly everywhere: also next to the edge, directions are unit vectors. */
+START_TEST(test_wide_spots)
+{
+    for (int k = 1; k < 20000; ++k)
+        for (int j = 1; j < 5; ++j) {
+            Light spot = {.kind = LIGHT_SPOT, .direction = {0.0f, 0.0f, 1.0f}, .cos_total = -1.0f};
+            spot.cos_falloff = -1.0f + (float)k * 0x1p-24f;
+            Vec3 w = spot_emit_direction(&spot, vec2(1.0f - (float)j * 0x1p-24f, 0.3f));
+            TEST_NEAR(vec3_length(w), 1.0, 1e-5);
+        }
+}
+END_TEST
+
+TCase *emit_direction_case(void)
+{
+    TCase *tcase = tcase_create("other lights");
+    tcase_add_test(tcase, test_wide_spots);
+    tcase_set_timeout(tcase, 60);
+    tcase_add_loop_test(tcase, test_directions, 0, DISTANT);
+    tcase_add_loop_test(tcase, test_records, 0, LIGHT_CASES);
+    tcase_add_loop_test(tcase, test_disc, CONSTANT, LIGHT_CASES);
+    tcase_add_test(tcase, test_bounds);
+    return tcase;
+}

@@ -1,0 +1,111 @@
+/* Which light is chosen how often, and scenes that have none. */
+#include "base/log.h"
+#include "light/test_light.h"
+#include "support/light_fixture.h"
+
+START_TEST(test_powers)
+{
+    LightFixture f;
+    fixture_init(&f);
+    f.scene.frame.world_radius = 2.0f;
+    static const float square[12] = {0, 0, 0, 2, 0, 0, 0, 1, 0, 2, 1, 0};
+    static const float texels[3 * 8] = {1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 1, 1, 1, 1};
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    fixture_add_polygon(&f, square, 4, NULL, 0, 0);
+    fixture_add_polygon(&f, square, 3, NULL, 0, LIGHT_TWO_SIDED);
+    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
+    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {0, 0, 0}});
+    fixture_add_light(&f, (Light){.kind = LIGHT_SPOT, .emission = {1, 1, 1}, .cos_total = 0.5f, .cos_falloff = 0.75f});
+    fixture_add_light(&f, (Light){.kind = LIGHT_DISTANT, .emission = {0.5f, 0.5f, 0.5f}, .direction = {0, 0, 1}});
+    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0.1f, 0.1f, 0.1f}});
+    fixture_add_environment(&f, texels, 4, 2, LIGHT_EQUIRECTANGULAR, identity);
+    ARRAY_AT(&f.scene.lights, Light, 7).emission = vec3(0.05f, 0.05f, 0.05f);
+    fixture_finish(&f);
+    /* pbrt-v4's estimates. The image's hemispheres average to 2. */
+    const double expected[8] = {2.0 * M_PI,
+                                2.0 * M_PI,
+                                4.0 * M_PI,
+                                0.0,
+                                2.0 * M_PI * (0.25 + 0.125),
+                                0.5 * M_PI * 4.0,
+                                0.1 * 4.0 * M_PI * M_PI * 4.0,
+                                0.05 * 2.0 * 4.0 * M_PI * M_PI * 4.0};
+    double total = 0.0, observed[8] = {0.0}, counts[8];
+    enum { SAMPLES = 200000 };
+    for (int i = 0; i < 8; ++i)
+        total += expected[i];
+    for (int i = 0; i < 8; ++i) {
+        double pdf = (double)ARRAY_AT(&f.scene.lights, Light, i).select_pdf;
+        ck_assert_msg(fabs(pdf - expected[i] / total) < 1e-6, "light %d: %g, not %g", i, pdf, expected[i] / total);
+        counts[i] = expected[i] / total * SAMPLES;
+    }
+    for (uint i = 0; i < SAMPLES; ++i) {
+        Random4 r = random_four(i, 0, 0, 0, 77, 0);
+        observed[light_select(&f.view, r.x[0], r.x[1])] += 1.0;
+    }
+    ck_assert_double_eq(observed[3], 0.0);
+    ck_assert_double_gt(test_chi_square(observed, counts, 8), 1e-3);
+    fixture_destroy(&f);
+}
+END_TEST
+
+static void drop_line(const char *line, void *context)
+{
+    (void)line;
+    (void)context;
+}
+
+START_TEST(test_no_light)
+{
+    LightFixture f;
+    Error error = {0};
+    fixture_init(&f);
+    log_sink_set(drop_line, NULL);
+    ck_assert(!light_setup(&f.scene, &error));
+    ck_assert_str_eq(error.message, "error: the scene has no light");
+    ck_assert(error.fix[0] != '\0');
+    static const float black[3 * 2] = {0};
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    fixture_add_environment(&f, black, 2, 1, LIGHT_EQUIRECTANGULAR, identity);
+    ck_assert(!light_setup(&f.scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "the scene has no light"));
+    /* Beside another light the black one is no light. */
+    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
+    fixture_finish(&f);
+    LightSample s;
+    ck_assert_uint_eq(f.scene.infinite_lights.count, 0);
+    ck_assert_uint_eq(light_select(&f.view, 0, 0), 1);
+    ck_assert_uint_eq(light_select(&f.view, ~0u, ~0u), 1);
+    ck_assert(!light_sample(&f.view, 0, vec3(0, 0, 0), vec2(0.5f, 0.5f), &s));
+    ck_assert((light_pdf_w(&f.view, 0, vec3(0, 0, 0), vec3(0, 0, 1), NULL) == 0.0f));
+    log_sink_set(NULL, NULL);
+    fixture_destroy(&f);
+}
+END_TEST
+
+START_TEST(test_not_finite)
+{
+    LightFixture f;
+    Error error = {0};
+    static const float bad[3 * 2] = {1, 1, 1, 1, INFINITY, 1};
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    fixture_init(&f);
+    fixture_add_environment(&f, bad, 2, 1, LIGHT_EQUIRECTANGULAR, identity);
+    ck_assert(!light_setup(&f.scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "texel (1, 0)"));
+    f.scene.lights.count = 0;
+    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, NAN, 1}});
+    ck_assert(!light_setup(&f.scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "power is not finite"));
+    fixture_destroy(&f);
+}
+END_TEST
+
+TCase *light_select_case(void)
+{
+    TCase *tcase = tcase_create("choice of lights");
+    tcase_add_test(tcase, test_powers);
+    tcase_add_test(tcase, test_no_light);
+    tcase_add_test(tcase, test_not_finite);
+    return tcase;
+}

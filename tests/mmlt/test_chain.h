@@ -1,0 +1,10 @@
+/* The parts of test_chain. */
+#ifndef TWINLIGHT_TESTS_MMLT_TEST_CHAIN_H
+#define TWINLIGHT_TESTS_MMLT_TEST_CHAIN_H
+
+#include "support/test_util.h"
+
+/* What chains and pools show of one path. */
+TCase *chain_shown_tests(void);
+
+#endif

@@ -1,0 +1,135 @@
+/* What path tracing shows beside chains and what chains put out of the rest are the same function of a path, whatever
+ * strategy makes it, wherever on the film it begins, and however many lights send what it carries. */
+#include "support/bidirectional.h"
+
+#include "mmlt/blend.h"
+
+/* A sun in the sky, a hundredth of all directions, over a pane of glass: paths that meet it are some times above path
+ * tracing's limit, which shows a part of them and leaves the rest to chains. */
+#define SUN(scale)                                                                                                     \
+    "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "            \
+    "\"float scale\" " scale " AttributeEnd\n"
+#define PANE(y, side)                                                                                                  \
+    "Material \"thindielectric\" \"float eta\" 1.5 Shape \"bilinearmesh\" \"point3 P\" [ -" side " " y " -" side       \
+    "  " side " " y " -" side "  -" side " " y " " side "  " side " " y " " side " ]\n"
+
+/* The scene with one stream alone and what that leaves to chains, against path tracing. */
+static void stream_compare(const char *name, const BidirectionalScene *scene, int stream, unsigned expected_samples,
+                           unsigned samples)
+{
+    PictureGroups expected, got;
+    char line[128];
+    GroupSetup setup = {
+        .groups = 16,
+        .render = {
+            .text = bidirectional_text(scene), .samples = expected_samples, .max_depth = scene->depth, .threads = 1}};
+    groups_render(&setup, &expected);
+    setup.render.samples = samples;
+    setup.render.seed = 11000;
+    setup.render.integrator = integrator_mmlt();
+    setup.render.chains = (ChainOptions){.chains = 256, .steps = 16, .shown = 1 + stream};
+    groups_render(&setup, &got);
+    snprintf(line, sizeof line, "%s, stream %d", name, stream);
+    groups_compare(line, &got, &expected, 2, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+
+/* At effort 1 the stream of path tracing alone; make check-long does them all. */
+static bool stream_left_out(int stream)
+{
+    return test_effort() == 1 && stream != BLEND_PATHS;
+}
+
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
+
+/* Large pixels of a small scene, so that the light's walks (t = 1) make a good part of it, and a small crop window, so that
+ * filters reach far beyond it. */
+START_TEST(test_shown_filters)
+{
+    const int stream = _i % BLEND_STREAMS, filter = _i / BLEND_STREAMS;
+    char text[2048];
+    if (stream_left_out(stream))
+        return;
+    snprintf(text, sizeof text,
+             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
+             "PixelFilter %s\nLookAt 0 0.4 0  0 -1 0  0 0 1\n"
+             "Camera \"orthographic\" \"float screenwindow\" [ -2 2 -2 2 ]\nWorldBegin\n" SUN("1") BD_GREY
+             "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
+             BIDIRECTIONAL_FILTERS[filter]);
+    const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
+    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, stream, 2048, 4096);
+}
+END_TEST
+
+/* ---- several infinite lights ------------------------------------------------------------------------------------- */
+
+#define UNDER_PANE                                                                                                     \
+    BD_BEGIN BD_GREY                                                                                                   \
+        "Shape \"bilinearmesh\" \"point3 P\" [ -40 -1 -40  40 -1 -40  -40 -1 40  40 -1 40 ]\n" PANE("1.5", "40")
+
+/* A floor under a pane in the sun: a path that ends outside meets all of the lights at once. */
+static const BidirectionalScene SUNS[] = {
+    {"one sun", UNDER_PANE SUN("1"), SUPPORT_SUM_ONLY, 4, 2},
+    {"two suns", UNDER_PANE SUN("0.75") SUN("0.25"), SUPPORT_SUM_ONLY, 4, 2},
+    {"four suns", UNDER_PANE SUN("0.25") SUN("0.25") SUN("0.25") SUN("0.25"), SUPPORT_SUM_ONLY, 4, 2},
+};
+#define SUNS_COUNT (int)(sizeof SUNS / sizeof SUNS[0])
+
+START_TEST(test_shown_lights)
+{
+    const int stream = _i % BLEND_STREAMS;
+    const BidirectionalScene *scene = &SUNS[_i / BLEND_STREAMS];
+    if (!stream_left_out(stream))
+        stream_compare(scene->name, scene, stream, 128, 512);
+}
+END_TEST
+
+/* ---- signs ------------------------------------------------------------------------------------------------------- */
+
+/* A sky and reflectances that a file has below 0: of an image, a factor of -1, a mix that goes beyond. */
+static const char SIGNS[] = BD_BEGIN BD_LAMP
+    "AttributeBegin LightSource \"infinite\" \"string filename\" \"$FILES/signs.pfm\" AttributeEnd\n"
+    "Texture \"image\" \"spectrum\" \"imagemap\" \"string filename\" \"$FILES/signs.pfm\"\n"
+    "Texture \"factor\" \"spectrum\" \"scale\" \"texture tex\" \"image\" \"float scale\" -1\n"
+    "Texture \"mix\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0.5 0.2 0.9 ] \"texture tex2\" \"factor\" "
+    "\"float amount\" 2\n"
+    "Material \"diffuse\" \"texture reflectance\" \"mix\"\n" BD_FLOOR
+    "Material \"conductor\" \"texture eta\" \"mix\" \"texture k\" \"factor\" \"float roughness\" 0.3\n"
+    "AttributeBegin Translate -1 0 0 " BD_BALL "AttributeEnd\n"
+    "Material \"diffusetransmission\" \"texture reflectance\" \"factor\" \"texture transmittance\" \"mix\"\n"
+    "AttributeBegin Translate 1 0 0 " BD_BALL "AttributeEnd\n";
+
+/* Chains go after luminance, and what has none above 0 they cannot show, though pools and path tracing would. No path carries
+ * such a thing: lights and what surfaces reflect are nowhere below 0. */
+START_TEST(test_signs)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
+    const BidirectionalScene scene = {"signs", SIGNS, SUPPORT_SUM_ONLY, 5, 2};
+    for (int i = 0; i < 3; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {
+            .text = bidirectional_text(&scene), .samples = 4, .max_depth = 5, .integrator = integrators[i]};
+        double sum = 0.0;
+        fixture_render(&setup, &image);
+        for (int k = 0; k < 3 * 16 * 16; ++k) {
+            ck_assert_msg(image.rgb[k] >= 0.0f, "%s: value %d is %g", integrators[i]->name, k, (double)image.rgb[k]);
+            sum += (double)image.rgb[k];
+        }
+        ck_assert_double_gt(sum, 0.0);
+        ck_assert_uint_eq(image.film.not_finite, 0);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
+TCase *mmlt_shown_case(void)
+{
+    TCase *tcase = tcase_create("shown");
+    tcase_set_timeout(tcase, 3000);
+    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
+    tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * BLEND_STREAMS);
+    tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * BLEND_STREAMS);
+    tcase_add_test(tcase, test_signs);
+    return tcase;
+}

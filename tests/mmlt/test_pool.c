@@ -1,0 +1,177 @@
+/* Which pixels' samples of a pool have a walk from the light, over many generations: on a backend that only keeps a record. */
+#include "support/test_util.h"
+
+#include "base/sample_statistics.h"
+#include "mmlt/mmlt.h"
+
+#include "math/rng.h"
+
+#include <string.h>
+
+#define GENERATIONS 64u
+
+struct Backend {
+    uint *samples, *walks; /* of every pixel: samples of pools, and those that have a walk from the light */
+    uint chunks, begun, whole; /* chunks of a pool that have such a sample, and as many were they all together */
+    uint wrong; /* pools that have more or fewer such samples than they say */
+    bool pilot; /* the next pool is the one before the first generation, which shows nothing */
+    bool bright; /* path tracing meets light, so that pools learn where to look */
+};
+
+#define CHUNK 512u
+
+static void pool_record(Backend *backend, const FrameParams *frame)
+{
+    uint walks = 0;
+    for (uint first = 0; first < frame->item_count; first += CHUNK) {
+        uint before = walks, end = first + CHUNK < frame->item_count ? first + CHUNK : frame->item_count;
+        for (uint item = first; item < end; ++item) {
+            bool walk = pool_has_light(frame, item);
+            uint pixel = item_place_of(frame, item).pixel;
+            ++backend->samples[pixel];
+            backend->walks[pixel] += walk;
+            walks += walk;
+        }
+        backend->begun += walks > before;
+        ++backend->chunks;
+    }
+    backend->whole += (frame->pool_lights + CHUNK - 1) / CHUNK;
+    backend->wrong += walks != frame->pool_lights;
+}
+
+/* A splat of its own for every sample of path tracing, of which the lower half of the picture has a thousandth. */
+static void paths_record(const FrameParams *frame, const SplatSink *sink)
+{
+    uint words[SPLAT_WORDS];
+    for (uint item = 0; item < frame->item_count; ++item) {
+        ItemPlace place = item_place_of(frame, frame->first_item + item);
+        Random4 random = random_four(place.pixel, place.sample, 1, 2, 3, 4);
+        float value = random_float(random.x[0]) * (place.pixel / frame->width < frame->height / 2 ? 1.0f : 1e-3f);
+        words[SPLAT_PIXEL] = place.pixel | SPLAT_FROM_LIGHT;
+        for (uint k = 0; k < 3; ++k)
+            words[SPLAT_COLOR + k] = float_bits(value);
+        sink->splats(sink->context, words, 1, 1);
+    }
+}
+
+static bool record_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
+                       const atomic_int *stop, uint64_t *items_done, Error *error)
+{
+    (void)stop, (void)error;
+    if (frame->pool != 0) {
+        memset(list->pass_words, 0, (size_t)POOL_WORDS * frame->item_count * sizeof(uint));
+        if (!backend->pilot)
+            pool_record(backend, frame);
+        backend->pilot = false;
+    } else if (backend->bright) {
+        paths_record(frame, sink);
+    }
+    *items_done = frame->item_count;
+    return true;
+}
+
+static const BackendInterface RECORD = {.name = "record", .run = record_run};
+
+/* Generations with pools of `pool` samples, of a picture of width x height. */
+static void generations_record(Backend *backend, int width, int height, uint pool, uint64_t seed, uint generations)
+{
+    Error error = {0};
+    Film film;
+    Mmlt mmlt;
+    ck_assert(film_init(&film, width, height, (const int[4]){0, 0, width, height}, &error));
+    ck_assert(film_light_reserve(&film, &error));
+    const RenderOptions options = {.samples = 1, .max_depth = 4, .seed = seed, .chains = {.chains = 16, .pool = pool}};
+    RenderRun run = {.interface = &RECORD,
+                     .backend = backend,
+                     .options = &options,
+                     .film = &film,
+                     .crop_pixels = (uint64_t)width * (uint64_t)height,
+                     .frame = {.max_depth = 4,
+                               .width = (uint)width,
+                               .height = (uint)height,
+                               .crop_x1 = (uint)width,
+                               .crop_y1 = (uint)height,
+                               .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
+                               .seed_low = (uint)seed}};
+    ck_assert(mmlt_init(&mmlt, &run, &error));
+    backend->pilot = true;
+    for (uint i = 0; i < generations; ++i)
+        ck_assert_msg(mmlt_generation_run(&mmlt, 16, &error), "%s", error.message);
+    mmlt_destroy(&mmlt);
+    film_destroy(&film);
+}
+
+/* Pixels a side, samples of a pool over those pixels, whether pools visit some pixels more often. */
+static const struct {
+    int side;
+    double part;
+    bool bright;
+} SIZES[] = {{128, 1.0, false},     {128, 0.5, false},  {128, 0.25, false}, {128, 2.0, false}, {128, 0.75, false},
+             {128, 0.37, false},    {128, 0.81, false}, {128, 1.13, false}, {128, 0.2, false}, {128, 1.0 / 13, false},
+             {127, 2.0 / 3, false}, {128, 1.0, true},   {128, 0.5, true},   {128, 0.37, true}, {128, 0.1, true}};
+
+/* Numbers of walks of the pixels vary no more than half as much as if they were drawn, whatever the sizes, and where pools
+ * visit some pixels more often, of which they go through few rounds before it changes, no more. Nearly no pixel is left out. */
+START_TEST(test_even)
+{
+    int side = SIZES[_i].side;
+    uint pixels = (uint)(side * side), none = 0;
+    double squares = 0.0, drawn = 0.0;
+    SampleMoments walks = {0};
+    Backend backend = {
+        .samples = calloc(pixels, sizeof(uint)), .walks = calloc(pixels, sizeof(uint)), .bright = SIZES[_i].bright};
+    ck_assert(backend.samples && backend.walks);
+    generations_record(&backend, side, side, (uint)(SIZES[_i].part * pixels), 1, GENERATIONS);
+    for (uint i = 0; i < pixels; ++i) {
+        double expected = 0.25 * backend.samples[i], off = backend.walks[i] - expected;
+        squares += off * off;
+        drawn += 0.75 * expected;
+        none += backend.walks[i] == 0 && expected >= 3.0;
+        sample_moments_add(&walks, backend.walks[i]);
+    }
+    double deviation = sqrt(walks.squares / walks.count) / walks.mean;
+    printf("%d x %d, pools of %.3f of the pixels%s: %.2f walks a pixel, relative deviation %.3f, %.3f times the "
+           "variance of "
+           "draws, %.2f %% have none; chunks with walks %.3f of all, %.3f times the least\n",
+           side, side, SIZES[_i].part, SIZES[_i].bright ? ", visits" : "", walks.mean, deviation, squares / drawn,
+           100.0 * none / pixels, (double)backend.begun / backend.chunks, (double)backend.begun / backend.whole);
+    ck_assert_uint_eq(backend.wrong, 0);
+    ck_assert_double_lt(squares, (backend.bright ? 1.0 : 0.5) * drawn);
+    ck_assert_uint_le(none, pixels / 1000);
+    free(backend.samples);
+    free(backend.walks);
+}
+END_TEST
+
+/* The first generation by itself prefers no pixel: over many seeds each has as many walks. */
+START_TEST(test_first)
+{
+    enum { SIDE = 24, PIXELS = SIDE * SIDE, SEEDS = 512 };
+    static uint samples[PIXELS], walks[PIXELS];
+    Backend backend = {.samples = samples, .walks = walks};
+    double least = 0.0, most = 0.0;
+    for (uint64_t seed = 0; seed < SEEDS; ++seed)
+        generations_record(&backend, SIDE, SIDE, _i == 0 ? PIXELS : PIXELS / 4, seed, 1);
+    for (uint i = 0; i < PIXELS; ++i) {
+        double away = (walks[i] - 0.25 * samples[i]) / sqrt(0.25 * 0.75 * samples[i]);
+        least = away < least ? away : least;
+        most = away > most ? away : most;
+    }
+    printf("first pools: walks of a pixel %.2f ... %.2f standard errors from a quarter of its samples\n", least, most);
+    ck_assert_double_gt(least, -5.0);
+    ck_assert_double_lt(most, 5.0);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("pool");
+    TCase *even = tcase_create("even");
+    tcase_set_timeout(even, 300);
+    tcase_add_loop_test(even, test_even, 0, sizeof SIZES / sizeof SIZES[0]);
+    suite_add_tcase(suite, even);
+    TCase *first = tcase_create("first");
+    tcase_add_loop_test(first, test_first, 0, 2);
+    suite_add_tcase(suite, first);
+    return test_run(suite);
+}

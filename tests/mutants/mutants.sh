@@ -1,0 +1,356 @@
+#!/bin/sh
+# Do the tests see faults? Plants those of mutants/mutants.txt, all in one build that chooses one of them when it runs, and runs for
+# each the tests that could see it until one fails.
+set -u
+
+usage() {
+    cat <<'TEXT'
+usage: tests/mutants/mutants.sh [OPTION]... [NUMBER]...
+Runs the tests against planted faults: those with the numbers given, or all that the results of earlier runs in the folder lack.
+
+  -w FOLDER   work there (mutants.work): the sources with faults, their build, results.tsv
+  -p PROGRAM  an ordinary build of twinlight: without a fault, pictures must have the same bits as its pictures
+  -j JOBS     of make (1); tests run one after the other
+  -t TABLE    write results as a table (mutants.md in the working folder)
+  -l          what `make check` does not see, show to `make check-long`, too: hours
+  -n          plant and compare with the list only; build and run nothing
+  -h          this text
+
+A fault is killed when a test program fails, crashes or runs out of time. The build is of the CPU backend alone: faults in
+shared/ are not in the sources of an OpenCL program, and a difference between the two backends would be no merit of a test.
+TEXT
+}
+
+work=mutants.work program='' jobs=1 table='' long='' dry=''
+while getopts w:p:j:t:lnh option; do
+    case $option in
+    w) work=$OPTARG ;;
+    p) program=$OPTARG ;;
+    j) jobs=$OPTARG ;;
+    t) table=$OPTARG ;;
+    l) long=yes ;;
+    n) dry=yes ;;
+    h) usage && exit 0 ;;
+    *) usage >&2 && exit 2 ;;
+    esac
+done
+shift $((OPTIND - 1))
+
+top=$(cd "$(dirname "$0")/../.." && pwd) || exit 1
+list=$top/tests/mutants/mutants.txt
+mkdir -p "$work" && work=$(cd "$work" && pwd) || exit 1
+table=${table:-$work/mutants.md}
+case $table in /*) ;; *) table=$(pwd)/$table ;; esac
+case $program in "" | /*) ;; *) program=$(pwd)/$program ;; esac
+source=$work/source planted=$work/planted build=$work/build results=$work/results.tsv header=$work/mutant.h
+
+# ---- planting ---------------------------------------------------------------------------------------------------------
+
+# plant FILE: the file with its faults, on standard output. An expression becomes (MUTANT(n) ? (faulty) : (original)).
+plant() {
+    awk -v name="$1" '
+    function complain(text) { print "mutants/mutants.txt: [" number "]: " text | "cat >&2"; failed = 1 }
+    function occurrences(text, part,    count, at) {
+        for (count = 0; (at = index(text, part)) > 0; ++count)
+            text = substr(text, at + length(part))
+        return count
+    }
+    function finish(    from, at) {
+        if (number == "" || file != name)
+            return
+        from = 1
+        if (context != "") {
+            if (occurrences(text, context) != 1)
+                complain("not once in " name ": " context)
+            from = index(text, context) + length(context)
+        } else if (occurrences(text, original) != 1) {
+            complain("not once in " name ": " original)
+        }
+        at = index(substr(text, from), original)
+        if (at == 0)
+            complain("not in " name ": " original)
+        at += from - 1
+        if (!(at in originals)) {
+            originals[at] = original
+            order[++places] = at
+        } else if (originals[at] != original) {
+            complain("begins where another does: " original)
+        }
+        numbers[at] = numbers[at] " " number
+        faults[number] = faulty
+    }
+    function rendered(at,    part, count, i, n, statement, head, tail) {
+        part = originals[at]
+        statement = part ~ /;$/
+        count = split(numbers[at], n, " ")
+        head = statement ? "{ " : "("
+        for (i = 1; i <= count; ++i)
+            head = head (statement ? "if (MUTANT(" n[i] ")) { " faults[n[i]] " } else " : "MUTANT(" n[i] ") ? (" faults[n[i]] ") : ")
+        return head (statement ? "{ " part " } }" : "(" part "))")
+    }
+    BEGIN { number = "" }
+    FNR == NR { text = text $0 "\n"; next } # the source, before the list
+    /^\[/ {
+        finish()
+        number = substr($1, 2, length($1) - 2)
+        file = substr($2, 1, length($2) - 1)
+        if (number in seen)
+            complain("twice")
+        seen[number] = 1
+        context = original = faulty = ""
+    }
+    /^@ / { context = substr($0, 3) }
+    /^- / { original = substr($0, 3) }
+    /^\+/ { faulty = substr($0, 3) }
+    END {
+        finish()
+        for (i = 2; i <= places; ++i) # by place
+            for (k = i; k > 1 && order[k - 1] > order[k]; --k) {
+                at = order[k]
+                order[k] = order[k - 1]
+                order[k - 1] = at
+            }
+        from = 1
+        for (i = 1; i <= places; ++i) {
+            at = order[i]
+            if (at < from) {
+                number = numbers[at]
+                complain("overlaps another")
+            }
+            printf "%s%s", substr(text, from, at - from), rendered(at)
+            from = at + length(originals[at])
+        }
+        printf "%s", substr(text, from)
+        exit failed
+    }' "$top/$1" "$list"
+}
+
+files=$(sed -n 's/^\[[0-9]*\] \([^:]*\): .*/\1/p' "$list" | sort -u)
+numbers=$(sed -n 's/^\[\([0-9]*\)\] .*/\1/p' "$list")
+mkdir -p "$source" "$planted/shared" "$planted/host"
+for file in $files; do
+    plant "$file" >"$planted/new" || exit 1
+    mkdir -p "$planted/${file%/*}"
+    cmp -s "$planted/new" "$planted/$file" || mv "$planted/new" "$planted/$file"
+done
+echo "planted: $(echo "$numbers" | wc -l) faults in $(echo "$files" | wc -l) files"
+[ ! "$dry" ] || exit 0
+# Later copies take what differs alone, with the time of now: what was built from older text is built again.
+(cd "$top" && {
+    for folder in shared host backend_cpu backend_ocl tests scenes bench man docs m4 build-aux; do
+        [ ! -d $folder ] || find $folder -type f
+    done
+    find . -maxdepth 1 -type f
+} | while read -r file; do
+    mkdir -p "$source/${file%/*}"
+    if [ ! -f "$source/$file" ]; then
+        cp -p "$file" "$source/$file"
+    elif [ ! -f "$planted/$file" ]; then
+        cmp -s "$file" "$source/$file" || cp "$file" "$source/$file"
+    fi || exit 1
+done) || exit 1
+rm -f "$source/config.status" # where the sources were built in place
+for file in $files; do
+    cmp -s "$planted/$file" "$source/$file" || cp "$planted/$file" "$source/$file" || exit 1
+done
+
+# Every unit reads the number, all but one of the variables go when they are linked.
+cat >"$header.new" <<'TEXT'
+extern int mutant_chosen;
+__attribute__((weak)) int mutant_chosen;
+#define MUTANT(number) (mutant_chosen == (number))
+extern char *getenv(const char *name);
+extern int atoi(const char *text);
+__attribute__((constructor)) static void mutant_choose(void)
+{
+    const char *text = getenv("TWINLIGHT_MUTANT");
+    mutant_chosen = text ? atoi(text) : 0;
+}
+TEXT
+cmp -s "$header.new" "$header" || mv "$header.new" "$header"
+
+# ---- building ---------------------------------------------------------------------------------------------------------
+
+# One build for all: without the kernels for other processors, which hold the same faults.
+[ -x "$source/configure" ] || (cd "$source" && autoreconf -fi) >"$work/configure.log" 2>&1 || exit 1
+mkdir -p "$build" && cd "$build" || exit 1
+[ -f Makefile ] || "$source/configure" -q --without-opencl --enable-native CFLAGS="-O2 -DNDEBUG" >>"$work/configure.log" 2>&1 || {
+    echo "configure failed: $work/configure.log"
+    exit 1
+}
+make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log" 2>&1 || {
+    tail -n 20 "$work/make.log"
+    exit 1
+}
+
+# ---- running ----------------------------------------------------------------------------------------------------------
+
+# Which programs, or PROGRAM:CASE, could see a fault in FILE: those that are likely to or quick, and then the others.
+likely() {
+    case $1 in
+    shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
+    shared/chain/mutation.h) echo test_chain:shown test_chain test_shift test_layers ;;
+    shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
+    shared/bsdf/invert.h) echo test_bsdf:inverse test_shift ;;
+    shared/chain/pool.h) echo test_chain:shown test_chain_population test_pool test_layers ;;
+    shared/chain/chain_light.h) echo test_chain:shown test_layers test_shift ;;
+    shared/light/emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
+    shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_bidirectional:walks test_analytic ;;
+    shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
+    host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
+    host/*) echo test_blend test_pool test_layers ;;
+    esac
+}
+others() {
+    case $1 in
+    shared/path/mis.h | shared/path/strategy.h | shared/light/*.h | shared/camera/camera.h)
+        echo test_bidirectional test_numerics test_render test_scenes test_mmlt command/test_cli.sh ;;
+    shared/camera/film_sum.h)
+        echo test_blend test_render test_group test_verify command/test_cli.sh test_numerics test_bidirectional test_mmlt ;;
+    *) echo test_mmlt test_layers test_aim test_numerics test_scenes command/test_cli.sh ;;
+    esac
+}
+# Those of `make check-long` that take more samples or have more cases there.
+longer() {
+    case $1 in
+    shared/camera/film_sum.h) echo test_film test_mmlt test_bidirectional test_numerics ;;
+    shared/path/mis.h | shared/path/strategy.h | shared/light/*.h | shared/camera/camera.h)
+        echo test_bidirectional test_numerics test_scenes test_reference test_mmlt ;;
+    *) echo test_mmlt test_numerics test_scenes test_reference ;;
+    esac
+}
+
+# Other work on the machine is no fault.
+export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-4}"
+
+# test_fails PROGRAM NUMBER EFFORT: runs it; what it says goes to $work/out. 77: it is skipped.
+test_fails() {
+    run=tests/${1%%:*} limit=600 case=''
+    case $1 in *.sh) run=$source/tests/$1 ;; *:*) case=${1#*:} ;; esac
+    [ "$3" = 1 ] || limit=7200
+    CK_RUN_CASE=$case
+    if [ "$case" ]; then export CK_RUN_CASE; else unset CK_RUN_CASE; fi
+    TWINLIGHT_MUTANT=$2 TWINLIGHT_TEST_EFFORT=$3 srcdir=$source XDG_CACHE_HOME=$work/cache \
+        timeout -k 10 $limit "$run" >"$work/out" 2>&1
+    case $? in 0 | 77) return 1 ;; esac
+}
+
+# What failed first, by the names of Check: CASE/TEST.
+failed_case() {
+    sed -n 's/^[^ ]*:[0-9]*:[FE]:\([^:]*\):\([^:]*\):.*/\1\/\2/p' "$work/out" | head -n 1
+}
+
+# control: without a fault everything passes, and pictures have the bits of PROGRAM's.
+control() {
+    for name in $(for file in $files; do likely "$file" && others "$file"; done | tr ' ' '\n' | sort -u); do
+        if test_fails "$name" 0 1; then
+            echo "without a fault $name fails:"
+            tail -n 20 "$work/out"
+            return 1
+        fi
+    done
+    [ "$program" ] || return 0
+    for integrator in pt ibpt bdpt mmlt; do
+        for one in "$program" ./twinlight; do
+            TWINLIGHT_MUTANT=0 "$one" render --integrator=$integrator --samples=8 --resolution=64x64 \
+                -o "$work/picture.exr" "$source/scenes/cornell.pbrt" >"$work/out" 2>&1 || return 1
+            [ "$one" = ./twinlight ] || mv "$work/picture.exr" "$work/expected.exr"
+        done
+        cmp "$work/expected.exr" "$work/picture.exr" || return 1
+    done
+}
+
+# killer NUMBER EFFORT PROGRAM...: the first program that fails, a tab, and what of it; false: none does.
+killer() {
+    killer_number=$1 killer_effort=$2
+    shift 2
+    for killer_name; do
+        if test_fails "$killer_name" "$killer_number" "$killer_effort"; then
+            printf '%s\t%s' "${killer_name%%:*}" "$(failed_case)"
+            return 0
+        fi
+    done
+    return 1
+}
+
+file_of() {
+    sed -n "s/^\[$1\] \([^:]*\): .*/\1/p" "$list"
+}
+
+# record NUMBER VERDICT KILLER: a line of the results, in place of an older one. VERDICT is check, check-long, survives or,
+# before other tests have run, open.
+record() {
+    grep -v "^$1	" "$results" >"$results.new"
+    printf '%s\t%s\t%s\t%s\n' "$1" "$(file_of "$1")" "$2" "$3" >>"$results.new"
+    sort -n "$results.new" >"$results" && rm "$results.new"
+    printf '[%s] %s: %s %s\n' "$1" "$(file_of "$1")" "$2" "$(echo "$3" | tr '\t' ' ')"
+}
+
+# step VERDICT EFFORT TESTS NEXT: tests faults of such a verdict (-: none yet) with the programs that the function TESTS
+# names; what survives them has the verdict NEXT.
+step() {
+    for number in $chosen; do
+        verdict=$(awk -F '\t' -v number="$number" '$1 == number { print $3 }' "$results")
+        [ "${verdict:--}" = "$1" ] || continue
+        # shellcheck disable=SC2046 # a list
+        if by=$(killer "$number" "$2" $("$3" "$(file_of "$number")")); then
+            if [ "$2" = 1 ]; then record "$number" check "$by"; else record "$number" check-long "$by"; fi
+        else
+            record "$number" "$4" ''
+        fi
+    done
+}
+
+touch "$results"
+# When anything has been built since, once more.
+if [ ! -f "$work/control" ] || find tests twinlight -type f -newer "$work/control" | grep -q .; then
+    control || exit 1
+    touch "$work/control"
+fi
+chosen=${*:-$numbers}
+if [ $# -gt 0 ]; then
+    for number in $chosen; do
+        sed "/^$number	/d" "$results" >"$results.new" && mv "$results.new" "$results"
+    done
+fi
+step - 1 likely open
+step open 1 others survives
+[ ! "$long" ] || step survives 8 longer survives
+
+# ---- the table --------------------------------------------------------------------------------------------------------
+
+awk -F '\t' '
+FNR == NR { verdict[$1] = $3; program[$1] = $4; what[$1] = $5; next }
+function cell(text) { gsub(/\|/, "\\|", text); return text }
+function finish(    by) {
+    if (number == "")
+        return
+    by = verdict[number] == "check" ? program[number] : verdict[number] == "check-long" ? program[number] ", long" : reason != "" ? "none: " reason : verdict[number] == "survives" ? "none" : "not run"
+    if (what[number] != "")
+        by = by ", `" what[number] "`"
+    rows = rows sprintf("| %s | %s | %s | `%s` | `%s` | %s |\n", number, file, kind, cell(original), faulty == "" ? " " : cell(faulty), by)
+    ++count
+    ++sums[verdict[number]]
+    equivalent += verdict[number] == "survives" && reason != ""
+}
+/^\[/ {
+    finish()
+    number = substr($0, 2, index($0, "]") - 2)
+    file = substr($0, index($0, "] ") + 2)
+    kind = substr(file, index(file, ": ") + 2)
+    file = substr(file, 1, index(file, ": ") - 1)
+    original = faulty = reason = ""
+}
+/^- / { original = substr($0, 3) }
+/^\+/ { faulty = substr($0, 3) }
+/^= / { reason = substr($0, 3) }
+END {
+    finish()
+    print "# Planted faults\n"
+    print "Made by `make mutants` (`tests/mutants/mutants.sh`, the faults: `tests/mutants/mutants.txt`). Each fault is built into the program and"
+    print "chosen when it runs; the test named is the first that failed with it, on the CPU backend.\n"
+    printf "%d faults: %d killed by `make check`, %d more by `make check-long`, %d survive, of which %d have a reason.\n\n", count, sums["check"], sums["check-long"], sums["survives"], equivalent
+    print "| | file | kind of fault | original | faulty | killed by |\n|---|---|---|---|---|---|"
+    printf "%s", rows
+}' "$results" "$list" >"$table"
+grep '^[0-9]* faults: ' "$table"

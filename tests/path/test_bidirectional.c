@@ -1,0 +1,15 @@
+/* Bidirectional integrators: weights, strategies one by one, their sum, film, and what is numerically hard. */
+#include "support/bidirectional.h"
+
+int main(void)
+{
+    Suite *suite = suite_create("bidirectional");
+    suite_add_tcase(suite, bidirectional_weights_case());
+    suite_add_tcase(suite, bidirectional_walks_case());
+    suite_add_tcase(suite, bidirectional_running_case());
+    suite_add_tcase(suite, bidirectional_strategies_case());
+    suite_add_tcase(suite, bidirectional_film_case());
+    suite_add_tcase(suite, bidirectional_hard_case());
+    suite_add_tcase(suite, bidirectional_sums_case());
+    return test_run(suite);
+}

@@ -1,0 +1,416 @@
+/* Weights on real walks: paths that BDPT's kernels have made, each with the weight that they gave it, against the weights
+ * of all its strategies from densities that are computed here, from the path's vertices alone. */
+#include "path/bidirectional_path.h"
+#include "support/bidirectional.h"
+#include "support/verify_fixture.h"
+
+#include "kernels/bd_connect.cl"
+#include "layout/kernel_list.h"
+
+enum { ITEMS = 4096, DEPTH = 5 };
+
+/* What the kernels have left behind, word after word, `stride` items each. */
+typedef struct Walks {
+    VerifyPair *pair;
+    FrameParams frame;
+    BackendScene packed;
+    SceneView view;
+    uint *words[BUFFER_COUNT];
+} Walks;
+
+static void walks_sink(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride)
+{
+    const Walks *walks = context;
+    for (uint field = 0; field < walks->pair->list.words_per_item[buffer]; ++field)
+        memcpy(walks->words[buffer] + (size_t)field * ITEMS + first, words + (size_t)field * stride,
+               count * sizeof *words);
+}
+
+/* The state after the first `steps` steps. */
+static void walks_run(Walks *walks, size_t steps)
+{
+    Error error = {0};
+    const BackendMember *side = &walks->pair->sides[0];
+    StepList list = walks->pair->list;
+    list.count = steps;
+    ck_assert_msg(side->interface->inspect(side->backend, &walks->frame, &list, walks_sink, walks, &error), "%s",
+                  error.message);
+}
+
+static void walks_open(Walks *walks, VerifyPair *pair, const BidirectionalScene *scene, bool balance)
+{
+    const RenderSetup setup = {.text = bidirectional_text(scene),
+                               .max_depth = DEPTH,
+                               .seed = 21,
+                               .integrator = integrator_bdpt(),
+                               .balance = balance};
+    const RenderSetup setups[2] = {setup, setup};
+    verify_pair_open(setups, pair);
+    *walks = (Walks){.pair = pair, .frame = pair->frame};
+    walks->frame.item_count = ITEMS;
+    walks->frame.stride = ITEMS;
+    walks->packed = scene_backend_view(&pair->scene);
+    walks->view = scene_view(&walks->frame, walks->packed.geometry, walks->packed.tables, walks->packed.texels);
+    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id) {
+        walks->words[id] = calloc((size_t)ITEMS * pair->list.words_per_item[id] + 1, sizeof(uint));
+        ck_assert_ptr_nonnull(walks->words[id]);
+    }
+}
+
+static void walks_close(Walks *walks)
+{
+    for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id)
+        free(walks->words[id]);
+    verify_pair_close(walks->pair);
+}
+
+/* ---- a path ------------------------------------------------------------------------------------------------------ */
+
+/* The vertices of one path; x_0 is on the lens and x_k on a light. */
+typedef struct RealPath {
+    uint k;
+    Vertex vertices[DEPTH + 1]; /* of x_1 ... x_{k-1} all, of x_k point and normal */
+    Surface end; /* x_k of an area light */
+    uint light;
+    bool infinite, delta_light;
+    Vec3 ways[DEPTH + 1]; /* unit, from x_i to x_{i-1} */
+    TestPath densities;
+} RealPath;
+
+/* Unit, from x_i to its neighbour x_j, and the squared distance; 1 to infinity. */
+static Vec3 path_direction(const RealPath *path, uint i, uint j, float *distance2)
+{
+    const bool far = path->infinite && (i == path->k || j == path->k);
+    *distance2 = far ? 1.0f : vec3_length_squared(vec3_sub(path->vertices[j].p, path->vertices[i].p));
+    return j < i ? path->ways[i] : vec3_negate(path->ways[j]);
+}
+
+/* Density of x_to, per area, when x_at scatters what comes from x_from. */
+static float scattered(const Walks *walks, const RealPath *path, uint from, uint at, uint to, uint transport)
+{
+    float ignored, distance2;
+    const Vertex *vertex = &path->vertices[at];
+    Vec3 back = path_direction(path, at, from, &ignored), on = path_direction(path, at, to, &distance2);
+    float pdf = bsdf_eval(&walks->view, &vertex->bsdf, frame_to_local(vertex->frame, back),
+                          frame_to_local(vertex->frame, on), transport)
+                    .pdf_w;
+    if (to == path->k && path->infinite)
+        return pdf;
+    return pdf * solid_angle_to_area(on, path->vertices[to].ng, distance2);
+}
+
+/* Density of x_{k-1}, per area, as the light emits towards it. */
+static float emitted(const Walks *walks, const RealPath *path)
+{
+    float distance2;
+    Vec3 w = path_direction(path, path->k - 1, path->k, &distance2), ng = path->vertices[path->k - 1].ng;
+    if (path->infinite)
+        return light_emit_pdf_disc(&walks->view) * float_abs(vec3_dot(w, ng));
+    return light_emit_pdf_w(&walks->view, path->light, path->vertices[path->k].ng, vec3_negate(w)) *
+           solid_angle_to_area(w, ng, distance2);
+}
+
+/* Density of x_k as the light makes it. */
+static float light_point(const Walks *walks, const RealPath *path)
+{
+    const SceneView *view = &walks->view;
+    float select = view->lights[path->light].select_pdf;
+    if (path->delta_light)
+        return select;
+    return select * (path->infinite ? environment_pdf_w(view, path->light, vec3_negate(path->ways[path->k]))
+                                    : light_emit_pdf_p(view, path->light, &path->end));
+}
+
+/* All densities from the vertices. Those of delta lobes are no densities but ratios: `path->densities` has them from the
+ * walk that made them, and keeps them. */
+static void path_densities(const Walks *walks, RealPath *path)
+{
+    TestPath *d = &path->densities;
+    uint k = path->k;
+    float distance2;
+    Vec3 from_lens = path_direction(path, 0, 1, &distance2);
+    d->camera[1] = camera_pdf(&walks->frame, path->vertices[0].p, from_lens, float_sqrt(distance2)) *
+                   float_abs(vec3_dot(from_lens, path->vertices[1].ng));
+    for (uint i = 2; i <= k; ++i)
+        if (!d->delta[i - 1])
+            d->camera[i] = scattered(walks, path, i - 2, i - 1, i, TRANSPORT_RADIANCE);
+    if (path->delta_light)
+        d->camera[k] = 0.0f;
+    d->light[k] = light_point(walks, path);
+    d->light[k - 1] = emitted(walks, path);
+    for (uint i = 1; i + 2 <= k; ++i)
+        if (!d->delta[i + 1])
+            d->light[i] = scattered(walks, path, i + 2, i + 1, i, TRANSPORT_IMPORTANCE);
+    d->connect = 1.0f;
+    if (!path->infinite && !path->delta_light) {
+        Vec3 w = path_direction(path, k - 1, k, &distance2);
+        d->connect = light_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, w, distance2, &path->end);
+    }
+}
+
+/* ---- paths from the kernels' state ------------------------------------------------------------------------------- */
+
+/* Where the camera's ray that made z_1 = p began, `back` from it: a point of the lens, or of the film of an orthographic camera. */
+static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
+{
+    const Camera *camera = &walks->frame.camera;
+    float depth = affine_point(camera->camera_from_world, p).z;
+    return vec3_mad(p, -depth / affine_vector(camera->camera_from_world, back).z, back);
+}
+
+/* A walk's part of the path of (s, t), and the densities around its delta vertices, all but the ends of the connection. */
+static void camera_part(const Walks *walks, uint item, uint s, uint t, RealPath *path)
+{
+    const DensityView view =
+        bd_density_view(&walks->frame, walks->words[BUFFER_PATHS], walks->words[BUFFER_DENSITIES], item);
+    TestPath *d = &path->densities;
+    for (uint i = 1; i < (s == 0 ? path->k : t); ++i) {
+        Vertex *z = &path->vertices[i];
+        *z = vertex_load(&walks->view, walks->words[BUFFER_VERTICES], ITEMS, vertex_base(&walks->frame, SIDE_CAMERA, i),
+                         item);
+        path->ways[i] = frame_to_world(z->frame, z->wo);
+    }
+    for (uint i = 1; i + 2 <= t; ++i)
+        if ((view.camera_delta >> i & 1u) != 0u) {
+            d->delta[i] = true;
+            d->camera[i + 1] = density_own(&view, SIDE_CAMERA, i + 1);
+            if (i > 1)
+                d->light[i - 1] = density_other(&view, SIDE_CAMERA, i - 1);
+        }
+    if (t > 1)
+        path->vertices[0].p = lens_point(walks, path->vertices[1].p, path->ways[1]);
+}
+
+static void light_part(const Walks *walks, uint item, uint s, RealPath *path)
+{
+    const uint *paths = walks->words[BUFFER_PATHS];
+    const DensityView view = bd_density_view(&walks->frame, paths, walks->words[BUFFER_DENSITIES], item);
+    uint k = path->k, flags = state_load(paths, ITEMS, BD_EMITTER_FLAGS, item);
+    for (uint i = 0; i < s; ++i) {
+        Vertex *y = &path->vertices[k - i];
+        *y = vertex_load(&walks->view, walks->words[BUFFER_VERTICES], ITEMS, vertex_base(&walks->frame, SIDE_LIGHT, i),
+                         item);
+        if (i > 0)
+            path->ways[k - i + 1] = vec3_negate(frame_to_world(y->frame, y->wo));
+    }
+    for (uint i = 1; i + 2 <= s; ++i)
+        if ((view.light_delta >> i & 1u) != 0u) {
+            path->densities.delta[k - i] = true;
+            path->densities.light[k - i - 1] = density_own(&view, SIDE_LIGHT, i + 1);
+            path->densities.camera[k - i + 1] = density_other(&view, SIDE_LIGHT, i - 1);
+        }
+    path->light = state_load(paths, ITEMS, BD_EMITTER, item);
+    path->infinite = (flags & EMITTER_INFINITE) != 0u;
+    path->delta_light = (flags & EMITTER_DELTA) != 0u;
+}
+
+/* What connect_light draws for z_{t-1}. */
+static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
+{
+    LightSample sample = {0};
+    Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, 1, t);
+    path->light = light_select(&walks->view, random.x[0], random.x[1]);
+    TEST_TRUE(light_sample(&walks->view, path->light, path->vertices[t - 1].p,
+                           vec2(random_float(random.x[2]), random_float(random.x[3])), &sample));
+    path->infinite = sample.infinite != 0u;
+    path->delta_light = sample.delta != 0u;
+    path->ways[path->k] = vec3_negate(sample.wi);
+    path->vertices[path->k].p = sample.p;
+    path->vertices[path->k].ng = sample.ng;
+}
+
+/* Where connect_camera has put the lens point for y_{s-1}. */
+static Vec3 lens_drawn(const Walks *walks, uint item, uint s, Vec3 p)
+{
+    CameraConnection camera;
+    Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, s, 1);
+    TEST_TRUE(camera_connect(&walks->frame, p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera));
+    return camera.p;
+}
+
+/* The light that the camera's walk has met after its last ray; false when that is more than one. */
+static bool light_met(const Walks *walks, uint item, RealPath *path)
+{
+    const SceneView *view = &walks->view;
+    Ray ray = ray_load(walks->words[BUFFER_RAYS], ITEMS, item);
+    Hit hit = hit_load(walks->words[BUFFER_HITS], ITEMS, item);
+    path->infinite = hit.primitive == NONE;
+    path->ways[path->k] = vec3_negate(ray.d);
+    if (path->infinite) {
+        path->light = view->infinite_lights[0];
+        return walks->frame.infinite_light_count == 1;
+    }
+    path->end = surface_from_hit(view, &ray, hit);
+    const Shape *shape = &view->shapes[path->end.shape];
+    path->light = shape->first_light + hit.primitive - shape->first_primitive;
+    path->vertices[path->k].p = path->end.p;
+    path->vertices[path->k].ng = path->end.ng;
+    return true;
+}
+
+/* The path that the strategy (s, t) has made of the item; false when it is not one path. */
+static bool path_gather(const Walks *walks, uint item, uint s, uint t, RealPath *path)
+{
+    memset(path, 0, sizeof *path);
+    path->k = path->densities.k = s + t - 1;
+    camera_part(walks, item, s, t, path);
+    if (s >= 2)
+        light_part(walks, item, s, path);
+    else if (s == 1)
+        light_drawn(walks, item, t, path);
+    else if (!light_met(walks, item, path))
+        return false;
+    if (s > 0) { /* lamps are parallelograms, disks and triangles: (u, v) does not matter */
+        path->end.p = path->vertices[path->k].p;
+        path->end.ng = path->vertices[path->k].ng;
+    }
+    if (t == 1)
+        path->vertices[0].p = lens_drawn(walks, item, s, path->vertices[1].p);
+    if (s > 1)
+        path->ways[t] = vec3_normalize(vec3_sub(path->vertices[t - 1].p, path->vertices[t].p));
+    path->densities.hittable = !path->delta_light;
+    path_densities(walks, path);
+    return true;
+}
+
+/* ---- the test ---------------------------------------------------------------------------------------------------- */
+
+typedef struct Tally {
+    uint paths[DEPTH + 1]; /* by s */
+    uint rounded; /* where rounding alone may be more than 1e-4 */
+    double worst;
+} Tally;
+
+/* A ray leaves its surface a little beside the vertex (geometry/ray.h). Kernels take the one way's density along the ray and the
+ * other's between the vertices, and these directions, hence cosines, hence densities differ by this part. */
+static double path_rounding(const RealPath *path)
+{
+    double sum = 0.0;
+    for (uint i = 2; i <= path->k; ++i) {
+        float distance2;
+        Vec3 w = path_direction(path, i, i - 1, &distance2);
+        Vec3 between = vec3_sub(path->vertices[i - 1].p, path->vertices[i].p);
+        if (i == path->k && path->infinite)
+            continue;
+        double off = (double)vec3_length(vec3_sub(vec3_scale(between, 1.0f / float_sqrt(distance2)), w));
+        double cosine = (double)float_abs(vec3_dot(w, path->vertices[i - 1].ng));
+        if (i < path->k || !path->delta_light)
+            cosine = fmin(cosine, (double)float_abs(vec3_dot(w, path->vertices[i].ng)));
+        sum += off / fmax(cosine, 1e-9);
+    }
+    return sum;
+}
+
+/* `contribution`: weighted and not. */
+static void weight_check(const Walks *walks, const char *name, uint item, uint s, uint t, const Vec3 contribution[2],
+                         Tally *tally)
+{
+    RealPath path;
+    const float plain = vec3_max_component(contribution[1]);
+    const uint set = walks->frame.strategies, exponent = walks->frame.mis_exponent;
+    if (!(plain > 0.0f) || !path_gather(walks, item, s, t, &path))
+        return;
+    TEST_TRUE(test_path_possible(&path.densities, set, s));
+    const double weight = (double)vec3_max_component(contribution[0]) / (double)plain;
+    double sum = weight;
+    for (uint other = 0; other <= path.k; ++other)
+        if (other != s && test_path_possible(&path.densities, set, other))
+            sum += (double)test_path_weight(&path.densities, set, exponent, other);
+    const double rounding = path_rounding(&path);
+    if (!(fabs(sum - 1.0) <= 1e-4 + rounding))
+        ck_abort_msg("%s, item %u, (%u,%u): the weights sum to %.7f, that of the kernel is %.7f; rounding %.2g", name,
+                     item, s, t, sum, weight, rounding);
+    tally->rounded += rounding > 1e-4;
+    tally->worst = fmax(tally->worst, rounding > 1e-4 ? 0.0 : fabs(sum - 1.0));
+    ++tally->paths[s];
+}
+
+/* All connections, by the kernel itself. */
+static void connections_check(Walks *walks, const char *name, Tally *tally)
+{
+    uint *paths = walks->words[BUFFER_PATHS], *shadows = walks->words[BUFFER_SHADOWS];
+    walks->frame.only_s = walks->frame.only_t = NONE;
+    walks_run(walks, walks->pair->list.count);
+    for (uint item = 0; item < ITEMS; ++item)
+        for (uint s = 1; s <= DEPTH; ++s)
+            for (uint t = s == 1 ? 2 : 1; s + t <= DEPTH + 1; ++t) {
+                Vec3 contribution[2] = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+                platform_item = item;
+                for (int i = 0; i < 2; ++i) {
+                    walks->frame.unweighted = i == 1;
+                    state_store(paths, ITEMS, BD_S, item, s);
+                    state_store(paths, ITEMS, BD_T, item, t);
+                    state_store_float(shadows, ITEMS, RAY_T_MAX, item, 0.0f);
+                    bd_connect(&walks->frame, walks->packed.geometry, walks->packed.tables, walks->packed.texels, paths,
+                               shadows, walks->words[BUFFER_VERTICES], walks->words[BUFFER_DENSITIES]);
+                    if (state_load_float(shadows, ITEMS, RAY_T_MAX, item) > 0.0f)
+                        contribution[i] = state_load_vec3(paths, ITEMS, BD_CONTRIBUTION, item);
+                }
+                weight_check(walks, name, item, s, t, contribution, tally);
+            }
+}
+
+/* How many steps it takes for the camera's walk to have `segments`. */
+static size_t steps_to_segment(const StepList *list, uint segments)
+{
+    size_t i = 0;
+    while (list->steps[i].kind != STEP_KERNEL || list->steps[i].kernel != KERNEL_bd_start_camera)
+        ++i;
+    for (uint found = 0; found < segments; ++i)
+        found += list->steps[i].kind == STEP_KERNEL && list->steps[i].kernel == KERNEL_bd_shade_hits;
+    return i;
+}
+
+/* Lights that the camera's walk meets. */
+static void hits_check(Walks *walks, const char *name, Tally *tally)
+{
+    Vec3 met[ITEMS];
+    for (uint k = 2; k <= DEPTH; ++k) {
+        const size_t steps = steps_to_segment(&walks->pair->list, k);
+        walks->frame.only_s = 0;
+        walks->frame.only_t = k + 1;
+        walks->frame.unweighted = 0;
+        walks_run(walks, steps);
+        for (uint item = 0; item < ITEMS; ++item)
+            met[item] = state_load_vec3(walks->words[BUFFER_PATHS], ITEMS, BD_RADIANCE, item);
+        walks->frame.unweighted = 1;
+        walks_run(walks, steps);
+        for (uint item = 0; item < ITEMS; ++item) {
+            const Vec3 contribution[2] = {met[item],
+                                          state_load_vec3(walks->words[BUFFER_PATHS], ITEMS, BD_RADIANCE, item)};
+            weight_check(walks, name, item, 0, k + 1, contribution, tally);
+        }
+    }
+}
+
+/* Weights of all strategies of one path sum to 1, the weight of the strategy that made it being the kernel's. */
+START_TEST(test_real_walks)
+{
+    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / 2];
+    VerifyPair pair;
+    Walks walks;
+    Tally tally = {.worst = 0.0};
+    walks_open(&walks, &pair, scene, _i % 2 == 1);
+    connections_check(&walks, scene->name, &tally);
+    hits_check(&walks, scene->name, &tally);
+    printf("%-28s paths by s:", scene->name);
+    uint all = 0;
+    for (uint s = 0; s <= DEPTH; ++s) {
+        printf(" %u", tally.paths[s]);
+        all += tally.paths[s];
+    }
+    printf("; sums of weights differ from 1 by up to %.1e, %u paths rounded\n", tally.worst, tally.rounded);
+    ck_assert_uint_gt(all, 2000);
+    ck_assert_uint_lt(tally.rounded, all / 20);
+    walks_close(&walks);
+}
+END_TEST
+
+TCase *bidirectional_walks_case(void)
+{
+    TCase *tcase = tcase_create("walks");
+    tcase_set_timeout(tcase, 600);
+    tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
+    tcase_add_loop_test(tcase, test_real_walks, 0, 2 * BIDIRECTIONAL_SCENE_COUNT);
+    return tcase;
+}

@@ -1,0 +1,174 @@
+/* Materials: defaults, parameters, names, substitutes. */
+#include "pbrt/test_import.h"
+
+#include "image/color.h"
+
+#include <string.h>
+
+/* The material of the only shape after `directives`. */
+static Material material_of(const char *directives, Scene *scene)
+{
+    char text[2048];
+    snprintf(text, sizeof text, "%s Shape \"sphere\"", directives);
+    import_world(text, scene);
+    return ELEMENT(scene, materials, Material, ELEMENT(scene, shapes, Shape, 0).material);
+}
+
+START_TEST(defaults)
+{
+    Scene scene;
+    Material m = material_of("", &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_DIFFUSE);
+    assert_vec3(m.color0.value, 0.5f, 0.5f, 0.5f, 0.0f);
+    ck_assert_uint_eq(m.color0.program, NONE);
+    ck_assert_uint_eq(m.displacement.program, NONE);
+    ck_assert_uint_eq(m.normal_map, NONE);
+    ck_assert_uint_eq(m.coat_table, NONE);
+    scene_destroy(&scene);
+    m = material_of("Material \"dielectric\"", &scene);
+    ASSERT_FLOAT(m.eta, 1.5f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.0f);
+    ck_assert_uint_eq(m.flags, MATERIAL_REMAP_ROUGHNESS);
+    scene_destroy(&scene);
+    m = material_of("Material \"diffusetransmission\" \"float scale\" 0.5", &scene);
+    assert_vec3(m.color0.value, 0.25f, 0.25f, 0.25f, 0.0f);
+    assert_vec3(m.color1.value, 0.25f, 0.25f, 0.25f, 0.0f);
+    ASSERT_FLOAT(m.scale, 0.5f);
+    scene_destroy(&scene);
+    m = material_of("Material \"thindielectric\" \"float eta\" 1.3", &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_THIN_DIELECTRIC);
+    ASSERT_FLOAT(m.eta, 1.3f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(conductors)
+{
+    Scene scene;
+    float eta[3], k[3];
+    Error error;
+    ck_assert(color_named_spectrum("metal-Cu-eta", COLOR_INDEX, eta, &error));
+    ck_assert(color_named_spectrum("metal-Cu-k", COLOR_INDEX, k, &error));
+    Material m = material_of("Material \"conductor\"", &scene);
+    assert_vec3(m.color0.value, eta[0], eta[1], eta[2], 0.0f);
+    assert_vec3(m.color1.value, k[0], k[1], k[2], 0.0f);
+    scene_destroy(&scene);
+    m = material_of(
+        "Material \"conductor\" \"rgb eta\" [ 0.2 0.9 1.1 ] \"rgb k\" [ 3.9 2.4 2.1 ] \"float uroughness\" 0.1\n"
+        "\"float roughness\" 0.3 \"bool remaproughness\" false",
+        &scene);
+    assert_vec3(m.color0.value, 0.2f, 0.9f, 1.1f, 0.0f);
+    assert_vec3(m.color1.value, 3.9f, 2.4f, 2.1f, 0.0f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.1f);
+    ASSERT_FLOAT(m.roughness_v.value, 0.3f);
+    ck_assert_uint_eq(m.flags, 0);
+    scene_destroy(&scene);
+    m = material_of("Material \"conductor\" \"rgb reflectance\" [ 1 0.5 0 ]", &scene);
+    assert_vec3(m.color0.value, 1.0f, 0.5f, 0.0f, 0.0f);
+    ck_assert_uint_eq(m.flags, MATERIAL_CONDUCTOR_REFLECTANCE | MATERIAL_REMAP_ROUGHNESS);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(spectra)
+{
+    Scene scene;
+    Material m = material_of("Material \"diffuse\" \"spectrum reflectance\" [ 300 0.25 900 0.25 ]", &scene);
+    assert_vec3(m.color0.value, 0.25f, 0.25f, 0.25f, 1e-5f);
+    scene_destroy(&scene);
+    m = material_of("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"", &scene);
+    ASSERT_NEAR(m.eta, 1.52f, 0.01f);
+    ck_assert_ptr_nonnull(strstr(import_log(), "no dispersion"));
+    scene_destroy(&scene);
+    m = material_of("Material \"dielectric\" \"spectrum eta\" [ 300 1.4 900 1.4 ]", &scene);
+    ASSERT_NEAR(m.eta, 1.4f, 1e-5f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(coated_diffuse)
+{
+    Scene scene;
+    Material m = material_of("Material \"coateddiffuse\" \"rgb reflectance\" [ 1 0.4 0 ] \"float vroughness\" 0.2\n"
+                             "\"float thickness\" 0.1 \"float g\" 0 \"integer maxdepth\" 3 \"integer nsamples\" 4",
+                             &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_COATED_DIFFUSE);
+    assert_vec3(m.color0.value, 1.0f, 0.4f, 0.0f, 0.0f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.0f);
+    ASSERT_FLOAT(m.roughness_v.value, 0.2f);
+    ASSERT_FLOAT(m.eta, 1.5f);
+    scene_destroy(&scene);
+    ck_assert_ptr_nonnull(strstr(import_error("WorldBegin Material \"coateddiffuse\" \"rgb albedo\" [ 1 1 1 ]"),
+                                 "a medium inside a coat (albedo) is not supported"));
+}
+END_TEST
+
+START_TEST(named_and_mixed)
+{
+    Scene scene;
+    Material m =
+        material_of("NamedMaterial \"late\" AttributeBegin MakeNamedMaterial \"late\" \"string type\" \"dielectric\"\n"
+                    "AttributeEnd",
+                    &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_DIELECTRIC);
+    scene_destroy(&scene);
+    m = material_of(
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n"
+        "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.25",
+        &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_MIX);
+    ck_assert_uint_eq(m.mix_a, 0);
+    ck_assert_uint_eq(m.mix_b, 1);
+    ASSERT_FLOAT(m.amount.value, 0.25f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(scopes)
+{
+    Scene scene;
+    Material m = material_of("Material \"dielectric\" AttributeBegin Material \"conductor\" AttributeEnd", &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_DIELECTRIC);
+    scene_destroy(&scene);
+    m = material_of("MakeNamedMaterial \"a\" \"string type\" \"conductor\" NamedMaterial \"a\" Material \"dielectric\"",
+                    &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_DIELECTRIC);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(substitutes)
+{
+    static const struct {
+        const char *text;
+        uint kind;
+    } cases[] = {{"hair", MATERIAL_DIFFUSE},
+                 {"measured", MATERIAL_DIFFUSE},
+                 {"subsurface", MATERIAL_DIFFUSE},
+                 {"coatedconductor", MATERIAL_CONDUCTOR}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[256];
+        Scene scene;
+        snprintf(text, sizeof text, "WorldBegin Material \"%s\" \"float eta\" 1 Shape \"sphere\"", cases[i].text);
+        ck_assert_ptr_nonnull(strstr(import_error(text), "is not supported"));
+        import_text_in(text, "", true, &scene);
+        ck_assert_uint_eq(ELEMENT(&scene, materials, Material, 0).kind, cases[i].kind);
+        ck_assert_uint_eq(scene.counts.substitutions, 1);
+        ck_assert_ptr_nonnull(strstr(import_log(), cases[i].text));
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
+TCase *import_materials_case(void)
+{
+    TCase *tcase = tcase_create("materials");
+    tcase_add_test(tcase, defaults);
+    tcase_add_test(tcase, conductors);
+    tcase_add_test(tcase, spectra);
+    tcase_add_test(tcase, coated_diffuse);
+    tcase_add_test(tcase, named_and_mixed);
+    tcase_add_test(tcase, scopes);
+    tcase_add_test(tcase, substitutes);
+    return tcase;
+}

@@ -1,0 +1,223 @@
+/* What an image holds besides the picture: variances, halves, albedo, normal, depth, and the picture without specks. */
+#include "camera/film_sum.h"
+#include "image/despeckle.h"
+#include "render/layers.h"
+#include "support/render_fixture.h"
+
+#include "support/test_util.h"
+
+#include <string.h>
+
+/* ---- mean and variance of a sequence ----------------------------------------------------------------------------- */
+
+/* Against the formulas written out, for weights of very different size; the second pixel is not always seen. */
+START_TEST(test_series)
+{
+    const float values[4][2] = {{1.0f, 10.0f}, {2.0f, -1e6f}, {4.0f, 13.0f}, {-3.0f, 11.5f}};
+    const uint32_t weights[4][2] = {{1, 2}, {10, 0}, {3, 1}, {100, 5}};
+    PixelSeries series;
+    Error error = {0};
+    ck_assert(pixel_series_init(&series, 2, 1, &error));
+    for (int g = 0; g < 4; ++g)
+        pixel_series_add(&series, values[g], weights[g], 0.5);
+    for (size_t pixel = 0; pixel < 2; ++pixel) {
+        double sum = 0.0, mean = 0.0, spread = 0.0;
+        int seen = 0;
+        for (int g = 0; g < 4; ++g) {
+            sum += 0.5 * weights[g][pixel];
+            mean += 0.5 * weights[g][pixel] * (double)values[g][pixel];
+            seen += weights[g][pixel] > 0;
+        }
+        mean /= sum;
+        for (int g = 0; g < 4; ++g)
+            spread += 0.5 * weights[g][pixel] * pow((double)values[g][pixel] - mean, 2.0);
+        ck_assert_double_eq_tol((double)series.mean[pixel], mean, 1e-5 * fabs(mean));
+        ck_assert_double_eq_tol(pixel_series_spread(&series, pixel), spread / (seen - 1), 1e-4 * spread);
+        ck_assert_double_eq_tol(pixel_series_variance(&series, pixel), spread / (seen - 1) / sum, 1e-4 * spread / sum);
+    }
+    pixel_series_destroy(&series);
+}
+END_TEST
+
+/* ---- specks ------------------------------------------------------------------------------------------------------ */
+
+START_TEST(test_despeckle)
+{
+    enum { WIDTH = 5, HEIGHT = 4 };
+    float rgb[3 * WIDTH * HEIGHT], out[3 * WIDTH * HEIGHT];
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i)
+        for (size_t c = 0; c < 3; ++c)
+            rgb[3 * i + c] = 1.0f + 0.01f * (float)i;
+    const size_t corner = 0, inner = 1 * WIDTH + 3, bright = 3 * WIDTH + 1;
+    rgb[3 * corner] = 50.0f;
+    rgb[3 * inner + 1] = 4.5f; /* luminance 3.5: just over three times as bright */
+    rgb[3 * bright + 2] = 9.0f; /* luminance 1.7 */
+    despeckle(rgb, WIDTH, HEIGHT, 0, HEIGHT, 3.0f, out);
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        bool speck = i == corner || i == inner;
+        ck_assert_int_eq(memcmp(rgb + 3 * i, out + 3 * i, 3 * sizeof *rgb) != 0, speck);
+        ck_assert(!speck || (out[3 * i] >= 1.0f && out[3 * i] < 1.2f && out[3 * i] == out[3 * i + 1]));
+    }
+}
+END_TEST
+
+/* ---- variables --------------------------------------------------------------------------------------------------- */
+
+/* A wall of albedo 0.2, 0.5, 0.7 that turns its back to +z, at distance 5 along the axis, under half of the picture. */
+static const char WALL[] = "LookAt 0 0 0  0 0 1  0 1 0\n"
+                           "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+                           "PixelFilter \"box\"\n"
+                           "Camera \"perspective\" \"float fov\" 40\n"
+                           "WorldBegin\n"
+                           "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n"
+                           "Material \"diffuse\" \"rgb reflectance\" [ 0.2 0.5 0.7 ]\n"
+                           "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 5  9 -9 5  -9 0 5  9 0 5 ]\n";
+
+START_TEST(test_variables)
+{
+    const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
+    RenderLayers layers = {.wanted = LAYERS_AOV};
+    RenderedImage image;
+    float albedo[3 * 64], normal[3 * 64], depth[3 * 64];
+    fixture_render(&(RenderSetup){.text = WALL, .samples = 64, .integrator = integrators[_i], .layers = &layers},
+                   &image);
+    film_resolve(&layers.aovs[AOV_ALBEDO], 1.0f, albedo);
+    film_resolve(&layers.aovs[AOV_NORMAL], 1.0f, normal);
+    film_resolve(&layers.aovs[AOV_DEPTH], 1.0f, depth);
+    const float wall[3] = {0.2f, 0.5f, 0.7f}, toward[3] = {0.0f, 0.0f, -1.0f};
+    for (size_t i = 0; i < 64; ++i) {
+        bool met = i >= 32; /* the lower half */
+        double x = ((double)(i % 8) + 0.5 - 4.0) / 4.0 * tan(0.349066),
+               y = ((double)(i / 8) + 0.5 - 4.0) / 4.0 * tan(0.349066);
+        for (size_t c = 0; c < 3; ++c) {
+            TEST_NEAR(albedo[3 * i + c], met ? wall[c] : 0.0f, 1e-6);
+            TEST_NEAR(normal[3 * i + c], met ? toward[c] : 0.0f, 1e-6);
+        }
+        /* Within a pixel the distance changes by less than 0.04. */
+        TEST_NEAR(depth[3 * i], met ? 5.0 * sqrt(1.0 + x * x + y * y) : 0.0, 0.04);
+    }
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* ---- halves and variance ----------------------------------------------------------------------------------------- */
+
+/* Two pictures of one film's size are its halves: every sum is the sum of theirs. */
+START_TEST(test_halves)
+{
+    char path[512];
+    RenderLayers layers = {.wanted = LAYERS_ALL};
+    RenderedImage image;
+    snprintf(path, sizeof path, "%s/scenes/cornell.pbrt", test_source_folder());
+    fixture_render(&(RenderSetup){.path = path,
+                                  .width = 24,
+                                  .height = 18,
+                                  .samples = 200,
+                                  .integrator = integrator_mmlt(),
+                                  .layers = &layers},
+                   &image);
+    const Film *film = &image.film, *a = &layers.halves[0], *b = &layers.halves[1];
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
+        TEST_TRUE(film->sums[i] == a->sums[i] + b->sums[i]);
+        TEST_TRUE(film->light_sums[i] == a->light_sums[i] + b->light_sums[i]);
+        TEST_TRUE(film->counts[i / 3] == a->counts[i / 3] + b->counts[i / 3]);
+        TEST_TRUE(a->counts[i / 3] > 0 && b->counts[i / 3] > 0);
+    }
+    ck_assert_uint_eq(film->light_samples, a->light_samples + b->light_samples);
+    double part = (double)a->light_samples / (double)film->light_samples;
+    printf("halves: the first has %.3f of the work\n", part);
+    ck_assert(part > 0.3 && part < 0.7);
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* Layers by depth add up to indirect light, but for the rounding of single sums; of chains alone, too. The picture is the one
+ * without them, but for the rounding of paths that bring light of several depths. */
+START_TEST(test_by_depth)
+{
+    char path[512];
+    double largest = 0.0, other = 0.0;
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_BY_DEPTH)};
+    RenderedImage image, plain;
+    RenderSetup setup = {.path = path,
+                         .width = 24,
+                         .height = 18,
+                         .samples = 200,
+                         .max_depth = 6,
+                         .integrator = integrator_mmlt(),
+                         .chains = {.unblended = _i == 1}};
+    snprintf(path, sizeof path, "%s/scenes/glossy.pbrt", test_source_folder());
+    fixture_render(&setup, &plain);
+    setup.layers = &layers;
+    fixture_render(&setup, &image);
+    const Film *film = &image.film;
+    ck_assert_uint_eq(film->depth_last, 6);
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
+        double sum = 0.0, light = (double)film->light_sums[i];
+        for (uint segments = 3; segments <= 6; ++segments)
+            sum += (double)film_depth_sums(film, segments, FILM_KIND_LIGHT)[i];
+        largest = fmax(largest, fabs(sum - light) / (fabs(light) + (double)film->light_samples));
+        other = fmax(other, fabs((double)(image.rgb[i] - plain.rgb[i])) / (fabs((double)plain.rgb[i]) + 1e-2));
+    }
+    printf("by depth: off by %.2g, the picture by %.2g\n", largest, other);
+    ck_assert_double_lt(largest, 1e-4);
+    ck_assert_double_lt(other, 1e-5);
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+    fixture_destroy(&plain);
+}
+END_TEST
+
+/* The variance that an image states is that of its pixels over seeds, on average over the picture. */
+START_TEST(test_variance)
+{
+    enum { RUNS = 12, WIDTH = 16, HEIGHT = 12, VALUES = 3 * WIDTH * HEIGHT };
+    double sum[VALUES] = {0}, square[VALUES] = {0}, stated = 0.0, found = 0.0;
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/cornell.pbrt", test_source_folder());
+    for (uint64_t seed = 0; seed < RUNS; ++seed) {
+        RenderLayers layers = {.wanted = LAYER_BIT(LAYER_VARIANCE)};
+        RenderedImage image;
+        float variance[VALUES];
+        fixture_render(&(RenderSetup){.path = path,
+                                      .width = WIDTH,
+                                      .height = HEIGHT,
+                                      .samples = 2000,
+                                      .seed = seed,
+                                      .integrator = integrator_mmlt(),
+                                      .layers = &layers},
+                       &image);
+        render_layers_variance(&layers, 1.0f, 0, layers.own.pixels, variance);
+        for (size_t i = 0; i < VALUES; ++i) {
+            sum[i] += (double)image.rgb[i];
+            square[i] += (double)image.rgb[i] * (double)image.rgb[i];
+            stated += (double)variance[i] / RUNS / VALUES;
+        }
+        render_layers_destroy(&layers);
+        fixture_destroy(&image);
+    }
+    for (size_t i = 0; i < VALUES; ++i)
+        found += (square[i] - sum[i] * sum[i] / RUNS) / (RUNS - 1) / VALUES;
+    printf("variance: %.4g stated, %.4g found over %d seeds\n", stated, found, RUNS);
+    /* Twelve seeds and some hundred values know it to about a tenth. */
+    ck_assert_double_gt(stated, 0.6 * found);
+    ck_assert_double_lt(stated, 1.6 * found);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("layers");
+    TCase *tcase = tcase_create("layers");
+    tcase_set_timeout(tcase, 120.0);
+    tcase_add_test(tcase, test_series);
+    tcase_add_test(tcase, test_despeckle);
+    tcase_add_loop_test(tcase, test_variables, 0, 3);
+    tcase_add_test(tcase, test_halves);
+    tcase_add_loop_test(tcase, test_by_depth, 0, 2);
+    tcase_add_test(tcase, test_variance);
+    suite_add_tcase(suite, tcase);
+    return test_run(suite);
+}

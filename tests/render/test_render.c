@@ -1,0 +1,357 @@
+/* Whole pictures: analytic scenes, furnaces, determinism, references. */
+#include "film/pixel_order.h"
+#include "layout/item.h"
+#include "support/render_fixture.h"
+#include "support/test_util.h"
+
+#include <string.h>
+
+#define CAMERA_INSIDE                                                                                                  \
+    "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"                                             \
+    "PixelFilter \"box\"\n"                                                                                            \
+    "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
+
+/* ---- the order of pixels ----------------------------------------------------------------------------------------- */
+
+/* All pixels in turn, and of large pictures neighbours far apart: in which tenth of the order they are says nothing. */
+START_TEST(test_pixel_order)
+{
+    static const uint SIZES[][2] = {{1, 1},   {1, 7},     {5, 1},       {2, 2},       {6, 35},       {16, 16},
+                                    {77, 60}, {400, 400}, {1920, 1080}, {8192, 8192}, {32768, 32767}};
+    const uint width = SIZES[_i][0], height = SIZES[_i][1], n = width * height,
+               stride = pixel_order_stride(width, height);
+    uint a = stride, b = n;
+    while (b != 0) {
+        uint rest = a % b;
+        a = b;
+        b = rest;
+    }
+    ck_assert_uint_eq(a, 1);
+    ck_assert(n == 1 || stride < n);
+    if (n < 4000 || n > 1 << 21)
+        return;
+    uint *number = malloc(n * sizeof *number);
+    ck_assert_ptr_nonnull(number);
+    for (uint k = 0; k < n; ++k)
+        number[(uint64_t)k * stride % n] = k;
+    const int near[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
+    for (size_t i = 0; i < sizeof near / sizeof near[0]; ++i) {
+        uint from = height / 2 * width + width / 2;
+        uint to = from + (uint)(near[i][1] * (int)width + near[i][0]);
+        uint apart = (number[to] + n - number[from]) % n;
+        printf("%u x %u: pixel %d %d away is %.3f of the order later\n", width, height, near[i][0], near[i][1],
+               (double)apart / n);
+        ck_assert_uint_gt(apart, n / 10);
+        ck_assert_uint_lt(apart, n - n / 10);
+    }
+    free(number);
+}
+END_TEST
+
+/* A pool that visits cells differently often: in one round each of a pixel's visits is another sample, there are as many as its
+ * rarity says, and the next round has other samples. Pictures with more and with fewer pixels than cells, and crops. */
+START_TEST(test_visits)
+{
+    static const uint CROPS[][4] = {{0, 0, 1, 1}, {0, 0, 5, 90}, {3, 2, 36, 40}, {10, 0, 74, 64}, {1, 7, 200, 101}};
+    static FrameParams frame;
+    frame = (FrameParams){.width = 210, .height = 120, .sample_index = 7};
+    frame.crop_x0 = CROPS[_i][0];
+    frame.crop_y0 = CROPS[_i][1];
+    frame.crop_x1 = CROPS[_i][2];
+    frame.crop_y1 = CROPS[_i][3];
+    const uint width = frame.crop_x1 - frame.crop_x0, height = frame.crop_y1 - frame.crop_y0, pixels = width * height;
+    for (uint i = 0, all = 0; i <= IMPORTANCE_CELLS; ++i) {
+        frame.visits[i] = all;
+        if (i < IMPORTANCE_CELLS) {
+            uint x = i % IMPORTANCE_SIDE, y = i / IMPORTANCE_SIDE;
+            all += (cell_begin(x + 1, width) - cell_begin(x, width)) *
+                   (cell_begin(y + 1, height) - cell_begin(y, height)) * (1 + i * 7 % VISITS_MOST);
+        }
+    }
+    const uint all = frame.visits[IMPORTANCE_CELLS], room = 2 * VISITS_MOST;
+    frame.pixel_stride = pixel_order_stride_of(all);
+    frame.pixel_first = all / 3;
+    bool *seen = calloc((size_t)frame.width * frame.height * room, sizeof *seen);
+    uint *counts = calloc((size_t)frame.width * frame.height, sizeof *counts);
+    ck_assert(seen && counts);
+    for (uint k = 0; k < all; ++k) {
+        ItemPlace place = item_place_of(&frame, k);
+        uint x = place.pixel % frame.width, y = place.pixel / frame.width;
+        ck_assert(x >= frame.crop_x0 && x < frame.crop_x1 && y >= frame.crop_y0 && y < frame.crop_y1);
+        ck_assert(place.sample >= 7 && place.sample < 7 + room);
+        bool *one = &seen[(size_t)place.pixel * room + place.sample - 7];
+        ck_assert(!*one);
+        *one = true;
+        ++counts[place.pixel];
+    }
+    for (uint i = 0; i < frame.width * frame.height; ++i)
+        if (counts[i] > 0)
+            ck_assert_float_eq_tol(pool_rarity(&frame, i) * (float)counts[i], (float)all / (float)pixels,
+                                   1e-5f * (float)all / (float)pixels);
+    free(seen);
+    free(counts);
+}
+END_TEST
+
+/* ---- analytic scenes, to 0.5 % --------------------------------------------------------------------------------- */
+
+/* Inside a sphere of emission L and albedo a, light bounces for ever: the radiance is L / (1 - a) everywhere. */
+START_TEST(test_emitting_sphere_inside)
+{
+    RenderedImage image;
+    RenderSetup setup = {.text = CAMERA_INSIDE "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                               "ReverseOrientation\n"
+                                               "AreaLightSource \"diffuse\" \"rgb L\" [ 0.5 0.5 0.5 ]\n"
+                                               "Shape \"sphere\" \"float radius\" 2\n",
+                         .samples = 512,
+                         .max_depth = 40};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 1.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* The same, cut after d segments: L (1 + a + ... + a^(d-1)), which pins down what a segment is. */
+START_TEST(test_emitting_sphere_depths)
+{
+    double expected = 0.0;
+    for (int depth = 1; depth <= 4; ++depth) {
+        RenderedImage image;
+        RenderSetup setup = {.text = CAMERA_INSIDE "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                                   "ReverseOrientation\n"
+                                                   "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n"
+                                                   "Shape \"sphere\" \"float radius\" 2\n",
+                             .samples = 256,
+                             .max_depth = depth};
+        expected += pow(0.5, depth - 1);
+        fixture_render(&setup, &image);
+        ck_assert_double_eq_tol(fixture_mean(&image), expected, 0.005 * expected);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
+/* A Lambertian sphere of albedo 0.5 with emission 0.5 seen from outside in black space, alone: radiance 0.5 (it does
+ * not see itself); under a constant environment of radiance 1: 0.5 + 0.5 = 1. */
+START_TEST(test_lambert_sphere)
+{
+    RenderedImage image;
+    RenderSetup setup = {.text = "LookAt 0 0 5  0 0 0  0 1 0\n"
+                                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+                                 "PixelFilter \"box\"\n"
+                                 "Camera \"perspective\" \"float fov\" 8\nWorldBegin\n"
+                                 "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n"
+                                 "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+                                 "AreaLightSource \"diffuse\" \"rgb L\" [ 0.5 0.5 0.5 ]\n"
+                                 "Shape \"sphere\" \"float radius\" 1\n",
+                         .samples = 512,
+                         .max_depth = 10};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 1.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* A point light of intensity I at height h over a Lambertian plane: radiance a / pi * I / h^2 straight below. */
+START_TEST(test_point_light_plane)
+{
+    RenderedImage image;
+    RenderSetup setup = {.text = "LookAt 0 0 5  0 0 0  0 1 0\n"
+                                 "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
+                                 "PixelFilter \"box\"\n"
+                                 "Camera \"perspective\" \"float fov\" 0.1\nWorldBegin\n"
+                                 "LightSource \"point\" \"rgb I\" [ 20 20 20 ] \"point3 from\" [ 0 0 2 ]\n"
+                                 "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.6 0.6 ]\n"
+                                 "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 0  9 -9 0  -9 9 0  9 9 0 ]\n",
+                         .samples = 16,
+                         .max_depth = 2};
+    fixture_render(&setup, &image);
+    ck_assert_double_eq_tol(fixture_mean(&image), 0.6 / M_PI * 20.0 / 4.0, 0.005);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* ---- furnaces ---------------------------------------------------------------------------------------------------- */
+
+typedef struct FurnaceCase {
+    const char *material;
+    double low, high; /* bounds of the mean, where 1 is all the energy */
+} FurnaceCase;
+
+/* A sphere of a material that absorbs nothing in an environment of radiance 1. Single-scattering microfacet models
+ * lose what would bounce between facets; nothing may gain. The rough conductors' figures are those of an independent
+ * Monte Carlo estimate of E[G2 / G1] over the same view (0.9267 and 0.5273); the rough dielectrics' are this program's
+ * own and guard against change. */
+static const FurnaceCase FURNACES[] = {
+    {"Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.995, 1.005},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0", 0.995, 1.005},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.2 \"bool remaproughness\" false",
+     0.922, 0.932},
+    {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0.8 \"bool remaproughness\" false",
+     0.522, 0.533},
+    {"Material \"dielectric\" \"float eta\" 1.5", 0.995, 1.005},
+    {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.2 \"bool remaproughness\" false", 0.85, 0.87},
+    {"Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.7 \"bool remaproughness\" false", 0.48, 0.50},
+    {"Material \"thindielectric\" \"float eta\" 1.5", 0.995, 1.005},
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float thickness\" 0", 0.99, 1.005},
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.85, 0.98}, /* the coat absorbs */
+    {"Material \"coateddiffuse\" \"rgb reflectance\" [ 1 1 1 ] \"float thickness\" 0 \"float roughness\" 0.3 "
+     "\"bool remaproughness\" false",
+     0.9, 1.005},
+    {"Material \"diffusetransmission\" \"rgb reflectance\" [ 0.4 0.4 0.4 ] \"rgb transmittance\" [ 0.6 0.6 0.6 ]", 0.99,
+     1.005},
+    {"MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+     "MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0\n"
+     "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.3",
+     0.995, 1.005},
+};
+
+START_TEST(test_furnace)
+{
+    char text[1024];
+    RenderedImage image;
+    snprintf(text, sizeof text,
+             "LookAt 0 0 5  0 0 0  0 1 0\n"
+             "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+             "PixelFilter \"box\"\n"
+             "Camera \"perspective\" \"float fov\" 20\nWorldBegin\n"
+             "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n%s\nShape \"sphere\" \"float radius\" 1\n",
+             FURNACES[_i].material);
+    RenderSetup setup = {.text = text, .samples = 256, .max_depth = 60};
+    fixture_render(&setup, &image);
+    double mean = fixture_mean(&image);
+    ck_assert_msg(mean >= FURNACES[_i].low && mean <= FURNACES[_i].high, "%s: mean %g outside [%g, %g]",
+                  FURNACES[_i].material, mean, FURNACES[_i].low, FURNACES[_i].high);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* ---- determinism ------------------------------------------------------------------------------------------------- */
+
+static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
+                                            "coffee/gray.pbrt"};
+#define PUBLIC_SCENE_COUNT ((int)(sizeof PUBLIC_SCENES / sizeof PUBLIC_SCENES[0]))
+
+static void films_equal(const Film *a, const Film *b)
+{
+    size_t pixels = (size_t)(a->crop[2] - a->crop[0]) * (size_t)(a->crop[3] - a->crop[1]);
+    ck_assert_int_eq(a->quantum_exponent, b->quantum_exponent);
+    for (size_t i = 0; i < 3 * pixels; ++i)
+        ck_assert_msg(a->sums[i] == b->sums[i], "sum %zu differs: %lld and %lld", i, (long long)a->sums[i],
+                      (long long)b->sums[i]);
+    for (size_t i = 0; i < pixels; ++i)
+        ck_assert_uint_eq(a->counts[i], b->counts[i]);
+}
+
+START_TEST(test_same_bits_for_any_threads)
+{
+    static const int THREADS[] = {2, 3, 8};
+    char path[1200];
+    if (!test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
+        return;
+    RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 4, .threads = 1, .seed = 7};
+    RenderedImage one, other;
+    fixture_render(&setup, &one);
+    ck_assert(fixture_mean(&one) > 0.0);
+    for (int i = 0; i < 3; ++i) {
+        setup.threads = THREADS[i];
+        fixture_render(&setup, &other);
+        films_equal(&one.film, &other.film);
+        ck_assert_int_eq(memcmp(one.rgb, other.rgb, sizeof(float) * 3 * 40 * 24), 0);
+        fixture_destroy(&other);
+    }
+    fixture_destroy(&one);
+}
+END_TEST
+
+START_TEST(test_same_bits_in_two_parts)
+{
+    char path[1200];
+    Error error = {0};
+    if (!test_public_scene(PUBLIC_SCENES[_i], path, sizeof path))
+        return;
+    RenderSetup setup = {.path = path, .width = 40, .height = 24, .samples = 7, .seed = 9};
+    RenderedImage whole, first, second;
+    fixture_render(&setup, &whole);
+    setup.samples = 3;
+    fixture_render(&setup, &first);
+    setup.first_sample = 3;
+    setup.samples = 4;
+    setup.threads = 3;
+    fixture_render(&setup, &second);
+    ck_assert_msg(film_merge(&first.film, &second.film, &error), "%s", error.message);
+    films_equal(&whole.film, &first.film);
+    fixture_destroy(&whole);
+    fixture_destroy(&first);
+    fixture_destroy(&second);
+}
+END_TEST
+
+/* Pixels of a crop have the bits that they have in the whole picture, although most of its light is elsewhere. */
+START_TEST(test_crop_has_the_bits_of_the_whole)
+{
+    static const int CROP[4] = {1, 2, 6, 9};
+    char text[512];
+    RenderedImage images[2];
+    for (int i = 0; i < 2; ++i) {
+        snprintf(text, sizeof text,
+                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 12 %s\n"
+                 "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1e-3\n"
+                 "Translate 3 0 3\nAreaLightSource \"diffuse\" \"float scale\" 1e4\n"
+                 "Shape \"sphere\" \"float radius\" 1\n",
+                 i ? "\"integer pixelbounds\" [ 1 6 2 9 ]" : "");
+        RenderSetup setup = {.text = text, .samples = 8};
+        fixture_render(&setup, &images[i]);
+    }
+    const Film *whole = &images[0].film, *crop = &images[1].film;
+    ck_assert_mem_eq(crop->crop, CROP, sizeof CROP);
+    ck_assert_int_eq(whole->quantum_exponent, crop->quantum_exponent);
+    for (int y = 2; y < 9; ++y)
+        for (int k = 0; k < 15; ++k)
+            ck_assert(crop->sums[15 * (y - 2) + k] == whole->sums[3 * (16 * y + 1) + k]);
+    fixture_destroy(&images[0]);
+    fixture_destroy(&images[1]);
+}
+END_TEST
+
+START_TEST(test_seeds_differ)
+{
+    static const char TEXT[] = CAMERA_INSIDE "Material \"diffuse\"\n"
+                                             "LightSource \"point\" \"point3 from\" [ 0.2 0.9 0.1 ]\n"
+                                             "Shape \"sphere\" \"float radius\" 2\n";
+    RenderedImage a, b;
+    RenderSetup setup = {.text = TEXT, .samples = 4, .seed = 1};
+    fixture_render(&setup, &a);
+    setup.seed = 1ull << 40;
+    fixture_render(&setup, &b);
+    ck_assert_int_ne(memcmp(a.rgb, b.rgb, sizeof(float) * 3 * 16 * 16), 0);
+    fixture_destroy(&a);
+    fixture_destroy(&b);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("render");
+    TCase *analytic = tcase_create("analytic");
+    tcase_set_timeout(analytic, 120);
+    tcase_add_test(analytic, test_emitting_sphere_inside);
+    tcase_add_test(analytic, test_emitting_sphere_depths);
+    tcase_add_test(analytic, test_lambert_sphere);
+    tcase_add_test(analytic, test_point_light_plane);
+    suite_add_tcase(suite, analytic);
+    TCase *furnace = tcase_create("furnace");
+    tcase_set_timeout(furnace, 120);
+    tcase_add_loop_test(furnace, test_furnace, 0, (int)(sizeof FURNACES / sizeof FURNACES[0]));
+    suite_add_tcase(suite, furnace);
+    TCase *determinism = tcase_create("determinism");
+    tcase_set_timeout(determinism, 120);
+    tcase_add_loop_test(determinism, test_same_bits_for_any_threads, 0, PUBLIC_SCENE_COUNT);
+    tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
+    tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
+    tcase_add_test(determinism, test_seeds_differ);
+    tcase_add_loop_test(determinism, test_pixel_order, 0, 11);
+    tcase_add_loop_test(determinism, test_visits, 0, 5);
+    suite_add_tcase(suite, determinism);
+    return test_run(suite);
+}
