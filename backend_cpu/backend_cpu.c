@@ -42,8 +42,8 @@ struct Backend {
 
 /* ---- the pool ---------------------------------------------------------------------------------------------------- */
 
-/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. Not
- * where states are compared: a chunk of few items is idle, and leaves out what only clears, before a device's batch is. */
+/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. Not where
+ * states are compared: a chunk of few items is idle, and leaves out what only clears, before a device's batch is. */
 static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)

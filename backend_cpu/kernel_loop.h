@@ -2,13 +2,13 @@
 #ifndef TWINLIGHT_KERNEL_LOOP_H
 #define TWINLIGHT_KERNEL_LOOP_H
 
-/* What kernels have instead of a view of their own: making one costs as much as loading a vertex, and compilers do not take it
- * out of the loop. */
+/* What kernels have instead of a view of their own: making one costs as much as loading a vertex, and compilers do not
+ * take it out of the loop. */
 #define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
     const SceneView *scene = ((void)(frame), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
 
-/* Nor do they compute where a field of their state is: in the loops of a chunk that is known. Translation units whose kernels
- * are run on other buffers as well, by tests, define KERNEL_ANY_STRIDE. */
+/* Nor do they compute where a field of their state is: in the loops of a chunk that is known. Translation units whose
+ * kernels are run on other buffers as well, by tests, define KERNEL_ANY_STRIDE. */
 #ifndef KERNEL_ANY_STRIDE
 #include "chunk.h"
 #define STATE_STRIDE CHUNK_STRIDE

@@ -2,8 +2,8 @@
 #include "config.h"
 #endif
 
-/* Before any shared header: everything is inlined into the loops of this file, those of path tracing and what starts like
- * it. */
+/* Before any shared header: everything is inlined into the loops of this file, those of path tracing and what starts
+ * like it. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif

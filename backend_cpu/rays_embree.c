@@ -440,8 +440,8 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
-/* Embree's boxes are wide enough for rays that start within reach, and which ray that is decides no bit: both walks find
- * what the shared primitive test finds. */
+/* Embree's boxes are wide enough for rays that start within reach, and which ray that is decides no bit: both walks
+ * find what the shared primitive test finds. */
 static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
 {
     return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;

@@ -1,6 +1,6 @@
-/* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. Where a few primitives or the camera lie so
- * far out that boxes which suit every ray would be larger than what is in them, Embree's suit those that start among the
- * others, and the rest take the walk of devices (geometry/bvh_traverse.h). */
+/* Rays on the CPU: Embree walks its hierarchy, the shared primitive test decides. Where a few primitives or the camera
+ * lie so far out that boxes which suit every ray would be larger than what is in them, Embree's suit those that start
+ * among the others, and the rest take the walk of devices (geometry/bvh_traverse.h). */
 #ifndef TWINLIGHT_RAYS_EMBREE_H
 #define TWINLIGHT_RAYS_EMBREE_H
 
@@ -19,8 +19,8 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray);
 /* Whether anything lies within the ray. */
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray);
 
-/* The same over state buffers (layout/state.h) at `stride`: of `count` items, those that `items` lists or, where it is NULL, the
- * first. Rays with t_max <= 0 are not traced; what is returned is the number of the others. */
+/* The same over state buffers (layout/state.h) at `stride`: of `count` items, those that `items` lists or, where it is
+ * NULL, the first. Rays with t_max <= 0 are not traced; what is returned is the number of the others. */
 uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, const uint *items,
                                uint count, uint stride);
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride);

@@ -232,10 +232,10 @@ static inline LaneMask lanes_in_box(const TriangleCluster *cluster, const RayQue
     return inside;
 }
 
-/* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie ahead of
- * the origin and, where box_admits_hit will not move it, not beyond t_best. The triangle that a ray starts on is nearly
- * always turned away here. Of the others nearly all are hits inside their boxes and far from the ray's ends, which is all
- * that is left to find out. */
+/* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie
+ * ahead of the origin and, where box_admits_hit will not move it, not beyond t_best. The triangle that a ray starts on
+ * is nearly always turned away here. Of the others nearly all are hits inside their boxes and far from the ray's ends,
+ * which is all that is left to find out. */
 static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
                                           ClusterTest *test)
 {

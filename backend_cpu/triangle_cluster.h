@@ -26,7 +26,8 @@ typedef struct TriangleCluster {
     uint primitive[CLUSTER_LANES]; /* NONE in unused lanes, whose corners are all zero */
 } TriangleCluster;
 
-/* Groups the `count` triangles `primitives` of the scene by Embree's surface area heuristic. *clusters has to be freed. */
+/* Groups the `count` triangles `primitives` of the scene by Embree's surface area heuristic. *clusters has to be
+ * freed. */
 bool triangle_clusters_build(RTCDevice device, const SceneView *scene, const uint *primitives, uint count,
                              TriangleCluster **clusters, uint *cluster_count, Error *error);
 

@@ -69,8 +69,8 @@ static void worker_sum_diagnostics(Worker *worker)
     }
 }
 
-/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares rays and kernels the
- * others. */
+/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares rays and kernels
+ * the others. */
 static void worker_find_live(Worker *worker, uint count)
 {
     const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;

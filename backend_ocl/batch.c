@@ -3,7 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The host enqueues no more than so many ray queries before the device has done them: what is enqueued cannot be stopped. */
+/* The host enqueues no more than so many ray queries before the device has done them: what is enqueued cannot be
+ * stopped. */
 #define TRACES_AHEAD 4u
 
 /* A launch in progress. */

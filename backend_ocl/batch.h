@@ -41,10 +41,10 @@ typedef struct Launcher {
     uint64_t fail_at; /* number of the batch that fails on purpose, for tests; UINT64_MAX: none */
 } Launcher;
 
-/* Enqueues the whole list for the batch, and the copy of its splats behind it on the second queue. Returns when the last
- * command is enqueued; meanwhile it may wait for the device to say that no path is alive, or because the device is far
- * behind. *dropped: a stop has ended the batch before its list did; some of its commands may be under way, and none of its
- * results are wanted. */
+/* Enqueues the whole list for the batch, and the copy of its splats behind it on the second queue. Returns when the
+ * last command is enqueued; meanwhile it may wait for the device to say that no path is alive, or because the device is
+ * far behind. *dropped: a stop has ended the batch before its list did; some of its commands may be under way, and none
+ * of its results are wanted. */
 bool batch_launch(Launcher *launcher, Batch *batch, const StepList *list, bool *dropped, Error *error);
 
 /* Waits until everything of the batch has happened. */

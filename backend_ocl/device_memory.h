@@ -41,8 +41,8 @@ typedef struct DeviceMemory {
     size_t scene_bytes, film_bytes, bytes;
 } DeviceMemory;
 
-/* Words between two fields of a batch of `count` items: whole groups, and an offset that keeps the fields of an item off
- * one another's cache sets when `count` is a power of two. */
+/* Words between two fields of a batch of `count` items: whole groups, and an offset that keeps the fields of an item
+ * off one another's cache sets when `count` is a power of two. */
 uint device_memory_stride(uint count);
 
 /* Copies the scene to the device. `batch`: items of a batch, 0 to choose. */

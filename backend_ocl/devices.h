@@ -22,8 +22,8 @@ typedef struct OclDevice {
  * filled. */
 size_t ocl_devices_find(OclDevice *devices, size_t capacity);
 
-/* Replaces what the driver promises of division and square roots by what a probe finds (rounding_probe.h), with a warning
- * where it is less. A probe takes a fraction of a second; unless `anew`, what an earlier one found is taken. */
+/* Replaces what the driver promises of division and square roots by what a probe finds (rounding_probe.h), with a
+ * warning where it is less. A probe takes a fraction of a second; unless `anew`, what an earlier one found is taken. */
 void ocl_device_probe(OclDevice *device, bool anew);
 
 /* The interface's list (backend/backend.h). */

@@ -1,5 +1,5 @@
-/* Built programs kept between runs: files in $XDG_CACHE_HOME/twinlight (~/.cache/twinlight), named by a hash of all that
- * goes into a build. A cache that cannot be read or written costs time, nothing else. */
+/* Built programs kept between runs: files in $XDG_CACHE_HOME/twinlight (~/.cache/twinlight), named by a hash of all
+ * that goes into a build. A cache that cannot be read or written costs time, nothing else. */
 #ifndef TWINLIGHT_PROGRAM_CACHE_H
 #define TWINLIGHT_PROGRAM_CACHE_H
 

@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets of operands, and how many are computed and compared at a time: twice as many as before, up to the last figure. */
+/* Sets of operands, and how many are computed and compared at a time: twice as many as before, up to the last
+ * figure. */
 #define ITEMS (1u << 20)
 #define CHUNK_FIRST (1u << 10)
 #define CHUNK_LAST (1u << 17)

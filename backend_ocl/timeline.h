@@ -32,7 +32,8 @@ void timeline_synchronize(Timeline *timeline, cl_command_queue queue, cl_mem buf
 /* Adds a span of the host. Any thread. */
 void timeline_add(Timeline *timeline, BackendSpan span);
 
-/* Adds a finished command of the device, and returns how long it ran in nanoseconds (0 when the device does not say). */
+/* Adds a finished command of the device, and returns how long it ran in nanoseconds (0 when the device does not
+ * say). */
 uint64_t timeline_add_event(Timeline *timeline, cl_event event, const char *name, SpanTrack track, uint64_t batch);
 
 #endif

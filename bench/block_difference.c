@@ -1,8 +1,8 @@
 /* How far two programs' pictures of the same seeds are apart, in block means, and how much of that is noise.
  *
  * usage: block_difference BLOCKS A1.exr B1.exr A2.exr B2.exr ...: pairs of the same seed. With d the difference of a
- * block's mean in one pair, over the mean that all B have there plus 0.01 of the picture's, m the mean of d over the pairs
- * and e its standard error, prints one line:
+ * block's mean in one pair, over the mean that all B have there plus 0.01 of the picture's, m the mean of d over the
+ * pairs and e its standard error, prints one line:
  *   largest |m| of all blocks, its e, and the largest |m| - T e above zero, T Student's value for p = 0.01 of all blocks
  *   together; the same difference and standard error of the whole picture; the root mean square of d that two seeds of
  *   one program differ by, which the same seed takes away. */

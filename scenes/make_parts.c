@@ -1,5 +1,5 @@
-/* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, a pane of
- * uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
+/* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, a pane
+ * of uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
 #include "image/color.h"
 #include "image/exr.h"
 #include "image/png_write.h"
@@ -23,8 +23,8 @@ typedef struct Grid {
     bool closed; /* the first and the last row are one point each */
 } Grid;
 
-/* A profile turned about the y axis: a Catmull-Rom spline through points (r, y), from the outer side of the foot up; the
- * surface faces right of the way. */
+/* A profile turned about the y axis: a Catmull-Rom spline through points (r, y), from the outer side of the foot up;
+ * the surface faces right of the way. */
 typedef struct Lathe {
     const double (*points)[2];
     int count;
@@ -37,7 +37,8 @@ enum { LATHE_SEGMENTS = 36, LATHE_STEPS = 2 };
 
 /* ---- the lathe ---------------------------------------------------------------------------------------------------- */
 
-/* Point i of the profile; beyond an end on the axis its mirror image, so that the tip is smooth, else a straight way. */
+/* Point i of the profile; beyond an end on the axis its mirror image, so that the tip is smooth, else a straight
+ * way. */
 static void profile_point(const Lathe *lathe, int i, double p[2])
 {
     int end = i < 0 ? 0 : lathe->count - 1, next = i < 0 ? 1 : lathe->count - 2;

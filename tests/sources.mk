@@ -4,11 +4,11 @@ LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_hos
 
 if HAVE_CHECK
 check_PROGRAMS += \
-	tests/test_aim \
+	tests/test_light_guide \
 	tests/test_analytic \
 	tests/test_bench \
 	tests/test_bidirectional \
-	tests/test_blend \
+	tests/test_combination \
 	tests/test_bsdf \
 	tests/test_bvh \
 	tests/test_chain \
@@ -83,7 +83,7 @@ EXTRA_DIST += \
 	tests/support/numerics.h \
 	tests/support/opencl_probe.h \
 	tests/support/render_fixture.h \
-	tests/mmlt/test_blend.h \
+	tests/mmlt/test_combination.h \
 	tests/geometry/test_bvh.h \
 	tests/mmlt/test_chain.h \
 	tests/light/test_emit.h \
@@ -113,7 +113,7 @@ tests_libfixtures_la_SOURCES = \
 	tests/support/verify_fixture.c \
 	$(OPENCL_PROBE)
 
-tests_test_aim_SOURCES = tests/light/test_aim.c
+tests_test_light_guide_SOURCES = tests/light/test_light_guide.c
 tests_test_bench_SOURCES = tests/bench/test_bench.c
 tests_test_chain_population_SOURCES = tests/mmlt/test_chain_population.c
 tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
@@ -150,8 +150,8 @@ tests_test_bidirectional_SOURCES = tests/path/test_bidirectional.c \
 	tests/path/test_bidirectional_walks.c \
 	tests/path/test_bidirectional_weights.c
 
-tests_test_blend_SOURCES = tests/mmlt/test_blend.c \
-	tests/mmlt/test_blend_known.c
+tests_test_combination_SOURCES = tests/mmlt/test_combination.c \
+	tests/mmlt/test_combination_known.c
 
 tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \
 	tests/bsdf/test_bsdf_coated.c \

@@ -181,8 +181,8 @@ typedef struct BackendInterface {
     /* Sums the diagnostics counters (layout/diagnostics.h) into counters[DIAGNOSTIC_COUNT]. */
     void (*diagnostics)(Backend *backend, uint64_t *counters);
     void (*statistics)(Backend *backend, BackendStatistics *statistics);
-    /* What ran when, if BackendOptions.record_spans was set. Returns the count and sets *dropped to how many did not fit.
-     * Borrowed until the next call of any function. May be NULL. */
+    /* What ran when, if BackendOptions.record_spans was set. Returns the count and sets *dropped to how many did not
+     * fit. Borrowed until the next call of any function. May be NULL. */
     size_t (*spans)(Backend *backend, const BackendSpan **spans, uint64_t *dropped);
 } BackendInterface;
 

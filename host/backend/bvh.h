@@ -1,5 +1,5 @@
-/* The hierarchy that a device walks (shared/geometry/bvh_traverse.h says how it is laid out): four children a node, split by
- * Embree's builder, flattened into one buffer of words. */
+/* The hierarchy that a device walks (shared/geometry/bvh_traverse.h says how it is laid out): four children a node,
+ * split by Embree's builder, flattened into one buffer of words. */
 #ifndef TWINLIGHT_BACKEND_BVH_H
 #define TWINLIGHT_BACKEND_BVH_H
 

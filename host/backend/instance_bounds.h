@@ -1,5 +1,5 @@
-/* Boxes around instances in world space, for hierarchies that any traversal may walk (shared/geometry/box.h). A header alone, since
- * one of its callers is compiled a second time with double in the place of float. */
+/* Boxes around instances in world space, for hierarchies that any traversal may walk (shared/geometry/box.h). A header
+ * alone, since one of its callers is compiled a second time with double in the place of float. */
 #ifndef TWINLIGHT_BACKEND_INSTANCE_BOUNDS_H
 #define TWINLIGHT_BACKEND_INSTANCE_BOUNDS_H
 
@@ -7,14 +7,14 @@
 
 #include <math.h>
 
-/* The primitives of an instance are tested in the space of its object, with an origin and a direction that the instance's
- * float matrix M and translation b have rounded. With coordinates |.| the largest ones and E = FLOAT_EPSILON, a hit that
- * counts at P = o + t d lies, mapped to object space exactly, within
+/* The primitives of an instance are tested in the space of its object, with an origin and a direction that the
+ * instance's float matrix M and translation b have rounded. With coordinates |.| the largest ones and E =
+ * FLOAT_EPSILON, a hit that counts at P = o + t d lies, mapped to object space exactly, within
  *
  *     E (7.5 (|B| + |o'|) + 2 (|M| |o| + |b|) + 1.5 |M| t |d|)
  *
- * of its box B: box_admits_hit with o', the four roundings of o' and the three of d'. With |o'| <= |M| |o| + |b| and
- * t |d| <= |P| + |o| that is at most
+ * of its box B: box_admits_hit with o', the four roundings of o' and the three of d'. With |o'| <= |M| |o| + |b| and t
+ * |d| <= |P| + |o| that is at most
  *
  *     E (7.5 |B| + 9.5 |b| + 1.5 |M| |P|)  +  E 11 |M| |o|,
  *
@@ -87,7 +87,8 @@ static inline double corners_largest(const double low[3], const double high[3])
     return largest;
 }
 
-/* `object`: the box of the instance's object without margin; not empty. A map that has no inverse gives all of space. */
+/* `object`: the box of the instance's object without margin; not empty. A map that has no inverse gives all of
+ * space. */
 static inline InstanceBounds instance_bounds(const Instance *instance, const Box *object)
 {
     const Affine *a = &instance->object_from_world;
@@ -120,8 +121,8 @@ static inline float instance_margin(const InstanceBounds *bounds, float reach)
     return float_min(bounds->origin_ulps * FLOAT_EPSILON * reach, (float)INSTANCE_BOX_MAX);
 }
 
-/* No coordinate of a ray's origin is above this in the space of the instance's object, where none in world space is above
- * `reach`. */
+/* No coordinate of a ray's origin is above this in the space of the instance's object, where none in world space is
+ * above `reach`. */
 static inline float instance_reach(const Instance *instance, float reach)
 {
     return (1.0f + 8.0f * FLOAT_EPSILON) *

@@ -13,7 +13,8 @@
 /* A reach that is not smaller by this factor is not worth a hierarchy of its own. */
 #define WORTHWHILE 4.0f
 
-/* The largest coordinate of primitive or instance i of the world: primitives first. *size: the longest side of its box. */
+/* The largest coordinate of primitive or instance i of the world: primitives first. *size: the longest side of its
+ * box. */
 static float item_reach(const SceneView *view, uint i, float *size)
 {
     const Object *world = &view->objects[0];

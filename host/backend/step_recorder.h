@@ -16,8 +16,8 @@ void recorder_step(Recorder *recorder, StepKind kind);
 void recorder_kernel(Recorder *recorder, unsigned kernel, bool live_only);
 void recorder_skip(Recorder *recorder, size_t target);
 
-/* Up to `segments` segments of a walk: rays, the kernel for what they meet, and, but at the last vertex where nothing is
- * drawn, the one that goes on; KERNEL_COUNT: the first does. */
+/* Up to `segments` segments of a walk: rays, the kernel for what they meet, and, but at the last vertex where nothing
+ * is drawn, the one that goes on; KERNEL_COUNT: the first does. */
 void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned extend);
 
 /* The list that was recorded, whose steps it now owns: `path_words` words a path, with rays, hits, shadow rays and

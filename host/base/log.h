@@ -4,7 +4,8 @@
 
 #include "base/error.h"
 
-/* Whether the stream is a terminal that understands ANSI's escape codes: one with TERM=dumb, or without TERM, does not. */
+/* Whether the stream is a terminal that understands ANSI's escape codes: one with TERM=dumb, or without TERM, does
+ * not. */
 bool stream_is_terminal(FILE *stream);
 
 typedef enum LogLevel {

@@ -36,7 +36,8 @@ bool option_whole(const char *option, const char *text, uint64_t low, uint64_t h
     return true;
 }
 
-/* Reads a decimal number at *text and moves behind it. strtod alone would also take blanks, hexadecimal, inf and nan. */
+/* Reads a decimal number at *text and moves behind it. strtod alone would also take blanks, hexadecimal, inf and
+ * nan. */
 static bool read_number(const char **text, double *value)
 {
     const char *start = *text;

@@ -1,5 +1,5 @@
-/* Files that are whole or not there: written under another name in the same folder (base/temporary_file.h), brought to disk and
- * renamed at the end. Until then an old file of the name stays. */
+/* Files that are whole or not there: written under another name in the same folder (base/temporary_file.h), brought to
+ * disk and renamed at the end. Until then an old file of the name stays. */
 #ifndef TWINLIGHT_BASE_OUTPUT_FILE_H
 #define TWINLIGHT_BASE_OUTPUT_FILE_H
 

@@ -14,8 +14,9 @@ const char *path_file_name(const char *path);
 /* What stands before it: "/" of "/a", "." of "a". `path` is shorter than PATH_MAX. */
 void path_folder(const char *path, char folder[PATH_MAX]);
 
-/* target = the file that opening `path` for writing would make or change: absolute, symbolic links followed, also one to a
- * file that is not there. As it is where its folder is not there. False with errno: too long, or too many links. */
+/* target = the file that opening `path` for writing would make or change: absolute, symbolic links followed, also one
+ * to a file that is not there. As it is where its folder is not there. False with errno: too long, or too many
+ * links. */
 bool path_target(const char *path, char target[PATH_MAX]);
 
 /* Whether two names lead to one regular file, or to one name at which there is no file yet. */

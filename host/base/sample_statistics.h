@@ -7,7 +7,8 @@
 /* Ascending. */
 void sample_sort(double *values, size_t count);
 
-/* The quantile q, 0 ... 1, linear between neighbours (Hyndman and Fan's type 7). Sorts `values`. NaN when count is 0. */
+/* The quantile q, 0 ... 1, linear between neighbours (Hyndman and Fan's type 7). Sorts `values`. NaN when count is
+ * 0. */
 double sample_quantile(double *values, size_t count, double q);
 
 /* Of numbers that come one at a time. */
@@ -19,10 +20,10 @@ void sample_moments_add(SampleMoments *moments, double value);
 
 /* The potential scale reduction sqrt(((n - 1) / n W + B / n) / W) of several groups of n draws: W is the mean of their
  * variances, B / n the variance of their means (Gelman and Rubin, "Inference from Iterative Simulation Using Multiple
- * Sequences", 1992, without its correction for degrees of freedom, as in Vehtari et al., "Rank-Normalization, Folding, and
- * Localization: An Improved R-hat", 2021, equations 1 to 4). Near 1 when the groups could be parts of one sample. Groups of
- * fewer than two draws do not count; n is the mean of the others'. NaN for fewer than two groups, or when all draws are the
- * same; infinite when they differ between groups alone. */
+ * Sequences", 1992, without its correction for degrees of freedom, as in Vehtari et al., "Rank-Normalization, Folding,
+ * and Localization: An Improved R-hat", 2021, equations 1 to 4). Near 1 when the groups could be parts of one sample.
+ * Groups of fewer than two draws do not count; n is the mean of the others'. NaN for fewer than two groups, or when all
+ * draws are the same; infinite when they differ between groups alone. */
 double sample_r_hat(const SampleMoments *groups, size_t count);
 
 /* The line intercept + slope x of least squares, and the standard error of its slope (NaN for fewer than three points).

@@ -78,9 +78,9 @@ static bool is_temporary_of(const char *entry, const char *name)
     return end > number && strcmp(end, "~") == 0;
 }
 
-/* Unlinks a file that nobody holds the lock of. A process number would say less: it may have been given to another process
- * since, or belong to another machine that writes to the same folder. The kernel drops a lock with its process, and locks
- * are shared by the machines of a network file system. Where a file system has none, strays stay. */
+/* Unlinks a file that nobody holds the lock of. A process number would say less: it may have been given to another
+ * process since, or belong to another machine that writes to the same folder. The kernel drops a lock with its process,
+ * and locks are shared by the machines of a network file system. Where a file system has none, strays stay. */
 static void stray_remove(int folder, const char *name)
 {
     struct stat status;

@@ -4,8 +4,8 @@
 
 #include "bench/bench.h"
 
-/* Fills in the figures of all finished runs, the groups and the series. Without a reference there are none. Fails when an image
- * cannot be read or has another size. */
+/* Fills in the figures of all finished runs, the groups and the series. Without a reference there are none. Fails when
+ * an image cannot be read or has another size. */
 bool bench_scene_analyse(const BenchOptions *options, BenchScene *scene, Error *error);
 
 /* The longest time that every series has a run with; -1: there is none. */

@@ -1,8 +1,8 @@
 /* `twinlight bench`: integrators against time on scenes, as a report.
  *
- * Renderings are made first (bench/renderings.c), each kept as an EXR with a record beside it (bench/record.c), so that what is
- * finished is not done again. Then they are compared with the scene's reference (bench/analysis.c), and the report is written
- * from the results (bench/report.c, bench/pictures.c, bench/tables.c). */
+ * Renderings are made first (bench/renderings.c), each kept as an EXR with a record beside it (bench/record.c), so that
+ * what is finished is not done again. Then they are compared with the scene's reference (bench/analysis.c), and the
+ * report is written from the results (bench/report.c, bench/pictures.c, bench/tables.c). */
 #ifndef TWINLIGHT_BENCH_BENCH_H
 #define TWINLIGHT_BENCH_BENCH_H
 

@@ -160,7 +160,7 @@ void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
         fprintf(stream,
                 " mutations. In the picture of the last generation chains have %.0f %%, the pool %.0f %% and paths "
                 "%.0f %%. Acceptance in per cent, by kind of mutation and by the path\u2019s segments:</p>\n",
-                100.0 * chains.shares[0] / runs, 100.0 * chains.shares[1] / runs, 100.0 * chains.shares[2] / runs);
+                100.0 * chains.weights[0] / runs, 100.0 * chains.weights[1] / runs, 100.0 * chains.weights[2] / runs);
         depths_find(&chains, &first, &last);
         acceptance_table(stream, &chains, first, last);
         health_table(stream, &chains, first, last);

@@ -1,5 +1,5 @@
-/* A scene's pictures. Every picture is in the page once, as an image in a store; what is shown are windows on it, so that
- * patches and the full-window viewer cost nothing. */
+/* A scene's pictures. Every picture is in the page once, as an image in a store; what is shown are windows on it, so
+ * that patches and the full-window viewer cost nothing. */
 #include "bench/analysis.h"
 #include "bench/html.h"
 #include "bench/report.h"

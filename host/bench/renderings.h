@@ -4,8 +4,8 @@
 
 #include "bench/bench.h"
 
-/* Fills in the scene and makes its renderings, all but those that are there from an earlier call. Returns true, too, when a
- * signal came: bench_analyse does with what is there. On failure the scene holds what was finished. */
+/* Fills in the scene and makes its renderings, all but those that are there from an earlier call. Returns true, too,
+ * when a signal came: bench_analyse does with what is there. On failure the scene holds what was finished. */
 bool bench_scene_render(Bench *bench, BenchScene *scene, const char *path, const char *reference, Error *error);
 void bench_scene_destroy(BenchScene *scene);
 

@@ -16,7 +16,8 @@ bool bench_pictures_write(const Bench *bench, int scene, FILE *stream, Error *er
 /* A scene's tables of figures, of work, of chains, and of all times. */
 void bench_figures_write(const Bench *bench, const BenchScene *scene, FILE *stream);
 
-/* Of every series that has chains: pools, shares, and acceptance by kind of mutation and depth, over all runs of a time. */
+/* Of every series that has chains: pools, shares, and acceptance by kind of mutation and depth, over all runs of a
+ * time. */
 void bench_chains_write(const BenchScene *scene, int time, FILE *stream);
 
 /* "2.34x" with a true sign of multiplication; a dash when it is not known. */

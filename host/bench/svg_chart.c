@@ -70,8 +70,8 @@ static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical,
             vertical ? x->from - 7.0 : at, vertical ? at + 4.0 : y->from + 17.0, vertical ? "end" : "middle", text);
 }
 
-/* Lines at powers of ten and between them, fewer where there are many decades. Returns how many have numbers; draws none
- * where `stream` is NULL. */
+/* Lines at powers of ten and between them, fewer where there are many decades. Returns how many have numbers; draws
+ * none where `stream` is NULL. */
 static int grid_decades(FILE *stream, const Axis *x, const Axis *y, bool vertical)
 {
     const Axis *axis = vertical ? y : x;

@@ -30,8 +30,8 @@ uint64_t bench_task_seed(const BenchOptions *options, const char *integrator, do
  * another program or elsewhere is not taken for this one's. */
 void bench_task_image(const BenchWorkshop *shop, const BenchTask *task, char path[PATH_MAX]);
 
-/* Makes the image of `path` and its record unless they are there. *finished becomes false, and nothing is written, when a
- * signal came before or while it was rendered. */
+/* Makes the image of `path` and its record unless they are there. *finished becomes false, and nothing is written, when
+ * a signal came before or while it was rendered. */
 bool bench_task_run(BenchWorkshop *shop, const BenchTask *task, const char *path, BenchRecord *record, bool *finished,
                     Error *error);
 

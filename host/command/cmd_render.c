@@ -19,8 +19,8 @@
 #include "render/render.h"
 #include "render/report.h"
 #include "render/stats.h"
-#include "scene/advice.h"
 #include "scene/camera_setup.h"
+#include "scene/warnings.h"
 
 #include <string.h>
 #include <unistd.h>

@@ -14,8 +14,8 @@ typedef struct CommandFile {
 bool output_check(const char *path, Error *error);
 
 /* Fails when one of the files that are written could not be created (output_check), or is the same file (path_same) as
- * another one of these, one that has been read (base/input_files.h), or one that standard input, output or error is redirected
- * to. `fix` is what to do about the same file. */
+ * another one of these, one that has been read (base/input_files.h), or one that standard input, output or error is
+ * redirected to. `fix` is what to do about the same file. */
 bool output_files_check(const CommandFile *files, size_t count, const char *fix, Error *error);
 
 #endif

@@ -238,10 +238,10 @@ static bool chain_option_set(RenderCommand *command, int option, const char *val
         chains->shiftless = true;
         return true;
     case OPTION_NO_AIM:
-        chains->aimless = true;
+        chains->unguided = true;
         return true;
     case OPTION_NO_BLEND:
-        chains->unblended = true;
+        chains->chains_only = true;
         return true;
     case OPTION_DUMP_BAD:
         return path_set(&command->dump_bad, option, value, NULL, error);

@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any case. */
+/* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any
+ * case. */
 static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
 {
     const char *name = path_file_name(path);

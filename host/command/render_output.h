@@ -29,8 +29,8 @@ typedef struct RenderOutput {
  * none when !want_png. */
 bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
-/* Makes room for writing pictures of this crop, before the first sample: so that what is rendered can be written whatever
- * memory is left then. */
+/* Makes room for writing pictures of this crop, before the first sample: so that what is rendered can be written
+ * whatever memory is left then. */
 bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error);
 void render_output_release(RenderOutput *output);
 

@@ -1,5 +1,5 @@
-/* What a rendering is asked for: whether the options of the command line mean something together and to the integrator, and
- * what of the scene they replace. */
+/* What a rendering is asked for: whether the options of the command line mean something together and to the integrator,
+ * and what of the scene they replace. */
 #ifndef TWINLIGHT_COMMAND_RENDER_SETTINGS_H
 #define TWINLIGHT_COMMAND_RENDER_SETTINGS_H
 
@@ -11,7 +11,8 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
 /* Which layers the image will have (LAYER_BIT). */
 bool render_settings_layers(const RenderCommand *command, const Integrator *integrator, unsigned *wanted, Error *error);
 
-/* The command line's size, crop and depth where it has them, else the scene's, the depth within what the integrator makes. */
+/* The command line's size, crop and depth where it has them, else the scene's, the depth within what the integrator
+ * makes. */
 bool render_settings_apply(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* Figures of how different two pictures look on a display: FLIP and SSIM.
  *
- * Both take linear RGB of a display, 0 ... 1, which display_linear makes of a rendering; that is what a PNG of it shows,
- * but not rounded to 8 bits. */
+ * Both take linear RGB of a display, 0 ... 1, which display_linear makes of a rendering; that is what a PNG of it
+ * shows, but not rounded to 8 bits. */
 #ifndef TWINLIGHT_COMPARE_DISPLAY_ERROR_H
 #define TWINLIGHT_COMPARE_DISPLAY_ERROR_H
 
@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-/* How pictures are shown: linear values x 2^exposure, clamped to 0 ... 1, encoded as sRGB, on a display with so many pixels
- * to a degree of the eye's. */
+/* How pictures are shown: linear values x 2^exposure, clamped to 0 ... 1, encoded as sRGB, on a display with so many
+ * pixels to a degree of the eye's. */
 typedef struct DisplaySettings {
     double exposure; /* stops */
     double pixels_per_degree; /* 1 ... FLIP_PIXELS_PER_DEGREE_MAX */
@@ -34,9 +34,9 @@ bool display_error_compute(const float *image, const float *reference, int width
 /* The tone map: out = in x 2^exposure_stops, clamped to 0 ... 1; NaN is 0. `count` values. */
 void display_linear(const float *in, size_t count, double exposure_stops, float *out);
 
-/* *mean = the mean over all pixels of LDR-FLIP (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP:
- * A Difference Evaluator for Alternating Images", 2020), 0 (alike) to 1. `map`: a value a pixel; may be NULL.
- * 1 <= pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MAX. Fails when memory is out. */
+/* *mean = the mean over all pixels of LDR-FLIP (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild,
+ * "FLIP: A Difference Evaluator for Alternating Images", 2020), 0 (alike) to 1. `map`: a value a pixel; may be NULL. 1
+ * <= pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MAX. Fails when memory is out. */
 bool flip_compute(const float *image, const float *reference, int width, int height, double pixels_per_degree,
                   float *map, double *mean, Error *error);
 

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Octaves between the mean radiance of the picture and one unit of a sum. All light of T samples is T times the mean, and in
- * the worst case one pixel or even one path has all of it; what is read of a sum is at most 2^62 units (camera/film_sum.h). So nothing
- * is too bright for a film of 2^(62 - 26) = 2^36 samples: 2^20 pixels of 65,536 samples, or two hours of 10^7 samples a second. At
- * the other end a contribution vanishes below 2^-27 of the mean, and rounding changes one of 2^-20 by less than 1 %. Where the
- * pilot has missed light, so that the true mean is 2^k times as bright, 2^(36 - k) samples are left to the brightest pixel that
- * there could be. */
+/* Octaves between the mean radiance of the picture and one unit of a sum. All light of T samples is T times the mean,
+ * and in the worst case one pixel or even one path has all of it; what is read of a sum is at most 2^62 units
+ * (camera/film_sum.h). So nothing is too bright for a film of 2^(62 - 26) = 2^36 samples: 2^20 pixels of 65,536
+ * samples, or two hours of 10^7 samples a second. At the other end a contribution vanishes below 2^-27 of the mean, and
+ * rounding changes one of 2^-20 by less than 1 %. Where the pilot has missed light, so that the true mean is 2^k times
+ * as bright, 2^(36 - k) samples are left to the brightest pixel that there could be. */
 #define QUANTUM_OCTAVES 26
 #define QUANTUM_EXPONENT_DEFAULT (-30)
 

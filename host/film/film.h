@@ -1,6 +1,6 @@
 /* The film: every contribution is rounded to a 64-bit fixed-point number, and integer sums do not depend on order, so
- * the image is the same for any number of threads, devices or processes, after a resume, and after merging. Sums that are
- * full stay so (camera/film_sum.h). */
+ * the image is the same for any number of threads, devices or processes, after a resume, and after merging. Sums that
+ * are full stay so (camera/film_sum.h). */
 #ifndef TWINLIGHT_FILM_FILM_H
 #define TWINLIGHT_FILM_FILM_H
 
@@ -33,7 +33,8 @@ typedef struct Film {
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
 void film_destroy(Film *film);
 
-/* An empty film of the same size, crop and quantum as `model`, with room for splats from the light where that has it. */
+/* An empty film of the same size, crop and quantum as `model`, with room for splats from the light where that has
+ * it. */
 bool film_init_like(Film *film, const Film *model, Error *error);
 
 /* Makes room for splats that paths from the light bring (SPLAT_FROM_LIGHT). Only while the film is empty. */
@@ -44,9 +45,9 @@ bool film_light_reserve(Film *film, Error *error);
 bool film_rare_reserve(Film *film, Error *error);
 
 /* Makes room for sums of paths of each number of segments up to `last` by themselves, for splats that name it
- * (FrameParams.split_depths = depth_kinds): of those from the light, and where there is room for rare ones (reserved before)
- * of all kinds. They are this film's own as the rare ones are, but film_merge adds them where both films have them. Only while
- * the film is empty. */
+ * (FrameParams.split_depths = depth_kinds): of those from the light, and where there is room for rare ones (reserved
+ * before) of all kinds. They are this film's own as the rare ones are, but film_merge adds them where both films have
+ * them. Only while the film is empty. */
 bool film_depths_reserve(Film *film, uint last, Error *error);
 
 /* Sums of paths of so many segments, depth_last at most: 3 a pixel. kind: FILM_KIND_*, below depth_kinds. */
@@ -59,11 +60,13 @@ size_t film_pixels(const Film *film);
  * Only while the film is empty. */
 void film_quantum_set(Film *film, double mean);
 
-/* Adds `count` items of a splat buffer (layout/state.h: SPLAT_PIXEL, SPLAT_COLOR at field * stride + item) and one sample to
- * each pixel named; splats from the light are not samples of their pixel. Pixels outside the crop and NONE are skipped. Any number of threads may call it at once. */
+/* Adds `count` items of a splat buffer (layout/state.h: SPLAT_PIXEL, SPLAT_COLOR at field * stride + item) and one
+ * sample to each pixel named; splats from the light are not samples of their pixel. Pixels outside the crop and NONE
+ * are skipped. Any number of threads may call it at once. */
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
 
-/* Words of 64 bits that a device keeps for this film (camera/film_sum.h), and adding what has come together there to it. */
+/* Words of 64 bits that a device keeps for this film (camera/film_sum.h), and adding what has come together there to
+ * it. */
 size_t film_sum_words(const Film *film);
 void film_add_sums(Film *film, ulong *words);
 
@@ -88,12 +91,13 @@ size_t film_infinite_pixels(const Film *film, float scale);
 /* Pixels that have no sample of their own. */
 size_t film_empty_pixels(const Film *film);
 
-/* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light brought. */
+/* One of the two parts of film_resolve alone: what the pixels' own samples saw, or what splats from the light
+ * brought. */
 typedef enum FilmPart { FILM_ALL, FILM_OWN, FILM_LIGHT } FilmPart;
 void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb);
 
-/* What a unit of a film's sums is worth: of those of pixels' own samples, before the division by their number, and of those
- * of splats from the light. */
+/* What a unit of a film's sums is worth: of those of pixels' own samples, before the division by their number, and of
+ * those of splats from the light. */
 typedef struct FilmScale {
     double own, light;
 } FilmScale;
@@ -107,8 +111,8 @@ void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_
 /* The same pixels of what splats from the light brought of paths of so many segments. */
 void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb);
 
-/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the first
- * is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
+/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); where nothing was sampled the
+ * first is zero. Paths from the light meet all pixels alike, however far the samples of single pixels have come. */
 void film_resolve(const Film *film, float scale, float *rgb);
 
 #endif

@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdint.h>
 
-/* 1 / p and 1 / p^2 of the plastic number p = 1.3247...: how much later in the order the next pixel is, and the one below. */
+/* 1 / p and 1 / p^2 of the plastic number p = 1.3247...: how much later in the order the next pixel is, and the one
+ * below. */
 #define STEP_RIGHT 0.7548776662466927
 #define STEP_DOWN 0.5698402909980532
 
@@ -31,8 +32,9 @@ static uint inverse(uint a, uint n)
     return (uint)(now < 0 ? now + (int64_t)n : now);
 }
 
-/* Pixel p is visited as number p * t mod n, so t is how much later the next one is, and width * t the one below: t begins at
- * the right part of n and goes on until the latter is right, too, which takes no more than a number for every row. */
+/* Pixel p is visited as number p * t mod n, so t is how much later the next one is, and width * t the one below: t
+ * begins at the right part of n and goes on until the latter is right, too, which takes no more than a number for every
+ * row. */
 uint pixel_order_stride(uint width, uint height)
 {
     uint n = width * height, candidates = height > CANDIDATES_LEAST ? height : CANDIDATES_LEAST, best = 1;

@@ -2,8 +2,8 @@
  *
  * The numbers were computed once, at 1 nm over 360-830 nm, from the measurements that pbrt-v4 distributes under these
  * names (illuminants of CIE 15:2004 and the ACES D60; metals' n and k; glasses' n from refractiveindex.info), by the
- * rules of image/color.h: index = average over what each channel sees, light = colour at luminance 1. The exception is D50:
- * the table under that name has the chromaticity (0.3368, 0.3540), not that of D50, (0.3457, 0.3585), so the CIE's
+ * rules of image/color.h: index = average over what each channel sees, light = colour at luminance 1. The exception is
+ * D50: the table under that name has the chromaticity (0.3368, 0.3540), not that of D50, (0.3457, 0.3585), so the CIE's
  * daylight formula at 5003 K was taken instead.
  *
  * Metals: with n and k averaged apart, the RGB reflectance would miss the metal's colour, which is what is seen of it.

@@ -1,5 +1,5 @@
-/* The CIE 1931 2-degree standard observer and the relative spectral power of illuminant D65 (CIE 15:2004, tables T.4 and
- * T.1), every 5 nm from 360 to 830 nm. */
+/* The CIE 1931 2-degree standard observer and the relative spectral power of illuminant D65 (CIE 15:2004, tables T.4
+ * and T.1), every 5 nm from 360 to 830 nm. */
 #ifndef TWINLIGHT_IMAGE_COLOR_TABLES_H
 #define TWINLIGHT_IMAGE_COLOR_TABLES_H
 

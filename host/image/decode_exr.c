@@ -154,8 +154,9 @@ static void samples_convert(const uint8_t *in, exr_pixel_type_t type, int count,
     }
 }
 
-/* A decompressed chunk, line by line the lines of its channels, to the image. In place of the library's own function, which
- * in 3.1 takes R for A, G for B of four channels of 16 bits, and crashes where some of three or four are not wanted. */
+/* A decompressed chunk, line by line the lines of its channels, to the image. In place of the library's own function,
+ * which in 3.1 takes R for A, G for B of four channels of 16 bits, and crashes where some of three or four are not
+ * wanted. */
 static exr_result_t chunk_unpack(exr_decode_pipeline_t *decoder)
 {
     const ExrReader *reader = decoder->decoding_user_data;
@@ -246,7 +247,8 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
     exr_storage_t storage = EXR_STORAGE_SCANLINE;
     if (!header_read(reader, path, error))
         return false;
-    /* Deflate makes 1032 bytes of one at most, of half a pixel each; what DWA makes of a block of 64 pixels it deflates. */
+    /* Deflate makes 1032 bytes of one at most, of half a pixel each; what DWA makes of a block of 64 pixels it
+     * deflates. */
     const ImageSize size = {reader->width, reader->height, is_dwa(reader) ? 64 * 516 : 516};
     if (!image_allocate_float(reader->file, path, size, reader->channels, image, error))
         return false;

@@ -86,8 +86,8 @@ static int channels_wanted(StbKind kind, int present)
     return kind == STB_TGA ? 3 : present;
 }
 
-/* PNG: deflate makes 1032 bytes of one at most, each of them eight pixels. JPEG: a bit for a block of 64 pixels at least,
- * 9 for the 1024 of the thinnest sampling. TGA and HDR: runs of 128 in two bytes. */
+/* PNG: deflate makes 1032 bytes of one at most, each of them eight pixels. JPEG: a bit for a block of 64 pixels at
+ * least, 9 for the 1024 of the thinnest sampling. TGA and HDR: runs of 128 in two bytes. */
 static long long density(StbKind kind)
 {
     return kind == STB_PNG ? 8 * 1032 : kind == STB_JPEG ? 1024 : 64;

@@ -47,8 +47,8 @@ typedef struct ExrPicture {
     int crop[4]; /* x0 y0 x1 y1: the data window */
     const ExrAttribute *attributes;
     size_t attribute_count;
-    /* Puts rows first ... first + count - 1 of the data window, EXR_BAND_ROWS at most, into the channels' data. NULL: all
-     * rows are there. */
+    /* Puts rows first ... first + count - 1 of the data window, EXR_BAND_ROWS at most, into the channels' data. NULL:
+     * all rows are there. */
     void (*band)(void *context, int first, int count);
     void *context;
     float *plane; /* room for channel_count x EXR_BAND_ROWS rows of the data window; NULL: it is allocated */
@@ -58,9 +58,10 @@ typedef struct ExrPicture {
 bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error);
 
 /* Writes `channel_count` channels of the pixels crop[0] <= x < crop[2], crop[1] <= y < crop[3] of a width x height
- * picture (the display window): scanlines, ZIP, sorted by name as the format wants; chromaticities are those of linear sRGB. `crop` may be NULL: everything.
- * Nothing in the file depends on time or machine. Written beside `path` and renamed: an old file stays until the new
- * one is whole. Fails, naming the path, when it cannot be written, and for a channel named twice. */
+ * picture (the display window): scanlines, ZIP, sorted by name as the format wants; chromaticities are those of linear
+ * sRGB. `crop` may be NULL: everything. Nothing in the file depends on time or machine. Written beside `path` and
+ * renamed: an old file stays until the new one is whole. Fails, naming the path, when it cannot be written, and for a
+ * channel named twice. */
 bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
                const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error);
 

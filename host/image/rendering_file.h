@@ -16,8 +16,8 @@ void rendering_destroy(Rendering *rendering);
 
 bool rendering_has_halves(const Rendering *rendering);
 
-/* Writes the mean of two pictures of width x height x 3 as an EXR: as half floats or, with `layers`, as floats with both as
- * its halves, as `twinlight render` writes them. */
+/* Writes the mean of two pictures of width x height x 3 as an EXR: as half floats or, with `layers`, as floats with
+ * both as its halves, as `twinlight render` writes them. */
 bool rendering_mean_write(const char *path, float *const halves[2], int width, int height, bool layers, Error *error);
 
 /* Fails, naming both, when the sizes differ. */

@@ -3,8 +3,8 @@
 
 #include "chain/chain.h"
 
-/* What makes their states again: a chain is a function of the seed, where it began and its number (chain/chain.h). It began with
- * a sample of the pool or, when it came from the generation before, with `numbers`. */
+/* What makes their states again: a chain is a function of the seed, where it began and its number (chain/chain.h). It
+ * began with a sample of the pool or, when it came from the generation before, with `numbers`. */
 static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
 {
     const uint *words = mmlt->chains.pass_words;

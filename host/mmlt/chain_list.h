@@ -11,8 +11,8 @@ bool chain_list(const FrameParams *frame, uint steps, StepList *list, Error *err
 /* Fields of BUFFER_PASS. */
 uint chain_pass_fields(const FrameParams *frame);
 
-/* Words of a chain's own: its coordinates and what it knows of its current path; and in all, with the walk under way and
- * the buffers of rays and vertices. Densities, one word a vertex, twice. */
+/* Words of a chain's own: its coordinates and what it knows of its current path; and in all, with the walk under way
+ * and the buffers of rays and vertices. Densities, one word a vertex, twice. */
 typedef struct ChainWords {
     uint state, densities, all;
 } ChainWords;

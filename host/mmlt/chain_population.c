@@ -49,7 +49,8 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
         candidates->weights[i] = change * population->brightness / chains * part;
         candidates->keys[i] = part > 0.0 ? word_of(population, CHAIN_PASS_KEY, i) : 0;
     }
-    /* Also where there are no chains, because all pools before were black: others have had more to show than there is. */
+    /* Also where there are no chains, because all pools before were black: others have had more to show than there
+     * is. */
     for (uint i = 0; i < samples; ++i) {
         double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
         double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;

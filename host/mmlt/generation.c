@@ -50,15 +50,15 @@ static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 static void chains_count(Mmlt *mmlt, uint count)
 {
     const uint *words = mmlt->chains.pass_words;
-    uint half = (uint)mmlt_half(mmlt, mmlt->generation);
+    uint replica = (uint)mmlt_replica(mmlt, mmlt->generation);
     chain_statistics_pass(&mmlt->run->chains, words, count, mmlt->options.steps);
-    chain_groups_add(&mmlt->groups, words, count, half, mmlt->options.paper ? CHAIN_GROUPS : 1);
+    chain_groups_add(&mmlt->groups, words, count, replica, mmlt->options.paper ? CHAIN_GROUPS : 1);
 }
 
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
 
 /* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one in the first two
- * generations of either half of the image, from which its variances are known. */
+ * generations of either replica of the image, from which its variances are known. */
 static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
@@ -66,7 +66,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
     double begin = timing_now();
     mmlt->paths_wanted += mmlt->paths_per_step * (double)steps / (double)run->crop_pixels;
     uint64_t target = (uint64_t)mmlt->paths_wanted, first = (uint64_t)mmlt->generation + 1;
-    if (mmlt->generation < 2 * MMLT_HALVES && target < first)
+    if (mmlt->generation < 2 * REPLICAS && target < first)
         target = first;
     film_clear(&mmlt->paths_film);
     mmlt->paths_delivered = 0;
@@ -92,10 +92,10 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
-/* For the other half, whose turn it is. */
-static void plan_renew(Mmlt *mmlt, const Blend *blend)
+/* For the other replica, whose turn it is. */
+static void plan_renew(Mmlt *mmlt, const Combination *combination)
 {
-    BlendPlan plan = blend_plan(blend);
+    Plan plan = combination_plan(combination);
     if (plan.paths_per_step > 0.0) {
         mmlt->paths_per_step = plan.paths_per_step;
         mmlt->pool_per_step = fmax(plan.pool_per_step, POOL_PER_STEP);
@@ -106,20 +106,21 @@ static void plan_renew(Mmlt *mmlt, const Blend *blend)
 static bool generation_take(Mmlt *mmlt, Error *error)
 {
     RenderLayers *layers = mmlt->run->options->layers;
-    Film *const streams[BLEND_STREAMS] = {
-        [BLEND_CHAINS] = &mmlt->film, [BLEND_POOL] = &mmlt->pool_film, [BLEND_PATHS] = &mmlt->paths_film};
-    if (mmlt->options.unblended) {
+    Film *const estimators[ESTIMATOR_COUNT] = {
+        [ESTIMATOR_CHAINS] = &mmlt->film, [ESTIMATOR_POOL] = &mmlt->pool_film, [ESTIMATOR_PATHS] = &mmlt->paths_film};
+    if (mmlt->options.chains_only) {
         mmlt->paths_film.light_samples = 0; /* direct light alone */
         if (!film_merge(&mmlt->film, &mmlt->paths_film, error))
             return false;
     } else {
-        int half = mmlt_half(mmlt, mmlt->generation);
+        int replica = mmlt_replica(mmlt, mmlt->generation);
         const atomic_int *stop = render_run_stop(mmlt->run);
         mmlt_visits_count(mmlt);
-        if (!blend_generation(&mmlt->blends[half], &mmlt->blends[1 - half], streams, stop, error))
+        if (!combination_generation(&mmlt->combinations[replica], &mmlt->combinations[1 - replica], estimators, stop,
+                                    error))
             return false;
         if (!*stop)
-            plan_renew(mmlt, &mmlt->blends[half]);
+            plan_renew(mmlt, &mmlt->combinations[replica]);
     }
     return film_merge(mmlt->run->film, &mmlt->film, error) &&
            (!layers || render_layers_add(layers, &mmlt->film, mmlt->generation % 2, error));
@@ -144,15 +145,15 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
 static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
 {
     bool pool = steps > 0 && (!mmlt->options.paper || mmlt->generation == 0);
-    const double samples[BLEND_STREAMS] = {[BLEND_CHAINS] = (double)steps,
-                                           [BLEND_POOL] = pool ? (double)mmlt->pool_film.light_samples : 0.0,
-                                           [BLEND_PATHS] = (double)mmlt->paths_film.light_samples};
-    double work = blend_work(samples);
+    const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)steps,
+                                             [ESTIMATOR_POOL] = pool ? (double)mmlt->pool_film.light_samples : 0.0,
+                                             [ESTIMATOR_PATHS] = (double)mmlt->paths_film.light_samples};
+    double work = combination_work(samples);
     return work > 1.0 ? (uint64_t)work : 1;
 }
 
-/* All passes of a generation. The first begins with path tracing, after the pilot that says what that leaves out: so a stop
- * soon finds something to show. Later ones end with it, for it has the importance that comes with the pool. */
+/* All passes of a generation. The first begins with path tracing, after the pilot that says what that leaves out: so a
+ * stop soon finds something to show. Later ones end with it, for it has the importance that comes with the pool. */
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     uint64_t steps = (uint64_t)count * mmlt->options.steps;
@@ -165,8 +166,8 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return first || !*whole || paths_run(mmlt, steps, whole, error);
 }
 
-/* What a first generation that was stopped has of path tracing, as samples of their pixels alone. Paths that it leaves to
- * chains are missing. */
+/* What a first generation that was stopped has of path tracing, as samples of their pixels alone. Paths that it leaves
+ * to chains are missing. */
 static bool stopped_take(Mmlt *mmlt, Error *error)
 {
     Film *film = &mmlt->paths_film;
@@ -182,7 +183,7 @@ static bool stopped_take(Mmlt *mmlt, Error *error)
 
 static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
 {
-    mmlt->brightness_sum[mmlt_half(mmlt, mmlt->generation)] += mmlt->brightness;
+    mmlt->brightness_sum[mmlt_replica(mmlt, mmlt->generation)] += mmlt->brightness;
     if (mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN && mmlt_population(mmlt)->brightness > 0.0) {
         chains_count(mmlt, count);
         mmlt_bad_chains_write(mmlt, count);

@@ -8,15 +8,15 @@
 /* A place's light counts for no less than this part of the mean. */
 #define LIGHT_LEAST 0.05
 
-/* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and of a
- * glossy room is 1.15 times smaller than without, and that of a pool's caustics 1.03 times larger, which three seeds cannot
- * tell from none. */
+/* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and
+ * of a glossy room is 1.15 times smaller than without, and that of a pool's caustics 1.03 times larger, which three
+ * seeds cannot tell from none. */
 #define EXPONENT 0.5
 
-/* Every pixel has at least this part of the visits that it would have if all were visited alike, as a path that has not been met
- * is not known of. At equal time, without the worst thousandth of pixels, these visits divide the square error of a lamp in glass
- * by 1.3 and that of a glossy hall by 1.1; that of a door ajar is the same. In proportion to the error and not to its root, or with
- * the largest of the tiles beside, they are worse ... */
+/* Every pixel has at least this part of the visits that it would have if all were visited alike, as a path that has not
+ * been met is not known of. At equal time, without the worst thousandth of pixels, these visits divide the square error
+ * of a lamp in glass by 1.3 and that of a glossy hall by 1.1; that of a door ajar is the same. In proportion to the
+ * error and not to its root, or with the largest of the tiles beside, they are worse ... */
 #define VISITS_EVEN 0.25
 
 /* ... which is so many visits before they are rounded. */
@@ -32,38 +32,38 @@ void importance_even(float importance[IMPORTANCE_CELLS])
 static void tiles_near(int cell, int size, int tiles, int *first, int *last)
 {
     double unit = (double)size / (double)IMPORTANCE_SIDE;
-    *first = (int)(cell * unit) / BLEND_TILE - 1;
-    *last = ((int)ceil((cell + 1) * unit) - 1) / BLEND_TILE + 1;
+    *first = (int)(cell * unit) / TILE_SIDE - 1;
+    *last = ((int)ceil((cell + 1) * unit) - 1) / TILE_SIDE + 1;
     *first = *first > 0 ? *first : 0;
     *last = *last < tiles ? *last : tiles - 1;
 }
 
 static int tile_pixels(int tile, int size)
 {
-    int left = size - tile * BLEND_TILE;
-    return left < BLEND_TILE ? left : BLEND_TILE;
+    int left = size - tile * TILE_SIDE;
+    return left < TILE_SIDE ? left : TILE_SIDE;
 }
 
 /* Mean luminance of the pixels in and around a cell. */
-static double light_around(const Blend *blend, int column, int row)
+static double light_around(const Combination *combination, int column, int row)
 {
     int x0, x1, y0, y1;
     double light = 0.0, pixels = 0.0;
-    tiles_near(column, blend->size[0], blend->tiles[0], &x0, &x1);
-    tiles_near(row, blend->size[1], blend->tiles[1], &y0, &y1);
+    tiles_near(column, combination->size[0], combination->tiles[0], &x0, &x1);
+    tiles_near(row, combination->size[1], combination->tiles[1], &y0, &y1);
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
-            light += blend->known[(size_t)y * (size_t)blend->tiles[0] + (size_t)x].light;
-            pixels += (double)tile_pixels(x, blend->size[0]) * (double)tile_pixels(y, blend->size[1]);
+            light += combination->known[(size_t)y * (size_t)combination->tiles[0] + (size_t)x].light;
+            pixels += (double)tile_pixels(x, combination->size[0]) * (double)tile_pixels(y, combination->size[1]);
         }
     return light / pixels;
 }
 
-void importance_learn(const Blend *blend, float importance[IMPORTANCE_CELLS])
+void importance_learn(const Combination *combination, float importance[IMPORTANCE_CELLS])
 {
     double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
-        light[i] = light_around(blend, (int)(i % IMPORTANCE_SIDE), (int)(i / IMPORTANCE_SIDE));
+        light[i] = light_around(combination, (int)(i % IMPORTANCE_SIDE), (int)(i / IMPORTANCE_SIDE));
         sum += light[i];
     }
     importance_even(importance);
@@ -81,42 +81,43 @@ void importance_learn(const Blend *blend, float importance[IMPORTANCE_CELLS])
 
 /* ---- visits ------------------------------------------------------------------------------------------------------ */
 
-static uint cell_pixels(const Blend *blend, uint cell)
+static uint cell_pixels(const Combination *combination, uint cell)
 {
-    uint width = (uint)blend->size[0], height = (uint)blend->size[1];
+    uint width = (uint)combination->size[0], height = (uint)combination->size[1];
     uint column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE;
     return (cell_begin(column + 1, width) - cell_begin(column, width)) *
            (cell_begin(row + 1, height) - cell_begin(row, height));
 }
 
 /* The tiles' relative error in a cell that has pixels: mean over those that it meets. */
-static double error_around(const Blend *blend, const double *errors, uint cell)
+static double error_around(const Combination *combination, const double *errors, uint cell)
 {
-    uint width = (uint)blend->size[0], height = (uint)blend->size[1];
+    uint width = (uint)combination->size[0], height = (uint)combination->size[1];
     uint column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE, tiles = 0;
     double sum = 0.0;
-    for (uint y = cell_begin(row, height) / BLEND_TILE; y <= (cell_begin(row + 1, height) - 1) / BLEND_TILE; ++y)
-        for (uint x = cell_begin(column, width) / BLEND_TILE; x <= (cell_begin(column + 1, width) - 1) / BLEND_TILE;
+    for (uint y = cell_begin(row, height) / TILE_SIDE; y <= (cell_begin(row + 1, height) - 1) / TILE_SIDE; ++y)
+        for (uint x = cell_begin(column, width) / TILE_SIDE; x <= (cell_begin(column + 1, width) - 1) / TILE_SIDE;
              ++x, ++tiles)
-            sum += errors[(size_t)y * (size_t)blend->tiles[0] + x];
+            sum += errors[(size_t)y * (size_t)combination->tiles[0] + x];
     return sum / tiles;
 }
 
-bool importance_visits(const Blend *blend, const double samples[BLEND_STREAMS], const double visited[IMPORTANCE_CELLS],
-                       uint visits[IMPORTANCE_CELLS + 1], Error *error)
+bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
+                       const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error)
 {
-    double *errors = malloc((size_t)blend->tiles[0] * (size_t)blend->tiles[1] * sizeof *errors);
-    double deviation[IMPORTANCE_CELLS] = {0.0}, sum = 0.0, pixels = (double)blend->size[0] * (double)blend->size[1];
+    double *errors = malloc((size_t)combination->tiles[0] * (size_t)combination->tiles[1] * sizeof *errors);
+    double deviation[IMPORTANCE_CELLS] = {0.0}, sum = 0.0,
+           pixels = (double)combination->size[0] * (double)combination->size[1];
     uint64_t all = 0;
     visits[IMPORTANCE_CELLS] = 0;
     if (!errors)
-        return error_memory(error, (size_t)blend->tiles[0] * (size_t)blend->tiles[1] * sizeof *errors,
+        return error_memory(error, (size_t)combination->tiles[0] * (size_t)combination->tiles[1] * sizeof *errors,
                             "errors of tiles");
-    blend_errors(blend, samples, errors);
+    combination_errors(combination, samples, errors);
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
-        uint count = cell_pixels(blend, i);
+        uint count = cell_pixels(combination, i);
         if (count > 0)
-            deviation[i] = sqrt(error_around(blend, errors, i) * visited[i]);
+            deviation[i] = sqrt(error_around(combination, errors, i) * visited[i]);
         sum += count * deviation[i];
     }
     free(errors);
@@ -125,32 +126,34 @@ bool importance_visits(const Blend *blend, const double samples[BLEND_STREAMS], 
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
         double part = VISITS_EVEN + (1.0 - VISITS_EVEN) * deviation[i] * pixels / sum;
         visits[i] = (uint)all;
-        all += cell_pixels(blend, i) * (uint64_t)fmin(fmax(rint(VISITS_MEAN * part), 1.0), VISITS_MOST);
+        all += cell_pixels(combination, i) * (uint64_t)fmin(fmax(rint(VISITS_MEAN * part), 1.0), VISITS_MOST);
     }
     visits[IMPORTANCE_CELLS] = (uint)all;
     return true;
 }
 
-double importance_rarity(const Blend *blend, const uint visits[IMPORTANCE_CELLS + 1], uint cell)
+double importance_density_ratio(const Combination *combination, const uint visits[IMPORTANCE_CELLS + 1], uint cell)
 {
-    double count = (double)cell_pixels(blend, cell), pixels = (double)blend->size[0] * (double)blend->size[1];
+    double count = (double)cell_pixels(combination, cell),
+           pixels = (double)combination->size[0] * (double)combination->size[1];
     if (!(count > 0.0))
         return 0.0;
     uint all = visits[IMPORTANCE_CELLS];
     return all > 0 ? (double)all / pixels / ((double)(visits[cell + 1] - visits[cell]) / count) : 1.0;
 }
 
-void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Blend *blend)
+void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Combination *combination)
 {
-    const uint width = (uint)blend->size[0], height = (uint)blend->size[1];
-    for (int y = 0; y < blend->tiles[1]; ++y)
-        for (int x = 0; x < blend->tiles[0]; ++x) {
-            uint column = (uint)x * BLEND_TILE, row = (uint)y * BLEND_TILE, count = 0;
+    const uint width = (uint)combination->size[0], height = (uint)combination->size[1];
+    for (int y = 0; y < combination->tiles[1]; ++y)
+        for (int x = 0; x < combination->tiles[0]; ++x) {
+            uint column = (uint)x * TILE_SIDE, row = (uint)y * TILE_SIDE, count = 0;
             double sum = 0.0;
-            for (uint j = row; j < row + BLEND_TILE && j < height; ++j)
-                for (uint i = column; i < column + BLEND_TILE && i < width; ++i, ++count)
-                    sum += importance_rarity(
-                        blend, visits, j * IMPORTANCE_SIDE / height * IMPORTANCE_SIDE + i * IMPORTANCE_SIDE / width);
-            blend->rarity[(size_t)y * (size_t)blend->tiles[0] + (size_t)x] = sum / count;
+            for (uint j = row; j < row + TILE_SIDE && j < height; ++j)
+                for (uint i = column; i < column + TILE_SIDE && i < width; ++i, ++count) {
+                    uint cell = j * IMPORTANCE_SIDE / height * IMPORTANCE_SIDE + i * IMPORTANCE_SIDE / width;
+                    sum += importance_density_ratio(combination, visits, cell);
+                }
+            combination->density_ratio[(size_t)y * (size_t)combination->tiles[0] + (size_t)x] = sum / count;
         }
 }

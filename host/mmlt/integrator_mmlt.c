@@ -1,10 +1,11 @@
 /* Multiplexed Metropolis light transport (Hachisuka, Kaplanyan and Dachsbacher 2014; Frolov 2018): paths of one and two
  * segments by path tracing, longer ones by Markov chains.
  *
- * In generations: a pool of independent bidirectional samples, from it chains drawn in proportion to what the samples are
- * worth, some steps of each, and again. The mean of a generation's chains is right whatever their number and length, for
- * chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). Sizes, shares, limits and
- * importance of a generation follow from earlier ones, and the picture is a ratio of sums over all: it is consistent. */
+ * In generations: a pool of independent bidirectional samples, from it chains drawn in proportion to what the samples
+ * are worth, some steps of each, and again. The mean of a generation's chains is right whatever their number and
+ * length, for chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). Sizes,
+ * weights, limits and importance of a generation follow from earlier ones, and the picture is a ratio of sums over all:
+ * it is consistent. */
 #include "mmlt/mmlt.h"
 
 #include "backend/step_recorder.h"
@@ -26,12 +27,13 @@
 
 #define LARGE_STEP_DEFAULT 0.3
 
-/* So many of the steps of the camera's half are shifts (chain/shift.h). For the same work, relMSE of a glossy hall and, in brackets,
- * that with the worst thousandth of its pixels: 0.040 (0.075) with none, 0.029 (0.039) with a quarter, 0.027 (0.037) with this,
- * 0.029 (0.041) with 0.9; of a door ajar 0.087 (0.13) with none, 0.057 (0.090) with half. */
+/* So many of the steps of the camera's half are shifts (chain/shift.h). For the same work, relMSE of a glossy hall and,
+ * in brackets, that with the worst thousandth of its pixels: 0.040 (0.075) with none, 0.029 (0.039) with a quarter,
+ * 0.027 (0.037) with this, 0.029 (0.041) with 0.9; of a door ajar 0.087 (0.13) with none, 0.057 (0.090) with half. */
 #define SHIFTS 0.75f
 
-/* Samples of path tracing for every step of a chain: until variances are known, and where only direct light is wanted. */
+/* Samples of path tracing for every step of a chain: until variances are known, and where only direct light is
+ * wanted. */
 #define PATHS_FIRST 1.0
 #define PATHS_DIRECT 0.5
 
@@ -47,10 +49,10 @@
 static double chain_work(const Mmlt *mmlt)
 {
     double steps = (double)mmlt->options.steps;
-    const double samples[BLEND_STREAMS] = {[BLEND_CHAINS] = steps,
-                                           [BLEND_POOL] = mmlt->options.paper ? 0.0 : steps * mmlt->pool_per_step,
-                                           [BLEND_PATHS] = steps * mmlt->paths_per_step};
-    return blend_work(samples);
+    const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = steps,
+                                             [ESTIMATOR_POOL] = mmlt->options.paper ? 0.0 : steps * mmlt->pool_per_step,
+                                             [ESTIMATOR_PATHS] = steps * mmlt->paths_per_step};
+    return combination_work(samples);
 }
 
 /* Chains that the work left is enough for, rounded up. */
@@ -65,11 +67,11 @@ static uint chains_of_sample(const Mmlt *mmlt)
 {
     double whole = (double)mmlt->run->crop_pixels / (mmlt->paths_per_step * (double)mmlt->options.steps);
     double most = WHOLE_SAMPLE_PART * (double)mmlt->work_done / chain_work(mmlt);
-    return mmlt->options.unblended ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
+    return mmlt->options.chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
 }
 
-/* Chains of the next generation: generations come in pairs of a size, one for either half of the image. With a number of
- * samples it follows from that alone, so that the image does. */
+/* Chains of the next generation: generations come in pairs of a size, one for either replica of the image. With a
+ * number of samples it follows from that alone, so that the image does. */
 static uint chains_next(const Mmlt *mmlt, uint chains, double seconds, uint64_t total)
 {
     const RenderOptions *options = mmlt->run->options;
@@ -121,7 +123,7 @@ static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
 
 static void options_complete(ChainOptions *options, uint max_depth)
 {
-    options->unblended = options->unblended || options->paper || max_depth < CHAIN_DEPTH_MIN;
+    options->chains_only = options->chains_only || options->paper || max_depth < CHAIN_DEPTH_MIN;
     options->chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
     if (options->paper && !options->pool)
         options->pool = PAPER_POOL_PER_CHAIN * options->chains;
@@ -137,8 +139,8 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     FrameParams *frame = &run->frame, pool_frame;
     mmlt->paths_frame = *frame;
     mmlt->paths_frame.strategies = integrator_pt()->strategies;
-    mmlt->paths_frame.split_direct = !mmlt->options.unblended;
-    if (mmlt->options.unblended && frame->max_depth >= CHAIN_DEPTH_MIN)
+    mmlt->paths_frame.split_direct = !mmlt->options.chains_only;
+    if (mmlt->options.chains_only && frame->max_depth >= CHAIN_DEPTH_MIN)
         mmlt->paths_frame.max_depth = CHAIN_DEPTH_MIN - 1;
     frame->min_depth = CHAIN_DEPTH_MIN;
     frame->mis_exponent = 1;
@@ -164,8 +166,8 @@ static bool depths_reserve(Mmlt *mmlt, Error *error)
     if (!layers || (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) == 0)
         return true;
     return film_depths_reserve(mmlt->run->film, last, error) && film_depths_reserve(&mmlt->film, last, error) &&
-           (mmlt->options.unblended || (film_depths_reserve(&mmlt->pool_film, last, error) &&
-                                        film_depths_reserve(&mmlt->paths_film, last, error)));
+           (mmlt->options.chains_only || (film_depths_reserve(&mmlt->pool_film, last, error) &&
+                                          film_depths_reserve(&mmlt->paths_film, last, error)));
 }
 
 static bool films_init(Mmlt *mmlt, Error *error)
@@ -174,12 +176,12 @@ static bool films_init(Mmlt *mmlt, Error *error)
     for (size_t i = 0; i < sizeof films / sizeof films[0]; ++i)
         if (!film_init_like(films[i], mmlt->run->film, error))
             return false;
-    if ((!mmlt->options.unblended && !film_rare_reserve(&mmlt->film, error)) || !depths_reserve(mmlt, error))
+    if ((!mmlt->options.chains_only && !film_rare_reserve(&mmlt->film, error)) || !depths_reserve(mmlt, error))
         return false;
-    for (int half = 0; half < MMLT_HALVES && !mmlt->options.unblended; ++half) {
-        if (!blend_init(&mmlt->blends[half], mmlt->run->film, error))
+    for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica) {
+        if (!combination_init(&mmlt->combinations[replica], mmlt->run->film, error))
             return false;
-        mmlt->blends[half].shown = mmlt->options.shown;
+        mmlt->combinations[replica].shown = mmlt->options.shown;
     }
     return true;
 }
@@ -189,12 +191,12 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .next_sample = run->options->first_sample};
     options_complete(&mmlt->options, run->frame.max_depth);
     mmlt->pool_per_step = POOL_PER_STEP;
-    mmlt->paths_per_step = mmlt->options.unblended ? PATHS_DIRECT : PATHS_FIRST;
+    mmlt->paths_per_step = mmlt->options.chains_only ? PATHS_DIRECT : PATHS_FIRST;
     if (!films_init(mmlt, error) || !lists_make(mmlt, error))
         return false;
-    for (int half = 0; half < MMLT_HALVES; ++half) {
-        importance_even(mmlt->importance[half]);
-        chain_population_init(&mmlt->populations[half], mmlt->chains.pass_fields);
+    for (int replica = 0; replica < REPLICAS; ++replica) {
+        importance_even(mmlt->importance[replica]);
+        chain_population_init(&mmlt->populations[replica], mmlt->chains.pass_fields);
     }
     return true;
 }
@@ -207,9 +209,9 @@ void mmlt_destroy(Mmlt *mmlt)
     film_destroy(&mmlt->film);
     film_destroy(&mmlt->pool_film);
     film_destroy(&mmlt->paths_film);
-    for (int half = 0; half < MMLT_HALVES; ++half) {
-        blend_destroy(&mmlt->blends[half]);
-        chain_population_destroy(&mmlt->populations[half]);
+    for (int replica = 0; replica < REPLICAS; ++replica) {
+        combination_destroy(&mmlt->combinations[replica]);
+        chain_population_destroy(&mmlt->populations[replica]);
     }
     free(mmlt->pool_words);
     free(mmlt->begun);
@@ -222,8 +224,8 @@ static bool mmlt_render(RenderRun *run, Error *error)
     run->start = run->last_save = timing_now();
     uint64_t total = run->options->samples > 0 ? run->crop_pixels * run->options->samples : limit;
     bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, total, error);
-    for (int s = 0; s < BLEND_STREAMS; ++s)
-        run->chains.shares[s] = mmlt.blends[0].share[s];
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        run->chains.weights[s] = mmlt.combinations[0].weight[s];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
         run->chains.r_hat[depth] = chain_groups_r_hat(&mmlt.groups, depth);
     mmlt_destroy(&mmlt);
@@ -236,7 +238,7 @@ const Integrator *integrator_mmlt(void)
                                           .summary = "multiplexed Metropolis light transport",
                                           .depth_limit = MMLT_DEPTH_LIMIT,
                                           .strategies = STRATEGIES_BDPT,
-                                          .aims = true,
+                                          .guides = true,
                                           .render = mmlt_render};
     return &integrator;
 }

@@ -12,15 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A path may show so many times the mean worth of a pool's sample, both with their importance. The rest is left to chains,
- * which have it with less noise: for the same work, pixels of a lamp in glass, a door ajar and a glossy hall have 1.2 times
- * the square error with 16. With 1 they have the same. */
-#define LIMIT_FACTOR 2.0
+/* A path may show so many times the mean worth of a pool's sample, both with their importance. The rest is left to
+ * chains, which have it with less noise: for the same work, pixels of a lamp in glass, a door ajar and a glossy hall
+ * have 1.2 times the square error with 16. With 1 they have the same. */
+#define CLAMP_FACTOR 2.0
 
-/* The part of a pool's samples that have a walk from the light. The rest, which take a third of the time, look for what the
- * camera's walk meets or connects with a light by itself. At equal time, 128 x 128 pixels, against pools of which all have one:
- * half the square error of a lamp in glass, where the worst dots are lights met by chance through glass; 0.8 times that of a
- * door ajar, the same in a glossy hall. With a sixteenth easy places of the lamp's room have 1.5 times the error. */
+/* The part of a pool's samples that have a walk from the light. The rest, which take a third of the time, look for what
+ * the camera's walk meets or connects with a light by itself. At equal time, 128 x 128 pixels, against pools of which
+ * all have one: half the square error of a lamp in glass, where the worst dots are lights met by chance through glass;
+ * 0.8 times that of a door ajar, the same in a glossy hall. With a sixteenth easy places of the lamp's room have 1.5
+ * times the error. */
 #define POOL_LIGHTS 0.25
 
 /* Of the pool before the first, at most. */
@@ -38,21 +39,21 @@ static bool pool_reserve(Mmlt *mmlt, uint count, Error *error)
     return mmlt->pool_words || error_memory(error, bytes, "a pool");
 }
 
-int mmlt_half(const Mmlt *mmlt, uint generation)
+int mmlt_replica(const Mmlt *mmlt, uint generation)
 {
-    return mmlt->options.paper ? 0 : (int)(generation % MMLT_HALVES);
+    return mmlt->options.paper ? 0 : (int)(generation % REPLICAS);
 }
 
 ChainPopulation *mmlt_population(Mmlt *mmlt)
 {
-    return &mmlt->populations[mmlt_half(mmlt, mmlt->generation)];
+    return &mmlt->populations[mmlt_replica(mmlt, mmlt->generation)];
 }
 
-/* What the other half has seen of the pools' brightness; before that, what the pilot has. */
+/* What the other replica has seen of the pools' brightness; before that, what the pilot has. */
 static double brightness_known(const Mmlt *mmlt)
 {
     uint generations = (mmlt->generation + 1) / 2;
-    return generations > 0 ? mmlt->brightness_sum[mmlt_half(mmlt, mmlt->generation + 1)] / generations
+    return generations > 0 ? mmlt->brightness_sum[mmlt_replica(mmlt, mmlt->generation + 1)] / generations
                            : mmlt->pilot_brightness;
 }
 
@@ -66,11 +67,12 @@ static double host_random(const FrameParams *frame, uint generation, uint use)
 /* Terms of the sequence by which lights_first goes before it begins anew. */
 #define TURNS 16u
 
-/* The first sample with a walk from the light, of the next pool, which begins at `place` in the order of the pixels. Pools visit
- * the same pixels again after a round, so those with a walk are chosen by their place in that order: each has one in about
- * four rounds, whatever the sizes of pool and round. Parts of a pool take turns in the order of van
- * der Corput's sequence, shifted by chance, and anew after TURNS, so that periods that fit it cannot add up. Samples with a walk
- * stay together, so that chunks without any leave out their steps. turn: rounds so far, or pools where those are longer. */
+/* The first sample with a walk from the light, of the next pool, which begins at `place` in the order of the pixels.
+ * Pools visit the same pixels again after a round, so those with a walk are chosen by their place in that order: each
+ * has one in about four rounds, whatever the sizes of pool and round. Parts of a pool take turns in the order of van
+ * der Corput's sequence, shifted by chance, and anew after TURNS, so that periods that fit it cannot add up. Samples
+ * with a walk stay together, so that chunks without any leave out their steps. turn: rounds so far, or pools where
+ * those are longer. */
 static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t place, uint items)
 {
     double part = host_random(&mmlt->run->frame, (uint)(turn / TURNS), 2 + order);
@@ -83,8 +85,8 @@ static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t p
  * anywhere, so that each by itself is as likely to see one pixel as another. */
 static void pool_place(Mmlt *mmlt, uint items)
 {
-    int half = mmlt_half(mmlt, mmlt->generation);
-    uint visits = mmlt->visits[half][IMPORTANCE_CELLS], order = visits > 0 ? (uint)half : MMLT_HALVES;
+    int replica = mmlt_replica(mmlt, mmlt->generation);
+    uint visits = mmlt->visits[replica][IMPORTANCE_CELLS], order = visits > 0 ? (uint)replica : REPLICAS;
     uint *next = &mmlt->pool_next[order], *turn = &mmlt->pool_turns[order];
     uint64_t round = visits > 0 ? visits : mmlt->run->crop_pixels;
     if (mmlt->generation == 0)
@@ -102,17 +104,17 @@ static void pool_place(Mmlt *mmlt, uint items)
 }
 
 /* Of what a path shows before it becomes an excess: that of a usual one many times, as earlier pools have it. */
-static float limit_of(const Mmlt *mmlt)
+static float clamp_threshold_of(const Mmlt *mmlt)
 {
-    if (mmlt->options.unblended)
+    if (mmlt->options.chains_only)
         return FLT_MAX;
-    return (float)(LIMIT_FACTOR * brightness_known(mmlt));
+    return (float)(CLAMP_FACTOR * brightness_known(mmlt));
 }
 
 void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame)
 {
-    memcpy(frame->importance, mmlt->importance[mmlt_half(mmlt, mmlt->generation)], sizeof frame->importance);
-    frame->limit = limit_of(mmlt);
+    memcpy(frame->importance, mmlt->importance[mmlt_replica(mmlt, mmlt->generation)], sizeof frame->importance);
+    frame->clamp_threshold = clamp_threshold_of(mmlt);
 }
 
 /* What a pool and the chains from it have in common. */
@@ -121,7 +123,7 @@ static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
     mmlt_generation_frame(mmlt, frame);
     frame->sample_index = mmlt->pool_sample;
     frame->pixel_first = mmlt->pool_pixel;
-    const uint *visits = mmlt->visits[mmlt_half(mmlt, mmlt->generation)];
+    const uint *visits = mmlt->visits[mmlt_replica(mmlt, mmlt->generation)];
     memcpy(frame->visits, visits, sizeof frame->visits);
     frame->pixel_stride = visits[IMPORTANCE_CELLS] > 0
                               ? pixel_order_stride_of(visits[IMPORTANCE_CELLS])
@@ -138,7 +140,7 @@ FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count)
 {
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;
-    frame.pool_lights = mmlt->options.unblended ? count : (uint)ceil(POOL_LIGHTS * count);
+    frame.pool_lights = mmlt->options.chains_only ? count : (uint)ceil(POOL_LIGHTS * count);
     frame.pool_items = count;
     frame.pool_lights_first = mmlt->pool_lights_first;
     frame.pool_lights_weight = (float)((double)count / frame.pool_lights);
@@ -224,21 +226,21 @@ static uint pool_size(const Mmlt *mmlt, double steps)
     return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
 }
 
-/* Whether the half whose turn it is goes by what is known now: after 2, 4, 8 ... generations of its own, so that what is
- * known has grown by much since, and chains nearly always go on as they were. */
+/* Whether the replica whose turn it is goes by what is known now: after 2, 4, 8 ... generations of its own, so that
+ * what is known has grown by much since, and chains nearly always go on as they were. */
 static bool importance_due(const Mmlt *mmlt)
 {
-    uint own = mmlt->generation / MMLT_HALVES;
-    return !mmlt->options.unblended && own >= 2 && (own & (own - 1)) == 0;
+    uint own = mmlt->generation / REPLICAS;
+    return !mmlt->options.chains_only && own >= 2 && (own & (own - 1)) == 0;
 }
 
-/* The importance as the other half knows it. change: room for what it is over what it was. */
+/* The importance as the other replica knows it. change: room for what it is over what it was. */
 static void importance_renew(Mmlt *mmlt, float *change)
 {
-    int half = mmlt_half(mmlt, mmlt->generation);
-    float *importance = mmlt->importance[half];
+    int replica = mmlt_replica(mmlt, mmlt->generation);
+    float *importance = mmlt->importance[replica];
     memcpy(change, importance, IMPORTANCE_CELLS * sizeof *change);
-    importance_learn(&mmlt->blends[1 - half], importance);
+    importance_learn(&mmlt->combinations[1 - replica], importance);
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
         change[i] = importance[i] / change[i];
 }
@@ -246,33 +248,33 @@ static void importance_renew(Mmlt *mmlt, float *change)
 /* The same of how often its pools visit what. */
 static bool visits_renew(Mmlt *mmlt, Error *error)
 {
-    int half = mmlt_half(mmlt, mmlt->generation), other = 1 - half;
-    const double samples[BLEND_STREAMS] = {1.0, mmlt->pool_per_step, mmlt->paths_per_step};
+    int replica = mmlt_replica(mmlt, mmlt->generation), other = 1 - replica;
+    const double samples[ESTIMATOR_COUNT] = {1.0, mmlt->pool_per_step, mmlt->paths_per_step};
     double visited[IMPORTANCE_CELLS];
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
         visited[i] = mmlt->visited[other][i] / mmlt->visited_all[other];
-    uint *visits = mmlt->visits[half];
-    if (!importance_visits(&mmlt->blends[other], samples, visited, visits, error))
+    uint *visits = mmlt->visits[replica];
+    if (!importance_visits(&mmlt->combinations[other], samples, visited, visits, error))
         return false;
-    importance_tell(visits, &mmlt->blends[half]);
-    mmlt->pool_next[half] =
+    importance_tell(visits, &mmlt->combinations[replica]);
+    mmlt->pool_next[replica] =
         (uint)(host_random(&mmlt->run->frame, mmlt->generation, 1) * (double)visits[IMPORTANCE_CELLS]);
     return true;
 }
 
 void mmlt_visits_count(Mmlt *mmlt)
 {
-    int half = mmlt_half(mmlt, mmlt->generation);
+    int replica = mmlt_replica(mmlt, mmlt->generation);
     double samples = (double)mmlt->pool_film.light_samples;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
-        double rarity = importance_rarity(&mmlt->blends[half], mmlt->visits[half], i);
-        mmlt->visited[half][i] += rarity > 0.0 ? samples / rarity : 0.0;
+        double density_ratio = importance_density_ratio(&mmlt->combinations[replica], mmlt->visits[replica], i);
+        mmlt->visited[replica][i] += density_ratio > 0.0 ? samples / density_ratio : 0.0;
     }
-    mmlt->visited_all[half] += samples;
+    mmlt->visited_all[replica] += samples;
 }
 
-/* pool_brightness for a limit that has no more to go by than one small pool: the median of the means of its parts, which a
- * rare bright path in one of them does not change. */
+/* pool_brightness for a limit that has no more to go by than one small pool: the median of the means of its parts,
+ * which a rare bright path in one of them does not change. */
 static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
 {
     double parts[PILOT_PARTS];
@@ -286,7 +288,7 @@ bool mmlt_pilot_run(Mmlt *mmlt, uint chains, bool *whole, Error *error)
 {
     uint pool_count = pool_size(mmlt, (double)chains * (double)mmlt->options.steps);
     uint count = pool_count < PILOT_SAMPLES ? pool_count : PILOT_SAMPLES;
-    if (mmlt->options.unblended)
+    if (mmlt->options.chains_only)
         return true;
     pool_place(mmlt, count);
     if (!pool_run(mmlt, count, whole, error))

@@ -1,8 +1,8 @@
 libtwinlight_host_la_SOURCES += \
 	host/mmlt/bad.c \
 	host/mmlt/bad_chains.c host/mmlt/bad_chains.h \
-	host/mmlt/blend.c host/mmlt/blend.h \
-	host/mmlt/blend_learn.c host/mmlt/blend_learn.h \
+	host/mmlt/combination.c host/mmlt/combination.h \
+	host/mmlt/combination_learn.c host/mmlt/combination_learn.h \
 	host/mmlt/chain_groups.c host/mmlt/chain_groups.h \
 	host/mmlt/chain_list.c host/mmlt/chain_list.h \
 	host/mmlt/chain_population.c host/mmlt/chain_population.h \

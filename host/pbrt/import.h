@@ -14,8 +14,8 @@ bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, E
  * current folder. */
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error);
 
-/* As pbrt_import, from memory. `name` stands for the file's name in messages; `directory` is where names in the text lead
- * from. */
+/* As pbrt_import, from memory. `name` stands for the file's name in messages; `directory` is where names in the text
+ * lead from. */
 bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,
                       const ImportOptions *options, Scene *scene, Error *error);
 

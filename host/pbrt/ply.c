@@ -338,8 +338,8 @@ void ply_destroy(PlyMesh *mesh)
     *mesh = (PlyMesh){0};
 }
 
-/* Of a file, packed or not: four times the 13 bytes a face and 32 bytes for every other vertex of 10^8 triangles. Deflate
- * expands up to 1032 times, so that without a limit a small file might take all memory. */
+/* Of a file, packed or not: four times the 13 bytes a face and 32 bytes for every other vertex of 10^8 triangles.
+ * Deflate expands up to 1032 times, so that without a limit a small file might take all memory. */
 #define PLY_BYTES_MAX ((size_t)12 << 30)
 
 /* Inflates all members of a gzip'd file. */

@@ -16,8 +16,9 @@ typedef struct PlyMesh {
 } PlyMesh;
 
 /* Reads element vertex (x y z, nx ny nz, u v | s t | texture_u texture_v | texture_s texture_t) and face
- * (vertex_indices or vertex_index); all else is skipped. Fails, naming the path at `place` (the scene's parameter), when
- * the file cannot be read, is damaged or truncated, or an index is out of range. Memory is bounded by a multiple of the (inflated) file's size. */
+ * (vertex_indices or vertex_index); all else is skipped. Fails, naming the path at `place` (the scene's parameter),
+ * when the file cannot be read, is damaged or truncated, or an index is out of range. Memory is bounded by a multiple
+ * of the (inflated) file's size. */
 bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error);
 
 /* The same from memory, not gzip'd; `path` for messages. */

@@ -210,8 +210,8 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
         return error_fix(im->error, "give the light source a mesh of its own, of few vertices");
     }
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
-    /* An instance is its object's image (geometry/surface.h). A mesh's normal is a cross product in world space, which a mirror
-     * turns; a quadric's is transformed. */
+    /* An instance is its object's image (geometry/surface.h). A mesh's normal is a cross product in world space, which
+     * a mirror turns; a quadric's is transformed. */
     if (!quadric && matrix_swaps_handedness(ctm))
         flags.flags ^= SHAPE_FLIP_NORMAL;
     if (quadric)

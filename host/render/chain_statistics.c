@@ -60,7 +60,7 @@ void chain_statistics_add(ChainStatistics *sum, const ChainStatistics *other)
     sum->direct_seconds += other->direct_seconds;
     sum->least_distinct = smaller_known(sum->least_distinct, other->least_distinct);
     for (int i = 0; i < 3; ++i)
-        sum->shares[i] += other->shares[i];
+        sum->weights[i] += other->weights[i];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
         sum->starts[depth] += other->starts[depth];
         sum->distinct_starts[depth] += other->distinct_starts[depth];

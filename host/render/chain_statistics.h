@@ -1,4 +1,5 @@
-/* What Markov chains did: counted from the words that every pass leaves (chain/chain.h), and summed over several renderings. */
+/* What Markov chains did: counted from the words that every pass leaves (chain/chain.h), and summed over several
+ * renderings. */
 #ifndef TWINLIGHT_RENDER_CHAIN_STATISTICS_H
 #define TWINLIGHT_RENDER_CHAIN_STATISTICS_H
 
@@ -17,7 +18,8 @@ typedef struct ChainStatistics {
     double least_distinct; /* the smallest part of a generation's starts that were different paths; 0: there was none */
     double r_hat[CHAIN_DEPTHS]; /* over groups of chains (mmlt/chain_groups.h); 0: not known */
     double pool_seconds, chain_seconds, direct_seconds;
-    double shares[3]; /* of chains, pool and path tracing in the latest generation (mmlt/blend.h); 0: not blended */
+    double weights
+        [3]; /* of chains, pool and path tracing in the latest generation (mmlt/combination.h); 0: not combined */
 } ChainStatistics;
 
 /* How the chains of a generation begin: a path that is worth much begins many. */
@@ -34,7 +36,7 @@ void chain_statistics_pass(ChainStatistics *statistics, const uint *words, uint 
 /* Of all kinds, at a depth. */
 uint64_t chain_statistics_proposals(const ChainStatistics *statistics, int depth);
 
-/* Adds those of another rendering: counts, seconds and shares their sum, of the others the worse one. */
+/* Adds those of another rendering: counts, seconds and weights their sum, of the others the worse one. */
 void chain_statistics_add(ChainStatistics *sum, const ChainStatistics *other);
 
 #endif

@@ -66,7 +66,8 @@ static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrato
     return frame;
 }
 
-/* Mean radiance, were the lights' flux spread over the sphere around the scene, and leaving it in all directions alike. */
+/* Mean radiance, were the lights' flux spread over the sphere around the scene, and leaving it in all directions
+ * alike. */
 static double radiance_of_power(const Scene *scene)
 {
     double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;

@@ -9,9 +9,10 @@
 /* The number of the pilot's samples, which no image reaches. */
 #define PILOT_SAMPLE 0xffff0000u
 
-/* Sets the quantum of run->film from the mean radiance of 4096 paths of the integrator's strategies, with those that `strategy`
- * and `unweighted` leave out; where they see nothing, from the power of the lights. It is that of the whole film, so that a crop
- * has the quantum and with it the bits of the whole picture, and depends on scene, integrator, depth and seed alone. */
+/* Sets the quantum of run->film from the mean radiance of 4096 paths of the integrator's strategies, with those that
+ * `strategy` and `unweighted` leave out; where they see nothing, from the power of the lights. It is that of the whole
+ * film, so that a crop has the quantum and with it the bits of the whole picture, and depends on scene, integrator,
+ * depth and seed alone. */
 bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error);
 
 #endif

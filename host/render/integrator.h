@@ -12,7 +12,7 @@ typedef struct Integrator {
     const char *summary;
     int depth_limit; /* the longest path in segments */
     uint strategies; /* STRATEGIES_* */
-    bool aims; /* directions count from lights (light/aim.h), unless options say otherwise */
+    bool guides; /* directions count from lights (light/light_guide.h), unless options say otherwise */
     /* Records the steps for paths of up to frame->max_depth segments, to be freed by step_list_destroy. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
     /* Renders on its own terms; NULL: passes of `list` over the samples of all pixels (render/render.h). */

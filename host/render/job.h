@@ -22,8 +22,8 @@ typedef struct ChainOptions {
     ChainOrder order;
     bool ungrouped; /* every chain its own kind of mutation */
     bool shiftless; /* no step keeps the rest of the path */
-    bool aimless; /* directions do not count from lights */
-    bool unblended; /* the pool's samples are not shown (mmlt/blend.h) */
+    bool unguided; /* directions do not count from lights */
+    bool chains_only; /* the pool's samples are not shown (mmlt/combination.h) */
     int shown; /* 1 + BLEND_*: that stream alone, with what it leaves to chains; 0: all. For tests */
 } ChainOptions;
 

@@ -35,15 +35,15 @@ typedef struct RenderLayers {
 bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, double radius, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 
-/* Adds a part of the picture that is independent of all others: to half 0 or 1, and to the variances of what path tracing
- * saw and of what chains brought. */
+/* Adds a part of the picture that is independent of all others: to half 0 or 1, and to the variances of what path
+ * tracing saw and of what chains brought. */
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error);
 
 /* rgb[3 x count] = the estimated variance of scale x the picture, in pixels first ... first + count - 1. */
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
-/* Takes samples of the AOVs that the run's layers want, if it has any: as many of a pixel as it has of light when all have
- * `samples` together, at most 16, for AOVs are nearly free of noise. */
+/* Takes samples of the AOVs that the run's layers want, if it has any: as many of a pixel as it has of light when all
+ * have `samples` together, at most 16, for AOVs are nearly free of noise. */
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error);
 
 #endif

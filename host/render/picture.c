@@ -8,8 +8,8 @@
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-/* OpenEXR holds a band packed, rearranged and compressed, which may take a little more than its size; the rest is for zlib,
- * libpng, and the header. */
+/* OpenEXR holds a band packed, rearranged and compressed, which may take a little more than its size; the rest is for
+ * zlib, libpng, and the header. */
 #define SPARE_BANDS 4
 #define SPARE_BYTES ((size_t)2 << 20)
 

@@ -1,13 +1,13 @@
-/* What an image file holds, made of films a band of rows at a time: whatever the picture's size and its layers, writing takes
- * memory for a few bands, which is there before the first sample. */
+/* What an image file holds, made of films a band of rows at a time: whatever the picture's size and its layers, writing
+ * takes memory for a few bands, which is there before the first sample. */
 #ifndef TWINLIGHT_RENDER_PICTURE_H
 #define TWINLIGHT_RENDER_PICTURE_H
 
 #include "image/exr.h"
 #include "render/layers.h"
 
-/* Channels come in groups of three: the picture, two of its parts, two halves, variance, three variables, the despeckled
- * picture, and one for each depth. */
+/* Channels come in groups of three: the picture, two of its parts, two halves, variance, three variables, the
+ * despeckled picture, and one for each depth. */
 #define PICTURE_GROUPS_FIXED 10
 #define PICTURE_GROUPS_MAX (PICTURE_GROUPS_FIXED + (int)(SPLAT_DEPTH_MAX + 1u - SPLAT_DEPTH_MIN))
 
@@ -26,8 +26,8 @@ typedef struct PictureMemory {
     size_t spare_bytes;
 } PictureMemory;
 
-/* Fails when there is not enough memory for pictures of that many pixels, paths of at most `depth` segments in layers of
- * their own. */
+/* Fails when there is not enough memory for pictures of that many pixels, paths of at most `depth` segments in layers
+ * of their own. */
 bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings, int width, int height, uint depth,
                          Error *error);
 void picture_memory_destroy(PictureMemory *memory);

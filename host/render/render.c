@@ -128,8 +128,8 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->pixel_stride = 1;
     frame->min_depth = 1;
     frame->roulette_depth = ROULETTE_DEPTH;
-    if (!integrator->aims || options->chains.paper || options->chains.aimless)
-        frame->aim_count = 0;
+    if (!integrator->guides || options->chains.paper || options->chains.unguided)
+        frame->guide_count = 0;
 }
 
 bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,

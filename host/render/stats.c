@@ -108,9 +108,9 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
     json_object_begin(json, "chains");
     stats_chain_counts(json, chains);
     json_object_begin(json, "shares");
-    json_number(json, "chains", chains->shares[0]);
-    json_number(json, "pool", chains->shares[1]);
-    json_number(json, "paths", chains->shares[2]);
+    json_number(json, "chains", chains->weights[0]);
+    json_number(json, "pool", chains->weights[1]);
+    json_number(json, "paths", chains->weights[2]);
     json_object_end(json);
     json_object_begin(json, "acceptance");
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {

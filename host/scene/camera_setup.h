@@ -9,8 +9,9 @@
  * explicit screen window replaces it. Fails on a size, angle, aspect, window, lens or transform that shows nothing. */
 bool camera_setup(const CameraSettings *settings, int width, int height, Camera *out, Error *error);
 
-/* From the world of the scene file, whose origin here is at -`origin`, to camera space and to the picture: x and y from (0, 0)
- * in its upper left corner to (1, 1), after division by w. Row-major, for columns. `camera` is of the same settings. */
+/* From the world of the scene file, whose origin here is at -`origin`, to camera space and to the picture: x and y from
+ * (0, 0) in its upper left corner to (1, 1), after division by w. Row-major, for columns. `camera` is of the same
+ * settings. */
 void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 origin, float world_to_camera[16],
                      float world_to_ndc[16]);
 

@@ -9,7 +9,8 @@
 
 #include <math.h>
 
-/* How many times its half extent a world must be away. Then every coordinate is within a factor of two of the centre. */
+/* How many times its half extent a world must be away. Then every coordinate is within a factor of two of the
+ * centre. */
 #define FAR_EXTENTS 8.0f
 
 Vec3 scene_center_offset(const Box *world)

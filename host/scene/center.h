@@ -6,14 +6,15 @@
 #include "geometry/box.h"
 #include "scene/scene.h"
 
-/* What to take off the coordinates of a world that is small beside its distance from the origin, axis by axis; else 0. */
+/* What to take off the coordinates of a world that is small beside its distance from the origin, axis by axis; else
+ * 0. */
 Vec3 scene_center_offset(const Box *world);
 
 /* The same camera where the world has been moved by -offset. */
 void camera_move(CameraSettings *camera, Vec3 offset);
 
-/* Moves the world and the camera by whole floats when the world's box is small beside its distance from the origin, axis
- * by axis. Returns whether anything has moved. For scene_finish, before bounds and lights are derived. */
+/* Moves the world and the camera by whole floats when the world's box is small beside its distance from the origin,
+ * axis by axis. Returns whether anything has moved. For scene_finish, before bounds and lights are derived. */
 bool scene_center(Scene *scene, const Box *world);
 
 #endif

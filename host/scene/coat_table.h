@@ -1,4 +1,5 @@
-/* Tables of what rough dielectric coats transmit, appended to the scene's `lookup` array. shared/bsdf/coat.h has the layout. */
+/* Tables of what rough dielectric coats transmit, appended to the scene's `lookup` array. shared/bsdf/coat.h has the
+ * layout. */
 #ifndef TWINLIGHT_SCENE_COAT_TABLE_H
 #define TWINLIGHT_SCENE_COAT_TABLE_H
 
@@ -8,8 +9,8 @@
 
 /* Appends the table of a coat with constant roughness and returns its first float in *first, which is what
  * Material.coat_table wants. alpha_x, alpha_y: of the GGX coat, at least one >= ALPHA_DELTA (a smooth coat needs no
- * table, but gets a valid one). eta: coat over outside, > 0. Deterministic; a few milliseconds. Fails only when memory is out
- * or `lookup` would exceed 32 bits. */
+ * table, but gets a valid one). eta: coat over outside, > 0. Deterministic; a few milliseconds. Fails only when memory
+ * is out or `lookup` would exceed 32 bits. */
 bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, uint32_t *first, Error *error);
 
 /* The same for every alpha in 0..1 at once, for a coat whose roughness is textured. Larger alphas use alpha = 1, and

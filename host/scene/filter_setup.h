@@ -6,7 +6,8 @@
 
 /* The filter at the offset x from its centre, along one axis, as pbrt-v4 defines it up to a constant factor: box,
  * triangle (radius - |x|), gaussian minus its value at the radius, Mitchell and Netravali's cubic stretched to the
- * radius ("Reconstruction Filters in Computer Graphics", SIGGRAPH 1988), sinc windowed by a Lanczos sinc of width tau. */
+ * radius ("Reconstruction Filters in Computer Graphics", SIGGRAPH 1988), sinc windowed by a Lanczos sinc of width
+ * tau. */
 double filter_evaluate(const FilterSettings *settings, double radius, double x);
 
 /* Appends the tables to `lookup` (floats) and fills `out`. Fails on a radius or width that is not positive, and on a

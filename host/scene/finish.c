@@ -3,11 +3,11 @@
 
 #include "bsdf/material.h"
 #include "geometry/box.h"
-#include "scene/aim_setup.h"
 #include "scene/camera_setup.h"
 #include "scene/center.h"
 #include "scene/coat_table.h"
 #include "scene/filter_setup.h"
+#include "scene/light_guide_setup.h"
 #include "scene/light_setup.h"
 #include "scene/pack.h"
 
@@ -373,7 +373,7 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     for (size_t i = 0; i < scene->lights.count; ++i)
         scene->ray_reach = fmaxf(scene->ray_reach, light_reach(&scene->frame, &ARRAY_AT(&scene->lights, Light, i)));
-    aim_setup(scene);
+    light_guide_setup(scene);
     scene->frame.light_count = (uint)scene->lights.count;
     scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
     scene->frame.pixel_stride = 1;

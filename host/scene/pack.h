@@ -4,8 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Packs what scene_finish has derived, and frees the arrays of vertices and primitives. Fails when a buffer would need more
- * than 16 GiB. */
+/* Packs what scene_finish has derived, and frees the arrays of vertices and primitives. Fails when a buffer would need
+ * more than 16 GiB. */
 bool scene_pack(Scene *scene, Error *error);
 
 #endif

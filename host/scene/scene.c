@@ -329,7 +329,8 @@ bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double wo
     *stored = quadric;
     primitive->a = quadric_index;
     primitive->shape_and_kind = shape_and_kind(index, kind, &shape);
-    /* Whether there is any area is seen with few steps; scenes of a million spheres that are no lights are read fast. */
+    /* Whether there is any area is seen with few steps; scenes of a million spheres that are no lights are read
+     * fast. */
     if (!((float)quadric_area(stored, kind, emission ? SPHERE_STEPS : 4) > 0.0f)) {
         --scene->primitives.count;
         scene->counts.zero_area_lights += emission ? 1 : 0;

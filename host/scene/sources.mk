@@ -1,6 +1,6 @@
 libtwinlight_host_la_SOURCES += \
-	host/scene/advice.c host/scene/advice.h \
-	host/scene/aim_setup.c host/scene/aim_setup.h \
+	host/scene/warnings.c host/scene/warnings.h \
+	host/scene/light_guide_setup.c host/scene/light_guide_setup.h \
 	host/scene/camera_setup.c host/scene/camera_setup.h \
 	host/scene/center.c host/scene/center.h \
 	host/scene/coat_table.c host/scene/coat_table.h \

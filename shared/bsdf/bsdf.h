@@ -1,5 +1,5 @@
-/* Scattering at a surface: evaluation and sampling of whatever Bsdf it has. A branch for a kind or a rough lobe that the
- * scene lacks is compiled out on devices and costs one test in C. */
+/* Scattering at a surface: evaluation and sampling of whatever Bsdf it has. A branch for a kind or a rough lobe that
+ * the scene lacks is compiled out on devices and costs one test in C. */
 #ifndef TWINLIGHT_BSDF_BSDF_H
 #define TWINLIGHT_BSDF_BSDF_H
 
@@ -15,8 +15,8 @@
  * and float32 half vectors no longer resolve that. */
 #define ETA_MATCHED 1e-3f
 
-/* Must be called once kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and bounds the alphas
- * of a rough lobe (ALPHA_MIN as in pbrt-v4). Other flags are kept. */
+/* Must be called once kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and bounds the
+ * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Other flags are kept. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
     uint kind = bsdf->kind;
@@ -62,9 +62,9 @@ SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
            (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION);
 }
 
-/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills every
- * member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it contributes
- * nothing. */
+/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills
+ * every member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it
+ * contributes nothing. */
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                       Vec2 u_base, uint transport, BsdfSample *sample)
 {

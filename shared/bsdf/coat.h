@@ -40,7 +40,8 @@
 #define COAT_ETA_MAX 4.0f
 
 /* T_mean of a smooth interface with eta >= 1, to a relative 1e-4: 1 - q^2 p(q), q = sqrt((eta - 1) / (eta + 1)), with p
- * the polynomial through eight Chebyshev points of the exact integral (Walsh 1926; see tests/bsdf/test_bsdf_coated.c). */
+ * the polynomial through eight Chebyshev points of the exact integral (Walsh 1926; see
+ * tests/bsdf/test_bsdf_coated.c). */
 SHARED_FUNCTION float coat_smooth_mean(float eta)
 {
     float clamped = float_min(eta, COAT_ETA_MAX);

@@ -1,5 +1,5 @@
-/* A dielectric coat, smooth or rough, over a Lambertian base (pbrt-v4's coateddiffuse, its medium absorbing only), in closed
- * form. Light that meets the coat from below is treated like light from above, as pbrt does.
+/* A dielectric coat, smooth or rough, over a Lambertian base (pbrt-v4's coateddiffuse, its medium absorbing only), in
+ * closed form. Light that meets the coat from below is treated like light from above, as pbrt does.
  *
  * Derivation. Let E be irradiance from direction wi. T(wi) E passes the coat. The base reflects it with albedo rho into
  * a radiance L that is the same in all directions, because a Lambertian base forgets where light came from; of the
@@ -14,7 +14,8 @@
  * the inside is thus returned to the base; pbrt loses it, so its rough coats over bright bases are darker
  * (tests/bsdf/test_bsdf_coated.c prints by how much).
  *
- * Absorption in the coat (color1.x > 0) multiplies T on the way in and out and R_i by the transmittances of bsdf/coat.h. */
+ * Absorption in the coat (color1.x > 0) multiplies T on the way in and out and R_i by the transmittances of
+ * bsdf/coat.h. */
 #ifndef TWINLIGHT_BSDF_COATED_H
 #define TWINLIGHT_BSDF_COATED_H
 
@@ -108,8 +109,8 @@ SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, 
     return coated_specular_probability(*t_o, base_max, escape * bsdf->eta * bsdf->eta);
 }
 
-/* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta reflection of
- * a smooth coat stays apart. */
+/* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta
+ * reflection of a smooth coat stays apart. */
 SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, Vec2 u_base,
                                    BsdfSample *sample)
 {

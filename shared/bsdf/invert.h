@@ -4,8 +4,8 @@
 
 #include "bsdf/bsdf.h"
 
-/* By which numbers a lobe draws a direction, and how densely, once the number that chooses the lobe is given: pdf_w is of that
- * lobe alone, without the probability of its choice. */
+/* By which numbers a lobe draws a direction, and how densely, once the number that chooses the lobe is given: pdf_w is
+ * of that lobe alone, without the probability of its choice. */
 typedef struct BsdfInverse {
     Vec2 u; /* or u_base, where `base` */
     float pdf_w;
@@ -40,7 +40,8 @@ SHARED_FUNCTION bool coated_invert(const SceneView *scene, const Bsdf *bsdf, Vec
     return coated_is_rough(scene, bsdf) && reflection_invert(bsdf, wo, wi, inverse);
 }
 
-/* Which microfacets reflect is a matter of u_lobe and of their reflectance, so all densities lack the factor of the choice. */
+/* Which microfacets reflect is a matter of u_lobe and of their reflectance, so all densities lack the factor of the
+ * choice. */
 SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec3 wi, float u_lobe,
                                        BsdfInverse *inverse)
 {
@@ -63,8 +64,8 @@ SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec
     return true;
 }
 
-/* The point by which bsdf_sample_base would draw wi, with the lobe that u_lobe chooses. False: that lobe is a delta, or does
- * not reach wi. Where it is one of several lobes that do, the same direction has other points, too. */
+/* The point by which bsdf_sample_base would draw wi, with the lobe that u_lobe chooses. False: that lobe is a delta, or
+ * does not reach wi. Where it is one of several lobes that do, the same direction has other points, too. */
 SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
                                  BsdfInverse *inverse)
 {

@@ -3,9 +3,9 @@
  * All functions work in the frame in which the view direction w has w.z > 0, and take half vectors h of any length and
  * sign. With the "projected root" s(w) = sqrt(w.z^2 + (ax w.x)^2 + (ay w.y)^2), Smith's functions become
  *     G1(w) = 2 w.z / (w.z + s(w)),      G2(o, i) = 2 o.z i.z / (s(o) i.z + s(i) o.z)
- * (the latter is the height-correlated 1 / (1 + Lambda(o) + Lambda(i)), Heitz 2014, "Understanding the Masking-Shadowing
- * Function in Microfacet-Based BRDFs", eq. 72 and 99). Neither has a division by a cosine, so the quotients that BSDFs
- * need stay finite at grazing angles:
+ * (the latter is the height-correlated 1 / (1 + Lambda(o) + Lambda(i)), Heitz 2014, "Understanding the
+ * Masking-Shadowing Function in Microfacet-Based BRDFs", eq. 72 and 99). Neither has a division by a cosine, so the
+ * quotients that BSDFs need stay finite at grazing angles:
  *     G2 / (4 o.z i.z) = 1 / (2 (s(o) i.z + s(i) o.z)),   density of visible normals = 2 (o.m) D(m) / (o.z + s(o)). */
 #ifndef TWINLIGHT_BSDF_MICROFACET_H
 #define TWINLIGHT_BSDF_MICROFACET_H

@@ -89,12 +89,12 @@ SHARED_FUNCTION float camera_volume_scale(__global const Camera *camera)
  * looks. 0 for points behind the camera.
  *
  * Let z be the camera-space component of d along the axis. The lens point fixed, the screen's area element dS is z^2
- * distance^2 dS across the plane through the point parallel to the screen (perspective), or dS (orthographic), in camera
- * space. Times a step dz along the ray that is a volume, which the transform M scales by |det M|; in the world the same
- * volume is the area sought times dz / z. For a transform that keeps lengths, z is the cosine at the lens and this is
- * 1 / (A cos^3 distance^2), the importance of a pinhole (Veach 1997, section 8.2; Pharr, Jakob and Humphreys, section
- * 16.1.1) and as well what a connection from a light path to the lens is multiplied by: divided by the samples per
- * pixel, the sums of the filtered splats are pixel values. */
+ * distance^2 dS across the plane through the point parallel to the screen (perspective), or dS (orthographic), in
+ * camera space. Times a step dz along the ray that is a volume, which the transform M scales by |det M|; in the world
+ * the same volume is the area sought times dz / z. For a transform that keeps lengths, z is the cosine at the lens and
+ * this is 1 / (A cos^3 distance^2), the importance of a pinhole (Veach 1997, section 8.2; Pharr, Jakob and Humphreys,
+ * section 16.1.1) and as well what a connection from a light path to the lens is multiplied by: divided by the samples
+ * per pixel, the sums of the filtered splats are pixel values. */
 SHARED_FUNCTION float camera_pdf(__global const FrameParams *frame, Vec3 lens, Vec3 d, float distance)
 {
     (void)lens;

@@ -1,13 +1,14 @@
 /* Where a splat goes that comes from anywhere on the film: to one pixel drawn among those whose filter covers the film
- * position. The expected image is that of camera/pixel_filter.h, which draws film positions for a given pixel from the same
- * tables: per unit of pixel area, pixel c gets f(film - c) / (integral of f), and nothing is renormalised at borders. */
+ * position. The expected image is that of camera/pixel_filter.h, which draws film positions for a given pixel from the
+ * same tables: per unit of pixel area, pixel c gets f(film - c) / (integral of f), and nothing is renormalised at
+ * borders. */
 #ifndef TWINLIGHT_CAMERA_FILM_SPLAT_H
 #define TWINLIGHT_CAMERA_FILM_SPLAT_H
 
 #include "camera/pixel_filter.h"
 
-/* |f| at `offset` (pixels from a pixel's centre) along one axis, divided by its integral: what pixel_filter_sample draws
- * with. table: the axis's, in `lookup`. *sign: of f. */
+/* |f| at `offset` (pixels from a pixel's centre) along one axis, divided by its integral: what pixel_filter_sample
+ * draws with. table: the axis's, in `lookup`. *sign: of f. */
 SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, float radius, float offset, float *sign)
 {
     uint kind = scene->frame->filter.kind;
@@ -22,8 +23,8 @@ SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, flo
     return (cdf[cell + 1u] - cdf[cell]) * ((0.5f * (float)PIXEL_FILTER_CELLS) / radius);
 }
 
-/* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be none
- * (false). */
+/* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be
+ * none (false). */
 SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float film, uint *first, uint *last)
 {
     float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
@@ -93,8 +94,8 @@ SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u,
     return x == NONE || y == NONE ? NONE : y * frame->width + x;
 }
 
-/* What all pixels together see of the film position: the sum of |f(film - c)| / (integral of |f|), which is 1 but for borders
- * and for filters that do not add up to a constant. */
+/* What all pixels together see of the film position: the sum of |f(film - c)| / (integral of |f|), which is 1 but for
+ * borders and for filters that do not add up to a constant. */
 SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
 {
     __global const FrameParams *frame = scene->frame;

@@ -1,12 +1,13 @@
 /* What the film does with a splat, on the host and on devices: every contribution is rounded to a whole number of units
- * of 2^exponent and added to a 64-bit sum in two's complement, so neither the order of additions nor who makes them matters.
+ * of 2^exponent and added to a 64-bit sum in two's complement, so neither the order of additions nor who makes them
+ * matters.
  *
  * A sum that would leave 64 bits becomes +-SUM_FULL and stays that, and what is read of any sum is at most SUM_MAX
- * (film_sum_shown). Let p be all that is positive in a sum and n all that is negative, without sign. With both below 2^63 no
- * order fills the sum. With p above that and n at most SUM_MAX the sum is full in some orders and p - n, which is SUM_MAX or more,
- * in others: what is read is SUM_MAX in all. Order could matter only with n above SUM_MAX, too, which takes more than 2^14
- * negative contributions, as only filters with negative lobes and colours outside the gamut make them, each near
- * NEGATIVE_MAX. */
+ * (film_sum_shown). Let p be all that is positive in a sum and n all that is negative, without sign. With both below
+ * 2^63 no order fills the sum. With p above that and n at most SUM_MAX the sum is full in some orders and p - n, which
+ * is SUM_MAX or more, in others: what is read is SUM_MAX in all. Order could matter only with n above SUM_MAX, too,
+ * which takes more than 2^14 negative contributions, as only filters with negative lobes and colours outside the gamut
+ * make them, each near NEGATIVE_MAX. */
 #ifndef TWINLIGHT_CAMERA_FILM_SUM_H
 #define TWINLIGHT_CAMERA_FILM_SUM_H
 
@@ -18,13 +19,13 @@
 /* Where a sum stays. */
 #define SUM_FULL (((ulong)1 << 63) - 1u)
 
-/* A sum below SUM_FAR stays below SUM_MAX though 2^21 additions meet, each of less than UNITS_SMALL: such ones need not ask whether
- * it is full. */
+/* A sum below SUM_FAR stays below SUM_MAX though 2^21 additions meet, each of less than UNITS_SMALL: such ones need not
+ * ask whether it is full. */
 #define SUM_FAR ((ulong)1 << 61)
 #define UNITS_SMALL ((ulong)1 << 40)
 
-/* A contribution of more units is clamped. One path may bring all that a sum can show; of the largest negative ones 2^14 come to
- * as much. */
+/* A contribution of more units is clamped. One path may bring all that a sum can show; of the largest negative ones
+ * 2^14 come to as much. */
 #define CONTRIBUTION_MAX SUM_MAX
 #define NEGATIVE_MAX ((ulong)1 << 48)
 
@@ -61,8 +62,8 @@ SHARED_FUNCTION size_t film_depth_words(uint pixels, uint kinds, uint depth_last
     return depth_last >= SPLAT_DEPTH_MIN ? film_depth_place(pixels, kinds, depth_last + 1u, 0u) : 0u;
 }
 
-/* The sums of a film in one buffer (BUFFER_FILM): sums, the three counters, the pixels' counts, two a word, as many of the
- * light's sums and the rare ones as there are (0, 1 or 2), and last those of depths. */
+/* The sums of a film in one buffer (BUFFER_FILM): sums, the three counters, the pixels' counts, two a word, as many of
+ * the light's sums and the rare ones as there are (0, 1 or 2), and last those of depths. */
 SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
     return (1u + more) * 3u * (ulong)pixels + 3u + ((ulong)pixels + 1u) / 2u;
@@ -89,8 +90,9 @@ SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
     return kept ? (y - film->y0) * (film->x1 - film->x0) + x - film->x0 : NONE;
 }
 
-/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX or NEGATIVE_MAX; whether
- * it was more goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power of two. */
+/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX or NEGATIVE_MAX;
+ * whether it was more goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power
+ * of two. */
 SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
 {
     uint bits = float_bits(value), field = bits >> 23 & 0xffu;

@@ -1,6 +1,6 @@
 /* A Markov chain over the random numbers of one path (Hachisuka, Kaplanyan and Dachsbacher, "Multiplexed Metropolis
- * Light Transport", 2014): what it keeps beside its coordinates (chain/chain_numbers.h). One word a field, behind the walk under way
- * (path/bd_state.h). */
+ * Light Transport", 2014): what it keeps beside its coordinates (chain/chain_numbers.h). One word a field, behind the
+ * walk under way (path/bd_state.h). */
 #ifndef TWINLIGHT_CHAIN_CHAIN_H
 #define TWINLIGHT_CHAIN_CHAIN_H
 
@@ -24,14 +24,14 @@
 #define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
 #define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* number of the first proposal whose f was not finite; NONE: all were */
 #define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals refused in a row: run_after */
-/* What the connection has to know of a half of the path, twice for each side: chain_half. */
+/* What the connection has to know of a subpath, twice for each side: chain_subpath. */
 #define CHAIN_HALVES (BD_HEADER_WORDS + 19u)
-#define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_HALF_WORDS + CHAIN_CAMERA_HALF_WORDS))
+#define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_SUBPATH_WORDS + CHAIN_CAMERA_SUBPATH_WORDS))
 
 /* Places in CHAIN_MOVE. */
 #define MOVE_MUTATION 0u /* of the proposal: MUTATION_* */
-#define MOVE_CHANGED 4u /* halves that the proposal has of its own: HALF_* */
-#define MOVE_REACHED 8u /* halves of the proposal whose last vertex is there */
+#define MOVE_CHANGED 4u /* subpaths that the proposal has of its own: HALF_* */
+#define MOVE_REACHED 8u /* subpaths of the proposal whose last vertex is there */
 #define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
 #define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
 #define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS: the proposal is a shift (chain/shift.h) */
@@ -47,17 +47,17 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
     state_store(paths, stride, CHAIN_MOVE, t, (word & ~(0xfu << place)) | value << place);
 }
 
-#define CHAIN_HALF_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
-#define CHAIN_HALF_EMITTER_FLAGS 1u
-#define CHAIN_HALF_CONNECT 2u
-#define CHAIN_LIGHT_HALF_WORDS 3u
-#define CHAIN_CAMERA_HALF_WORDS 1u /* without the last two */
+#define CHAIN_SUBPATH_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
+#define CHAIN_SUBPATH_EMITTER_FLAGS 1u
+#define CHAIN_SUBPATH_CONNECT 2u
+#define CHAIN_LIGHT_SUBPATH_WORDS 3u
+#define CHAIN_CAMERA_SUBPATH_WORDS 1u /* without the last two */
 
 /* Of MOVE_SHIFT. */
 #define SHIFT_STEP 0x1u
 #define SHIFT_KEEPS 0x2u /* and the current path can be shifted: z_2 and z_3 stay where they are */
 
-/* What BUFFER_VERTICES keeps of the camera's half for shifts. */
+/* What BUFFER_VERTICES keeps of the camera subpath for shifts. */
 #define SHIFT_VERTICES 2u /* z_1 and z_2 may have new directions */
 #define SHIFT_POINTS 0u /* z_2, z_3: where they are, and of which instance and primitive */
 #define SHIFT_INSTANCE 3u
@@ -66,26 +66,26 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
 #define SHIFT_DENSITY 10u /* of both, per area; 0: the path cannot be shifted */
 #define SHIFT_WORDS 11u
 
-#define HALF_LIGHT 0x1u
-#define HALF_CAMERA 0x2u
-#define HALF_BOTH (HALF_LIGHT | HALF_CAMERA)
+#define SUBPATH_LIGHT 0x1u
+#define SUBPATH_CAMERA 0x2u
+#define SUBPATH_BOTH (SUBPATH_LIGHT | SUBPATH_CAMERA)
 
-/* Fields of half `side` (SIDE_*) in bank 0 or 1. */
-SHARED_FUNCTION uint chain_half(uint side, uint bank)
+/* Fields of subpath `side` (SIDE_*) in bank 0 or 1. */
+SHARED_FUNCTION uint chain_subpath(uint side, uint bank)
 {
-    return CHAIN_HALVES + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_HALF_WORDS
-                                              : 2u * CHAIN_LIGHT_HALF_WORDS + bank * CHAIN_CAMERA_HALF_WORDS);
+    return CHAIN_HALVES + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_SUBPATH_WORDS
+                                              : 2u * CHAIN_LIGHT_SUBPATH_WORDS + bank * CHAIN_CAMERA_SUBPATH_WORDS);
 }
 
-/* The bank of a half of the proposal: the one that the current path does not have where the half is its own. */
+/* The bank of a subpath of the proposal: the one that the current path does not have where the subpath is its own. */
 SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint t, uint side)
 {
     uint banks = chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED);
     return banks >> side & 1u;
 }
 
-/* BUFFER_VERTICES: the last vertex of either side, twice; a walk's vertices take each other's place. Then what shifts have to
- * know of the camera's half, twice. */
+/* BUFFER_VERTICES: the last vertex of either side, twice; a walk's vertices take each other's place. Then what shifts
+ * have to know of the camera subpath, twice. */
 #define CHAIN_SHIFTS (4u * VERTEX_WORDS)
 #define CHAIN_VERTEX_WORDS (CHAIN_SHIFTS + 2u * SHIFT_WORDS)
 
@@ -110,8 +110,8 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
     view.camera = densities + (size_t)chain_density(frame, SIDE_CAMERA, camera_bank, s, 1u) * stride;
     view.stride = stride;
     view.t = t;
-    view.light_delta = state_load(paths, stride, chain_half(SIDE_LIGHT, light_bank) + CHAIN_HALF_DELTA, t);
-    view.camera_delta = state_load(paths, stride, chain_half(SIDE_CAMERA, camera_bank) + CHAIN_HALF_DELTA, t);
+    view.light_delta = state_load(paths, stride, chain_subpath(SIDE_LIGHT, light_bank) + CHAIN_SUBPATH_DELTA, t);
+    view.camera_delta = state_load(paths, stride, chain_subpath(SIDE_CAMERA, camera_bank) + CHAIN_SUBPATH_DELTA, t);
     view.compact = true;
     view.light_end = s >= 2u ? s - 2u : 0u;
     view.camera_end = camera >= 3u ? camera - 2u : 1u;
@@ -132,8 +132,8 @@ SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame
 
 /* ---- runs of refused proposals ----------------------------------------------------------------------------------- */
 
-/* The longest run of the pass is in the upper half of a word, the one under way, which began maybe in a pass before, in the
- * lower. RUN_MOST means so many or more. */
+/* The longest run of the pass is in the upper half of a word, the one under way, which began maybe in a pass before, in
+ * the lower. RUN_MOST means so many or more. */
 #define RUN_MOST 0xffffu
 
 SHARED_FUNCTION uint run_longest(uint run)

@@ -7,20 +7,21 @@
 
 /* Where the film sees the proposal, and what path tracing shows of it. */
 SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec2 film,
-                                 Vec3 color, float plain)
+                                 Vec3 color, float path_tracing)
 {
     uint stride = frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, plain));
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, path_tracing));
 }
 
-/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing shows of
- * it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what they send. It has
- * the luminance of all, so that the chain goes after all of them, and their color on average. *plain:
- * StrategyWeights.plain, as much larger, so that color / *plain is what path tracing would contribute of the light drawn. */
+/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing
+ * shows of it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what
+ * they send. It has the luminance of all, so that the chain goes after all of them, and their color on average.
+ * *path_tracing: StrategyWeights.path_tracing, as much larger, so that color / *path_tracing is what path tracing would
+ * contribute of the light drawn. */
 SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
-                                       float u, float *plain)
+                                       float u, float *path_tracing)
 {
     Vec3 one = vec3_splat(0.0f);
     float all = 0.0f, luminance = 1.0f, scale = 1.0f;
@@ -41,44 +42,43 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
         if (take) {
             one = color;
             luminance = own;
-            *plain = weights.plain;
+            *path_tracing = weights.path_tracing;
         }
     }
     if (all > 0.0f)
         scale = all / luminance;
-    *plain *= scale;
+    *path_tracing *= scale;
     return vec3_scale(one, scale);
 }
 
 /* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
-SHARED_FUNCTION void chain_meet_light(const SceneView *scene, __global uint *restrict paths,
-                                      __global const uint *restrict densities, uint t, uint d,
-                                      const WalkMeeting *meeting)
+SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *restrict paths,
+                                     __global const uint *restrict densities, uint t, uint d, const WalkHit *walk_hit)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    state_store(paths, stride, chain_half(SIDE_CAMERA, bank) + CHAIN_HALF_DELTA, t,
+    state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, t,
                 state_load(paths, stride, BD_CAMERA_DELTA, t));
     DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
     Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
-    float plain = 0.0f;
-    if (meeting->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
+    float path_tracing = 0.0f;
+    if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
         float u = random_float(chain_select(frame, paths, t).x[0]);
-        color = chain_environment(scene, beta, view, meeting->ray.d, meeting->from_ng, d, u, &plain);
-    } else if (!meeting->missed && meeting->light != NONE) {
+        color = chain_environment(scene, beta, view, walk_hit->ray.d, walk_hit->from_ng, d, u, &path_tracing);
+    } else if (!walk_hit->missed && walk_hit->light != NONE) {
         StrategyEnds ends = {0};
-        color = vec3_mul(beta, emission_met(scene, meeting, &ends));
+        color = vec3_mul(beta, emission_met(scene, walk_hit, &ends));
         if (!vec3_is_zero(color)) {
             StrategyWeights weights = bd_weights(frame, 0u, d + 1u, &view, &ends);
             color = vec3_scale(color, weights.own);
-            plain = weights.plain;
+            path_tracing = weights.path_tracing;
         }
     }
     if (vec3_is_zero(color))
         return;
     Random4 film = chain_camera(frame, paths, t);
     state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
-    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, plain);
+    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
 }
 
 #endif

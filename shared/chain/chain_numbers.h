@@ -1,9 +1,9 @@
 /* The coordinates of a chain (chain/chain.h), and how a mutation moves them.
  *
  * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
- * balance holds exactly and a coordinate that is left alone keeps its bits. A large step adds one that is any with the same
- * probability, so that the sum is, too. What is added is a function of (seed, chain, step): a proposal stands where the
- * current coordinates stood, and one that is refused is taken away again. */
+ * balance holds exactly and a coordinate that is left alone keeps its bits. A large step adds one that is any with the
+ * same probability, so that the sum is, too. What is added is a function of (seed, chain, step): a proposal stands
+ * where the current coordinates stood, and one that is refused is taken away again. */
 #ifndef TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 #define TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 
@@ -32,23 +32,23 @@ SHARED_FUNCTION uint chain_slot(uint side, uint d, uint i)
     return side == SIDE_LIGHT ? i - 1u : d - 1u - i;
 }
 
-/* Whether the half owns the coordinate slot: of a path with s vertices from the light. */
-SHARED_FUNCTION uint chain_slot_half(uint s, uint slot)
+/* Whether the subpath owns the coordinate slot: of a path with s vertices from the light. */
+SHARED_FUNCTION uint chain_slot_subpath(uint s, uint slot)
 {
-    return slot + 1u < s ? HALF_LIGHT : HALF_CAMERA;
+    return slot + 1u < s ? SUBPATH_LIGHT : SUBPATH_CAMERA;
 }
 
 /* ---- mutations --------------------------------------------------------------------------------------------------- */
 
 #define MUTATION_ALL 0u /* small steps of all coordinates */
-#define MUTATION_LIGHT 1u /* of the light's half */
-#define MUTATION_CAMERA 2u /* of the camera's half */
+#define MUTATION_LIGHT 1u /* of the light subpath */
+#define MUTATION_CAMERA 2u /* of the camera subpath */
 #define MUTATION_LARGE 3u /* everything new, s too */
 #define MUTATION_COUNT 4u
 #define MUTATION_REPLAY 4u /* no mutation: the current path is made again */
 
-/* Of eight small steps so many are of each kind. A step of the light's half alone leaves the path where it is on the film, so
- * the film has little of it; steps of the camera's half are also the cheapest. */
+/* Of eight small steps so many are of each kind. A step of the light subpath alone leaves the path where it is on the
+ * film, so the film has little of it; steps of the camera subpath are also the cheapest. */
 #define MUTATION_CHANCE(kind) ((kind) == MUTATION_CAMERA ? 6u : 1u)
 
 /* Blocks of random numbers of one step, 256 of them. */
@@ -63,11 +63,12 @@ SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, 
                        frame->seed_low, frame->seed_high);
 }
 
-/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the path,
- * half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of them. With
- * a scale for each coordinate the longest decides, as there are many; and the more there are, the shorter all must be. For the
- * same work, a door ajar and a glossy hall have 1.15 times the square error where all depths have the same steps and none are
- * as short as the fourth scale, a relief 1.2 times; a lamp in glass and a pool's caustics the same or a little less. */
+/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the
+ * path, half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of
+ * them. With a scale for each coordinate the longest decides, as there are many; and the more there are, the shorter
+ * all must be. For the same work, a door ajar and a glossy hall have 1.15 times the square error where all depths have
+ * the same steps and none are as short as the fourth scale, a relief 1.2 times; a lamp in glass and a pool's caustics
+ * the same or a little less. */
 #define STEP_SHIFT_CAMERA 3u
 #define STEP_SHIFT_OTHERS 4u
 #define STEP_SCALES 4u
@@ -78,20 +79,20 @@ SHARED_FUNCTION uint mutation_length(uint d)
     return ((CHAIN_DEPTH_MIN + 1u) << 16) / (d + 1u);
 }
 
-/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, times length (mutation_length),
- * either sign alike. (Kelemen et al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
+/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, times length
+ * (mutation_length), either sign alike. (Kelemen et al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
 SHARED_FUNCTION uint mutation_offset(uint bits, uint shift, uint length)
 {
     uint size = (uint)((ulong)(bits >> 1 >> shift) * length >> 16);
     return (bits & 1u) != 0u ? size : 0u - size;
 }
 
-/* One random word serves two small steps: its bits 0 and 16 are their signs, the 15 bits above each what counts most in the
- * size of one, and what is below those in one is in the other's upper half. Both have all their sizes, and the word with
- * both signs turned has both steps turned, so detailed balance is exact. place: 0 or 1, which of the two. */
+/* One random word serves two small steps: its bits 0 and 16 are their signs, the 15 bits above each what counts most in
+ * the size of one, and what is below those in one is in the other's upper half. Both have all their sizes, and the word
+ * with both signs turned has both steps turned, so detailed balance is exact. place: 0 or 1, which of the two. */
 #define MUTATION_SIGNS 0x00010001u
 
-SHARED_FUNCTION uint mutation_half_bits(uint word, uint place)
+SHARED_FUNCTION uint mutation_subpath_bits(uint word, uint place)
 {
     uint turned = place == 0u ? word : word >> 16 | word << 16;
     return (turned & ~MUTATION_SIGNS) | (turned >> 16 & 1u);
@@ -107,9 +108,9 @@ SHARED_FUNCTION ChangedNumbers chain_changed(__global const FrameParams *frame, 
     uint words = chain_vertex_numbers(frame), camera = NUMBER_VERTICES + (s > 1u ? s - 1u : 0u) * words;
     uint end = NUMBER_VERTICES + (d - 1u) * words;
     ChangedNumbers numbers;
-    numbers.first = changed == HALF_LIGHT ? NUMBER_EMIT : NUMBER_CAMERA;
-    numbers.second = changed == HALF_CAMERA ? camera : numbers.first + 4u;
-    numbers.count = 4u + (changed == HALF_LIGHT ? camera : end) - numbers.second;
+    numbers.first = changed == SUBPATH_LIGHT ? NUMBER_EMIT : NUMBER_CAMERA;
+    numbers.second = changed == SUBPATH_CAMERA ? camera : numbers.first + 4u;
+    numbers.count = 4u + (changed == SUBPATH_LIGHT ? camera : end) - numbers.second;
     return numbers;
 }
 
@@ -141,13 +142,14 @@ SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global
         Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_SMALL + first / 8u);
         for (uint i = 0u; i < 8u; ++i) {
             uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
-            uint bits = mutation_half_bits(random.x[i / 2u], i % 2u) ^ turn;
+            uint bits = mutation_subpath_bits(random.x[i / 2u], i % 2u) ^ turn;
             chain_number_add(paths, frame->stride, t, numbers, first + i, mutation_offset(bits, shift, length));
         }
     }
 }
 
-/* Whether a shift draws the direction at z_i, of a path of d segments and s vertices from the light: those to z_2 and z_3. */
+/* Whether a shift draws the direction at z_i, of a path of d segments and s vertices from the light: those to z_2 and
+ * z_3. */
 SHARED_FUNCTION bool shift_draws(uint i, uint d, uint s)
 {
     return i <= SHIFT_VERTICES && i + s < d;

@@ -7,8 +7,8 @@
 #include "chain/shift.h"
 #include "path/bd_connect.h"
 
-/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a half
- * that does not change have nothing to do. */
+/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a
+ * half that does not change have nothing to do. */
 SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
 {
     uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
@@ -39,15 +39,15 @@ SHARED_FUNCTION uint mutation_scale(Random4 random)
     return (uint)((ulong)random.x[2] * STEP_SCALES >> 32);
 }
 
-/* Which halves the mutation changes. A half without coordinates cannot change: then all do. */
-SHARED_FUNCTION uint mutation_halves(uint mutation, uint d, uint s)
+/* Which subpaths the mutation changes. a subpath without coordinates cannot change: then all do. */
+SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
 {
     bool light = s > 0u, camera = s < d;
     if (mutation == MUTATION_LIGHT && light && camera)
-        return HALF_LIGHT;
+        return SUBPATH_LIGHT;
     if (mutation == MUTATION_CAMERA && light && camera)
-        return HALF_CAMERA;
-    return HALF_BOTH;
+        return SUBPATH_CAMERA;
+    return SUBPATH_BOTH;
 }
 
 /* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
@@ -55,14 +55,15 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
                                    __global const uint *restrict vertices, uint t)
 {
     uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
-    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = HALF_BOTH, scale = 0u;
+    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
+         scale = 0u;
     uint shift = 0u;
     if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
         state_store(paths, stride, CHAIN_STEP, t, ++step);
         Random4 random = mutation_random(frame, t, step);
         mutation = mutation_choose(frame, random);
         scale = mutation_scale(random);
-        changed = mutation_halves(mutation, d, chain_key_s(key));
+        changed = mutation_subpaths(mutation, d, chain_key_s(key));
         if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
             shift = shift_kind(paths, vertices, stride, t);
     }
@@ -70,7 +71,7 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
         uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
         key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
     }
-    uint kept = HALF_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | HALF_LIGHT : kept;
+    uint kept = SUBPATH_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | SUBPATH_LIGHT : kept;
     uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
     state_store(paths, stride, CHAIN_MOVE, t,
                 banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
@@ -86,31 +87,33 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
  * doubles less than 2^-16 of a path. */
 #define KEY_SHOWN_ALL 0xffffu
 
-/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `plain`: were the path
- * made by path tracing, it would contribute color / plain. Here as in kernels/pt.cl (path_shown) that, times its importance, is
- * shown up to the limit. Walks from the camera begin with film_reach_factor, which paths that the light's walk brings to the
- * lens (t = 1) do not have, nor path tracing. */
-SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color, float plain)
+/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `path_tracing`:
+ * were the path made by path tracing, it would contribute color / path_tracing. Here as in kernels/pt.cl (path_shown)
+ * that, times its importance, is shown up to the limit. Walks from the camera begin with film_reach_factor, which paths
+ * that the light's walk brings to the lens (t = 1) do not have, nor path tracing. */
+SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color,
+                                     float path_tracing)
 {
     uint d = chain_key_depth(key), s = chain_key_s(key), shown = KEY_SHOWN_ALL;
-    float limit = RARE_OVER_LIMIT * frame->limit * plain;
+    float limit = RARE_OVER_CLAMP * frame->clamp_threshold * path_tracing;
     float worth = rgb_luminance(color) * film_importance(frame, film);
     if (s < d)
         worth /= film_reach_factor(frame);
-    if (frame->limit < FLOAT_MAX && worth > limit)
+    if (frame->clamp_threshold < FLOAT_MAX && worth > limit)
         shown = (uint)(limit / worth * (float)KEY_SHOWN_ALL + 0.5f);
     return chain_key(d, s) | shown << 16;
 }
 
-/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by chance. */
+/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by
+ * chance. */
 SHARED_FUNCTION uint chain_splat_flags(__global const FrameParams *frame, uint key, float f, float u)
 {
-    uint flags = u * f < frame->limit ? SPLAT_FROM_LIGHT : 0u;
+    uint flags = u * f < frame->clamp_threshold ? SPLAT_FROM_LIGHT : 0u;
     return u * (float)KEY_SHOWN_ALL < (float)(key >> 16) ? flags : flags | SPLAT_RARE;
 }
 
-/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What a
- * path has above the limit is kept apart (mmlt/blend.h): all of a visit or nothing of it, by chance. */
+/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What
+ * a path has above the limit is kept apart (mmlt/combination.h): all of a visit or nothing of it, by chance. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
                                  __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
                                  float visits, Random4 random)
@@ -146,7 +149,8 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
 
-/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin with. */
+/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin
+ * with. */
 SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
                                 Vec3 color, float visits)
 {
@@ -162,8 +166,8 @@ SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint
     state_store_float(paths, stride, CHAIN_PENDING, t, visits);
 }
 
-/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film, times
- * the importance there. */
+/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film,
+ * times the importance there. */
 SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color)
 {
     float f = rgb_luminance(color);
@@ -172,10 +176,10 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
     return f;
 }
 
-/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is that of
- * volumes of a mutation that is no step (shift_ratio). What the film gets is
- * expected: a of the proposal, 1 - a of the current path, the latter kept until the chain leaves it. So there is one
- * splat a step: of what the chain leaves, or of what it does not take. */
+/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is
+ * that of volumes of a mutation that is no step (shift_ratio). What the film gets is expected: a of the proposal, 1 - a
+ * of the current path, the latter kept until the chain leaves it. So there is one splat a step: of what the chain
+ * leaves, or of what it does not take. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
                                   __global uint *restrict diagnostics, uint t, Vec3 color, float change)
 {

@@ -1,17 +1,17 @@
 /* Shifts: steps across the film that keep the rest of the path where it is.
  *
- * With a step of the numbers that draw directions, a path that has met the lobes of several glossy or curved surfaces at their
- * peaks loses them: what turns the ray at z_1 turns it more and more at every vertex behind, so that such a chain, which
- * carries the more the rarer it is, stays where it is, a single dot. A shift moves film and lens, by which z_1 moves, and
- * takes those numbers at z_1 that draw the direction to z_2, and those at z_2 that draw the one to z_3, where both stay.
- * From z_3 on everything is as it was.
+ * With a step of the numbers that draw directions, a path that has met the lobes of several glossy or curved surfaces
+ * at their peaks loses them: what turns the ray at z_1 turns it more and more at every vertex behind, so that such a
+ * chain, which carries the more the rarer it is, stays where it is, a single dot. A shift moves film and lens, by which
+ * z_1 moves, and takes those numbers at z_1 that draw the direction to z_2, and those at z_2 that draw the one to z_3,
+ * where both stay. From z_3 on everything is as it was.
  *
- * The map from one path's numbers to the other's changes volumes: those that draw z_2 by the density of z_2 per area, and so
- * with z_3. The ratio of the densities of both paths goes into the rule of acceptance (Green, "Reversible jump Markov chain
- * Monte Carlo computation and Bayesian model determination", 1995). Such maps that connect again with the vertices of another
- * path are known from gradients: Kettunen et al., "Gradient-domain path tracing", 2015.
- * A path can be shifted where z_2 exists and z_1, and where z_3 exists z_2, have lobes that draw any direction near theirs.
- * A path that cannot makes a usual step of the camera's half instead, but none to a path that can, which never comes back. */
+ * The map from one path's numbers to the other's changes volumes: those that draw z_2 by the density of z_2 per area,
+ * and so with z_3. The ratio of the densities of both paths goes into the rule of acceptance (Green, "Reversible jump
+ * Markov chain Monte Carlo computation and Bayesian model determination", 1995). Such maps that connect again with the
+ * vertices of another path are known from gradients: Kettunen et al., "Gradient-domain path tracing", 2015. A path can
+ * be shifted where z_2 exists and z_1, and where z_3 exists z_2, have lobes that draw any direction near theirs. A path
+ * that cannot makes a usual step of the camera subpath instead, but none to a path that can, which never comes back. */
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
 #define TWINLIGHT_CHAIN_SHIFT_H
 
@@ -19,11 +19,12 @@
 #include "chain/chain_numbers.h"
 #include "path/bd_walk.h"
 
-/* Both ways of a shift have to find the same vertices, or chains gather at those that only one way leads to. So a vertex that
- * stays has to be of the primitive that it was of, not of a neighbour that hides it, and no further from where it was than
- * rounding can leave it. That is so many times what floats resolve of coordinates, by which rays begin beside it, and of
- * directions, whose numbers are 2^-23 apart: the less densely they draw it, the further apart they are. In a glossy hall, a door
- * ajar and beside beaten metal 99.5 of 100 vertices that are found are off by less than a quarter of this. */
+/* Both ways of a shift have to find the same vertices, or chains gather at those that only one way leads to. So a
+ * vertex that stays has to be of the primitive that it was of, not of a neighbour that hides it, and no further from
+ * where it was than rounding can leave it. That is so many times what floats resolve of coordinates, by which rays
+ * begin beside it, and of directions, whose numbers are 2^-23 apart: the less densely they draw it, the further apart
+ * they are. In a glossy hall, a door ajar and beside beaten metal 99.5 of 100 vertices that are found are off by less
+ * than a quarter of this. */
 #define SHIFT_ULPS 32.0f
 
 /* And no more than so much of the last segment: beyond, floats do not resolve the lobe. */
@@ -65,9 +66,9 @@ SHARED_FUNCTION uint shift_kind(__global const uint *paths, __global const uint 
 
 /* numbers: the coordinates of z_i, of a path of d segments. They become those that draw the direction to where the next
  * vertex is. */
-SHARED_FUNCTION bool shift_aim(const SceneView *scene, __global uint *restrict paths,
-                               __global const uint *restrict vertices, uint t, uint d, uint i, const Vertex *vertex,
-                               Random4 *numbers)
+SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict paths,
+                                 __global const uint *restrict vertices, uint t, uint d, uint i, const Vertex *vertex,
+                                 Random4 *numbers)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, point = shift_point(shift_bank(paths, stride, t), i + 1u);
@@ -80,10 +81,10 @@ SHARED_FUNCTION bool shift_aim(const SceneView *scene, __global uint *restrict p
     if (!bsdf_invert(scene, &vertex->bsdf, vertex->wo, wi, random_float(numbers->x[0]), &inverse))
         return false;
     Random4 origin = {{0u, 0u, 0u, 0u}};
-    if (inverse.base && frame->aim_count > 0u)
-        origin = aim_numbers(frame, vertex->p, vertex->frame, origin);
-    numbers->x[1] = aim_bits(inverse.u.x) - origin.x[1];
-    numbers->x[2] = aim_bits(inverse.u.y) - origin.x[2];
+    if (inverse.base && frame->guide_count > 0u)
+        origin = light_guide_numbers(frame, vertex->p, vertex->frame, origin);
+    numbers->x[1] = light_guide_bits(inverse.u.x) - origin.x[1];
+    numbers->x[2] = light_guide_bits(inverse.u.y) - origin.x[2];
     for (uint k = 0u; k < 2u; ++k)
         state_store(paths, stride, shift_number(frame, d, i, k), t, numbers->x[1u + k]);
     return true;
@@ -101,40 +102,40 @@ SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict
 
 /* Whether the walk that draws directions so densely has met the vertex at `point` again. */
 SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uint t, uint point, float pdf_w,
-                                 const WalkMeeting *meeting)
+                                 const WalkHit *walk_hit)
 {
-    if (meeting->primitive != state_load(vertices, stride, point + SHIFT_PRIMITIVE, t) ||
-        meeting->instance != state_load(vertices, stride, point + SHIFT_INSTANCE, t))
+    if (walk_hit->primitive != state_load(vertices, stride, point + SHIFT_PRIMITIVE, t) ||
+        walk_hit->instance != state_load(vertices, stride, point + SHIFT_INSTANCE, t))
         return false;
-    Vec3 p = meeting->surface.p, away = vec3_sub(p, state_load_vec3(vertices, stride, point, t));
-    float size = float_max(vec3_max_abs(p), vec3_max_abs(meeting->ray.o));
-    float distance = float_sqrt(meeting->distance2);
+    Vec3 p = walk_hit->surface.p, away = vec3_sub(p, state_load_vec3(vertices, stride, point, t));
+    float size = float_max(vec3_max_abs(p), vec3_max_abs(walk_hit->ray.o));
+    float distance = float_sqrt(walk_hit->distance2);
     float across = SHIFT_ULPS * FLOAT_EPSILON * (size + distance * (1.0f + 1.0f / pdf_w));
-    float along = across / float_abs(vec3_dot(meeting->ray.d, meeting->surface.ng)),
+    float along = across / float_abs(vec3_dot(walk_hit->ray.d, walk_hit->surface.ng)),
           most = float_min(along, SHIFT_MOST * distance);
     return vec3_length_squared(away) <= most * most;
 }
 
-/* The camera's walk has met `meeting` as z_depth, depth > 1, which a shift keeps: notes what it is and its density. False:
- * it is not what it has to be. */
-SHARED_FUNCTION bool shift_meet(__global const FrameParams *frame, __global const uint *restrict paths,
-                                __global uint *restrict vertices, uint t, uint depth, const WalkMeeting *meeting)
+/* The camera's walk has met `walk_hit` as z_depth, depth > 1, which a shift keeps: notes what it is and its density.
+ * False: it is not what it has to be. */
+SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const uint *restrict paths,
+                               __global uint *restrict vertices, uint t, uint depth, const WalkHit *walk_hit)
 {
     uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA), point = shift_point(bank, depth);
     float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, t), density = 0.0f;
     float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, t);
-    if (!meeting->missed) {
-        density = before * pdf_w * solid_angle_to_area(meeting->ray.d, meeting->surface.ng, meeting->distance2);
-        state_store_vec3(vertices, stride, point, t, meeting->surface.p);
-        state_store(vertices, stride, point + SHIFT_INSTANCE, t, meeting->instance);
-        state_store(vertices, stride, point + SHIFT_PRIMITIVE, t, meeting->primitive);
+    if (!walk_hit->missed) {
+        density = before * pdf_w * solid_angle_to_area(walk_hit->ray.d, walk_hit->surface.ng, walk_hit->distance2);
+        state_store_vec3(vertices, stride, point, t, walk_hit->surface.p);
+        state_store(vertices, stride, point + SHIFT_INSTANCE, t, walk_hit->instance);
+        state_store(vertices, stride, point + SHIFT_PRIMITIVE, t, walk_hit->primitive);
     }
     density = density > 0.0f && float_finite(density) ? density : 0.0f;
     shift_density_set(vertices, stride, bank, t, density);
     if ((chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) == 0u)
         return true;
     return density > 0.0f &&
-           shift_found(vertices, stride, t, shift_point(shift_bank(paths, stride, t), depth), pdf_w, meeting);
+           shift_found(vertices, stride, t, shift_point(shift_bank(paths, stride, t), depth), pdf_w, walk_hit);
 }
 
 /* What the ratio of f is to be multiplied with; 0: refuse the proposal. */

@@ -2,22 +2,22 @@
  * primitives of a leaf, with a bounded stack in private memory.
  *
  * The buffer is made of quads, four words that are read at once. Node n begins at quad n * BVH_NODE_QUADS; in the place
- * of node 0 is the header. A node has up to four children: quads 0 ... 5 are the low and high planes of their boxes along
- * x, y, z, a lane a child; quad 6 holds the children's words; quad 7 keeps nodes to a device's cache lines of 128 bytes.
- * Lanes without a child have a box that nothing meets. A child's word is the number of an inner node, or BVH_LEAF with
- * the number of items, less one, and the first of them. Item i, a primitive or an instance, begins at quad
- * i * BVH_ITEM_QUADS:
+ * of node 0 is the header. A node has up to four children: quads 0 ... 5 are the low and high planes of their boxes
+ * along x, y, z, a lane a child; quad 6 holds the children's words; quad 7 keeps nodes to a device's cache lines of 128
+ * bytes. Lanes without a child have a box that nothing meets. A child's word is the number of an inner node, or
+ * BVH_LEAF with the number of items, less one, and the first of them. Item i, a primitive or an instance, begins at
+ * quad i * BVH_ITEM_QUADS:
  *
  *     a.x b.x c.x 0   a.y b.y c.y 0   a.z b.z c.z 0   id shape_and_kind 0    0     a triangle's corners by axis
  *     0   0   0   0   0   0   0   0   0   0   0   0   id shape_and_kind 0    0     another primitive: see the scene
  *     0   0   0   0   0   0   0   0   0   0   0   0   id BVH_INSTANCE   root 0     an instance and its object's root
  *
- * A ray takes the axes in its own order (RayQuery), so it reads its quads in that order and permutes nothing.
- * An object's nodes lie together, children of a node side by side, and its items behind them.
+ * A ray takes the axes in its own order (RayQuery), so it reads its quads in that order and permutes nothing. An
+ * object's nodes lie together, children of a node side by side, and its items behind them.
  *
- * Boxes are widened by box_margin for their own coordinates, rays add what follows from their origins (bvh_ray), and hits
- * lie in boxes (box_admits_hit). So whichever boxes a ray is found to meet, the answer is the smallest (t, instance,
- * primitive) of the shared primitive test, and the arithmetic of boxes decides no bit of it. */
+ * Boxes are widened by box_margin for their own coordinates, rays add what follows from their origins (bvh_ray), and
+ * hits lie in boxes (box_admits_hit). So whichever boxes a ray is found to meet, the answer is the smallest (t,
+ * instance, primitive) of the shared primitive test, and the arithmetic of boxes decides no bit of it. */
 #ifndef TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 #define TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 
@@ -30,8 +30,8 @@
 #define BVH_ITEM_QUADS 4u
 #define BVH_ITEM_TAG 3u /* quad of an item */
 
-/* Words of the header: the world's root, and the bits of origin_ulps of bvh_ray in world space. In the space of an object
- * it is BOX_ULPS. */
+/* Words of the header: the world's root, and the bits of origin_ulps of bvh_ray in world space. In the space of an
+ * object it is BOX_ULPS. */
 #define BVH_ROOT 0u
 #define BVH_ORIGIN_ULPS 1u
 
@@ -71,8 +71,9 @@ SHARED_FUNCTION float bvh_reciprocal(float d)
     return 1.0f / (d < 0.0f ? -size : size);
 }
 
-/* o, d: traceable (ray_traceable). origin_ulps: by how many units of FLOAT_EPSILON times the origin's largest coordinate
- * boxes have to be wider for this ray; what follows from their own coordinates they are widened by already. */
+/* o, d: traceable (ray_traceable). origin_ulps: by how many units of FLOAT_EPSILON times the origin's largest
+ * coordinate boxes have to be wider for this ray; what follows from their own coordinates they are widened by
+ * already. */
 SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d, float origin_ulps)
 {
     BvhRay ray;
@@ -157,8 +158,8 @@ SHARED_FUNCTION uint uint_upper(uint a, uint b)
     return a < b ? b : a;
 }
 
-/* Meets the node's children: the nearest is returned, the others wait on the stack, the next nearest on top. Without the
- * lanes in their keys: they would be entered up to three floats later than they are. */
+/* Meets the node's children: the nearest is returned, the others wait on the stack, the next nearest on top. Without
+ * the lanes in their keys: they would be entered up to three floats later than they are. */
 SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, BvhWalk *walk, BvhEntry *stack)
 {
     __global const Float4 *quads = bvh + node * BVH_NODE_QUADS;
@@ -238,8 +239,8 @@ SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float
     return bvh_triangle_query(scene, quads, query, tag[0], hit);
 }
 
-/* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done after
- * it. False when the ray cannot be traced there. */
+/* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done
+ * after it. False when the ray cannot be traced there. */
 SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, BvhEntry *stack, uint id, uint rest)
 {
     RayQuery query = ray_query_transform(scene->instances[id].object_from_world, &walk->query);

@@ -116,7 +116,8 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     return alpha > 0.0f && ray_hash(query, id) <= alpha;
 }
 
-/* Whether a hit of the primitive counts: always, but for an alpha texture. `asked`: what the ray's hash is asked with. */
+/* Whether a hit of the primitive counts: always, but for an alpha texture. `asked`: what the ray's hash is asked
+ * with. */
 SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *query, uint id, uint asked, const Hit *hit)
 {
     if (!SCENE_HAS(scene, FEATURE_ALPHA))
@@ -152,8 +153,8 @@ SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, ui
     return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, asked, hit);
 }
 
-/* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it not,
- * rays from inside would get out where rays from outside find nothing. Both sides ask a hash of their own. */
+/* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it
+ * not, rays from inside would get out where rays from outside find nothing. Both sides ask a hash of their own. */
 SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];

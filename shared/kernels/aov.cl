@@ -1,5 +1,5 @@
-/* What a pixel shows besides light (arbitrary output variables): the albedo, normal and distance of the surface seen first,
- * which denoisers and compositors ask for. A pass: pt_start_paths, (rays traced) aov_splat. */
+/* What a pixel shows besides light (arbitrary output variables): the albedo, normal and distance of the surface seen
+ * first, which denoisers and compositors ask for. A pass: pt_start_paths, (rays traced) aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 

@@ -1,5 +1,5 @@
-/* Connections of bidirectional path tracing: per pair (s, t) bd_connect, (shadow rays traced) bd_add_connections; at the
- * end bd_splat. */
+/* Connections of bidirectional path tracing: per pair (s, t) bd_connect, (shadow rays traced) bd_add_connections; at
+ * the end bd_splat. */
 #ifndef TWINLIGHT_BD_CONNECT_CL
 #define TWINLIGHT_BD_CONNECT_CL
 
@@ -43,7 +43,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     Random4 random = bd_random_connection(frame, paths, item, s, t);
     bool possible = connect_ends(scene, s, t, &y, &z, random, &connection);
     if (possible && t == 1u)
-        possible = connection_aim(scene, random, &connection);
+        possible = connection_target(scene, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;
     if (s >= 2u)
@@ -60,8 +60,8 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item, film_importance(frame, connection.film));
 }
 
-/* The pairs in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1 ...
- * D + 1 - t. */
+/* The pairs in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1
+ * ... D + 1 - t. */
 SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stride, uint item, uint max_depth)
 {
     uint s = state_load(paths, stride, BD_S, item) + 1u, t = state_load(paths, stride, BD_T, item);
@@ -104,8 +104,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
         float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
         contribution =
-            candidate_offer(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
-                            cover, importance, contribution);
+            reservoir_update(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
+                             cover, importance, contribution);
         state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
     }
     if (visible)
@@ -114,8 +114,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     connection_advance(paths, stride, item, frame->max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat; with frame->split_depths also from a path under way, and then what
- * has been gathered is gone. */
+/* From: what was gathered for the pixel. To: its splat; with frame->split_depths also from a path under way, and then
+ * what has been gathered is gone. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

@@ -61,9 +61,10 @@ SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint
 {
     uint stride = frame->stride;
     if (frame->pool != 0u)
-        contribution = candidate_offer(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
-                                       state_load_float(paths, stride, BD_COVER, t),
-                                       state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
+        contribution =
+            reservoir_update(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
+                             state_load_float(paths, stride, BD_COVER, t),
+                             state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
     if (frame->split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, t, depth);
     bd_add_radiance(paths, stride, t, contribution);
@@ -85,28 +86,28 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
-    WalkMeeting meeting = {0};
-    walk_meet(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &meeting);
+    WalkHit walk_hit = {0};
+    walk_hit_make(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &walk_hit);
     Vec3 beta = state_load_vec3(paths, stride, BD_BETA, t);
     DensityView view = bd_density_view(frame, paths, densities, t);
-    state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, t, meeting.own);
-    if (meeting.missed) {
+    state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, t, walk_hit.own);
+    if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-            Vec3 sum = walk_environment(scene, view, meeting.ray.d, meeting.from_ng, depth);
+            Vec3 sum = walk_environment(scene, view, walk_hit.ray.d, walk_hit.from_ng, depth);
             bd_add_met(frame, paths, t, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, t);
         return;
     }
-    if (side == SIDE_CAMERA && meeting.light != NONE) {
+    if (side == SIDE_CAMERA && walk_hit.light != NONE) {
         StrategyEnds ends = {0};
-        Vec3 radiance = emission_met(scene, &meeting, &ends);
+        Vec3 radiance = emission_met(scene, &walk_hit, &ends);
         if (!vec3_is_zero(radiance))
             bd_add_met(frame, paths, t, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
     if (!walk_vertex(scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
-                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, t, side, depth), &meeting))
+                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, t, side, depth), &walk_hit))
         return;
     uint lengths = state_load(paths, stride, BD_LENGTHS, t);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);

@@ -66,21 +66,21 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
     /* The vertex takes the place of the one before it. */
-    WalkMeeting meeting = {0};
-    walk_meet(scene, paths, rays, hits, vertices, t, 0u, &meeting);
-    state_store_float(paths, stride, IB_OWN, t, meeting.own);
-    if (meeting.missed) {
+    WalkHit walk_hit = {0};
+    walk_hit_make(scene, paths, rays, hits, vertices, t, 0u, &walk_hit);
+    state_store_float(paths, stride, IB_OWN, t, walk_hit.own);
+    if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            ib_add_environment(scene, paths, t, depth, meeting.ray.d, meeting.from_ng);
+            ib_add_environment(scene, paths, t, depth, walk_hit.ray.d, walk_hit.from_ng);
         walk_end(paths, rays, stride, t);
         return;
     }
-    if (side == SIDE_CAMERA && meeting.light != NONE) {
+    if (side == SIDE_CAMERA && walk_hit.light != NONE) {
         StrategyEnds ends = {0};
-        Vec3 radiance = emission_met(scene, &meeting, &ends);
+        Vec3 radiance = emission_met(scene, &walk_hit, &ends);
         ib_add_met(frame, paths, t, depth, radiance, &ends);
     }
-    walk_vertex(scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(scene, paths, t, side, depth), &meeting);
+    walk_vertex(scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(scene, paths, t, side, depth), &walk_hit);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -103,7 +103,7 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     Connection connection = {0};
     connection.target = NONE;
     bool possible = side == SIDE_LIGHT ? connect_camera(scene, &vertex, random, &connection) &&
-                                             connection_aim(scene, random, &connection)
+                                             connection_target(scene, random, &connection)
                                        : connect_light(scene, &vertex, random, &connection);
     if (!possible || !connection_traceable(&connection))
         return;

@@ -1,8 +1,8 @@
-/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and, between
- * large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
+/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and,
+ * between large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
  * mlt_begin; then per proposal mlt_propose, the light's walk, mlt_start_camera, the camera's walk, mlt_connect, (shadow
- * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk.
- * The first proposal of a pass is the current path itself, so that its vertices are there. */
+ * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk. The first proposal of a
+ * pass is the current path itself, so that its vertices are there. */
 #ifndef TWINLIGHT_MLT_CL
 #define TWINLIGHT_MLT_CL
 
@@ -72,8 +72,9 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
         state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
 }
 
-/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the current
- * path's halves in different banks, the proposal's would lie over them: the camera's half moves to where the light's is. */
+/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the
+ * current path's subpaths in different banks, the proposal's would lie over them: the camera subpath moves to where the
+ * light's is. */
 SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                       __global uint *restrict vertices, __global uint *restrict densities, uint t)
 {
@@ -84,8 +85,8 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
     for (uint i = chain_key_s(key); i < chain_key_depth(key); ++i)
         state_store_float(densities, stride, light * frame->max_depth + i, t,
                           state_load_float(densities, stride, camera * frame->max_depth + i, t));
-    uint to = chain_half(SIDE_CAMERA, light), from = chain_half(SIDE_CAMERA, camera);
-    for (uint i = 0u; i < CHAIN_CAMERA_HALF_WORDS; ++i)
+    uint to = chain_subpath(SIDE_CAMERA, light), from = chain_subpath(SIDE_CAMERA, camera);
+    for (uint i = 0u; i < CHAIN_CAMERA_SUBPATH_WORDS; ++i)
         state_store(paths, stride, to + i, t, state_load(paths, stride, from + i, t));
     to = chain_vertex_base(SIDE_CAMERA, light);
     from = chain_vertex_base(SIDE_CAMERA, camera);
@@ -95,7 +96,7 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
     from = shift_base(camera);
     for (uint i = 0u; i < SHIFT_WORDS; ++i)
         state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
-    chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? HALF_BOTH : 0u);
+    chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? SUBPATH_BOTH : 0u);
 }
 
 /* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
@@ -115,7 +116,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
     walk_end(paths, rays, stride, t);
-    if ((chain_move(paths, stride, t, MOVE_REACHED) & HALF_LIGHT) != 0u)
+    if ((chain_move(paths, stride, t, MOVE_REACHED) & SUBPATH_LIGHT) != 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
@@ -125,7 +126,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), t, own);
 }
 
-/* From: the light's walk done. To: the camera's first ray, where its half is new and the light's is there. */
+/* From: the light's walk done. To: the camera's first ray, where its subpath is new and the light's is there. */
 __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                                __global const uint *restrict tables, __global const uint *restrict texels,
                                __global uint *restrict paths, __global uint *restrict rays,
@@ -136,11 +137,11 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), reached = chain_move(paths, stride, t, MOVE_REACHED);
     walk_end(paths, rays, stride, t);
-    if (reached != HALF_LIGHT)
+    if (reached != SUBPATH_LIGHT)
         return;
     shift_density_set(vertices, stride, chain_bank(paths, stride, t, SIDE_CAMERA), t, 0.0f);
     if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
-        chain_move_set(paths, stride, t, MOVE_REACHED, HALF_BOTH);
+        chain_move_set(paths, stride, t, MOVE_REACHED, SUBPATH_BOTH);
         return;
     }
     KERNEL_SCENE(frame, geometry, tables, texels);
@@ -148,14 +149,15 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
 }
 
 /* The last vertex of a side is there: what the connection needs of the walk. */
-SHARED_FUNCTION void chain_half_store(__global uint *restrict paths, uint stride, uint t, uint side, uint bank)
+SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint stride, uint t, uint side, uint bank)
 {
-    uint part = chain_half(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
-    uint flag = side == SIDE_LIGHT ? HALF_LIGHT : HALF_CAMERA;
-    state_store(paths, stride, part + CHAIN_HALF_DELTA, t, state_load(paths, stride, mask, t));
+    uint part = chain_subpath(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
+    uint flag = side == SIDE_LIGHT ? SUBPATH_LIGHT : SUBPATH_CAMERA;
+    state_store(paths, stride, part + CHAIN_SUBPATH_DELTA, t, state_load(paths, stride, mask, t));
     if (side == SIDE_LIGHT) {
-        state_store(paths, stride, part + CHAIN_HALF_EMITTER_FLAGS, t, state_load(paths, stride, BD_EMITTER_FLAGS, t));
-        state_store(paths, stride, part + CHAIN_HALF_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
+        state_store(paths, stride, part + CHAIN_SUBPATH_EMITTER_FLAGS, t,
+                    state_load(paths, stride, BD_EMITTER_FLAGS, t));
+        state_store(paths, stride, part + CHAIN_SUBPATH_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
     }
     chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
 }
@@ -173,7 +175,7 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
     vertex_place_store(vertices, stride, chain_vertex_base(side, bank), t, vertex);
     vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as the pool, which has stored it */
     if (shifts && (chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
-        !shift_aim(scene, paths, vertices, t, d, depth, vertex, &numbers)) {
+        !shift_guide(scene, paths, vertices, t, d, depth, vertex, &numbers)) {
         walk_end(paths, rays, stride, t);
         return;
     }
@@ -208,17 +210,17 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), d = chain_key_depth(key), s = chain_key_s(key);
     uint bank = chain_bank(paths, stride, t, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
-    WalkMeeting meeting = {0};
-    walk_meet(scene, paths, rays, hits, vertices, t, base, &meeting);
-    state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, meeting.own);
+    WalkHit walk_hit = {0};
+    walk_hit_make(scene, paths, rays, hits, vertices, t, base, &walk_hit);
+    state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, walk_hit.own);
     if (frame->shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
-        !shift_meet(frame, paths, vertices, t, depth, &meeting)) {
+        !shift_hit(frame, paths, vertices, t, depth, &walk_hit)) {
         walk_end(paths, rays, stride, t);
         return;
     }
     if (s == 0u && depth == d)
-        chain_meet_light(scene, paths, densities, t, d, &meeting);
-    if (meeting.missed || (s == 0u && depth == d)) {
+        chain_hit_light(scene, paths, densities, t, d, &walk_hit);
+    if (walk_hit.missed || (s == 0u && depth == d)) {
         walk_end(paths, rays, stride, t);
         return;
     }
@@ -227,7 +229,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
         numbers = chain_vertex(frame, paths, t, side, d, depth);
     float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(numbers.x[3]) : 0.5f;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &meeting, &vertex))
+    if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &walk_hit, &vertex))
         return;
     if (depth < last) {
         chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, t, side, depth, d, s, bank, numbers,
@@ -235,7 +237,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
         return;
     }
     vertex_store(scene, vertices, stride, base, t, &vertex);
-    chain_half_store(paths, stride, t, side, bank);
+    chain_subpath_store(paths, stride, t, side, bank);
     walk_end(paths, rays, stride, t);
 }
 
@@ -247,7 +249,7 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    uint light_half = chain_half(SIDE_LIGHT, light_bank);
+    uint light_half = chain_subpath(SIDE_LIGHT, light_bank);
     Vertex y = {0}, z = {0};
     if (s > 1u)
         y = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_LIGHT, light_bank), t);
@@ -260,14 +262,14 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
         random = connection_random_light(chain_select(frame, paths, t), chain_emit(frame, paths, t));
     bool possible = connect_ends(scene, s, camera, &y, &z, random, connection);
     if (s >= 2u) {
-        uint flags = state_load(paths, stride, light_half + CHAIN_HALF_EMITTER_FLAGS, t);
+        uint flags = state_load(paths, stride, light_half + CHAIN_SUBPATH_EMITTER_FLAGS, t);
         connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;
-        connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_HALF_CONNECT, t);
+        connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_SUBPATH_CONNECT, t);
     }
     return possible && connection_traceable(connection);
 }
 
-/* From: both halves. To: their connection, weighted, and its shadow ray. */
+/* From: both subpaths. To: their connection, weighted, and its shadow ray. */
 __kernel void mlt_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                           __global const uint *restrict tables, __global const uint *restrict texels,
                           __global uint *restrict paths, __global uint *restrict shadows,
@@ -278,7 +280,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
     uint camera = chain_key_depth(key) + 1u - s;
-    if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != HALF_BOTH)
+    if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != SUBPATH_BOTH)
         return;
     Random4 film = chain_camera(frame, paths, t);
     KERNEL_SCENE(frame, geometry, tables, texels);
@@ -289,7 +291,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
     connection_store(paths, shadows, stride, t, &connection, weights.own);
     Vec2 position = camera == 1u ? connection.film : film_position(frame, film.x[0], film.x[1]);
-    chain_place(frame, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.plain);
+    chain_place(frame, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
 }
 
 /* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */

@@ -66,7 +66,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     if (frame->split_depths != 0u)
         state_store(paths, stride, PATH_GATHERED, t, 0u);
     if (frame->split_direct != 0u) {
-        state_store_float(paths, stride, PATH_LIMIT, t, RARE_OVER_LIMIT * frame->limit / film_importance(frame, film));
+        state_store_float(paths, stride, PATH_LIMIT, t,
+                          RARE_OVER_CLAMP * frame->clamp_threshold / film_importance(frame, film));
         state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
     }
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
@@ -87,20 +88,21 @@ SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __glob
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
 }
 
-/* The part that a path of so many segments shows of its contribution. plain: the luminance of f over the sum of the densities
- * of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of that is shown as
- * the limit, and they show the rest (chain/mutation.h). */
+/* The part that a path of so many segments shows of its contribution. path_tracing: the luminance of f over the sum of
+ * the densities of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of
+ * that is shown as the limit, and they show the rest (chain/mutation.h). */
 SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint t,
-                                 uint segments, float plain)
+                                 uint segments, float path_tracing)
 {
     if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
         return 1.0f;
     float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
-    plain *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
-    return plain > limit ? limit / plain : 1.0f;
+    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
+    return path_tracing > limit ? limit / path_tracing : 1.0f;
 }
 
-/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0: never). */
+/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0:
+ * never). */
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t,
                                   Vec3 radiance, float pdf_other)
 {
@@ -225,9 +227,9 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
-    float plain = rgb_luminance(light_term) / (pdf + pdf_other);
+    float path_tracing = rgb_luminance(light_term) / (pdf + pdf_other);
     light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
-    light_term = vec3_scale(light_term, path_shown(frame, paths, t, depth + 1u, plain));
+    light_term = vec3_scale(light_term, path_shown(frame, paths, t, depth + 1u, path_tracing));
     Ray shadow = light_shadow_ray(p, ng, &sample);
     if (!ray_traceable(shadow.o, shadow.d))
         return;
@@ -335,8 +337,8 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
         path_splat(paths, splats, diagnostics, frame->stride, t, 0u);
 }
 
-/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what is
- * no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
+/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what
+ * is no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

@@ -29,8 +29,8 @@ SHARED_FUNCTION uint visits_cell(__global const FrameParams *frame, uint slot)
     return first;
 }
 
-/* Of item `item` counted from the beginning of a pool that visits some pixels more often than others. Visits of one pixel stand
- * behind each other, and each is another sample. */
+/* Of item `item` counted from the beginning of a pool that visits some pixels more often than others. Visits of one
+ * pixel stand behind each other, and each is another sample. */
 SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, uint item)
 {
     uint width = frame->crop_x1 - frame->crop_x0, height = frame->crop_y1 - frame->crop_y0;
@@ -48,7 +48,7 @@ SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, 
 }
 
 /* By how much more rarely a pool visits the pixel than if it visited all alike: what a sample there counts for. */
-SHARED_FUNCTION float pool_rarity(__global const FrameParams *frame, uint pixel)
+SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, uint pixel)
 {
     uint all = frame->visits[IMPORTANCE_CELLS];
     if (all == 0u)

@@ -43,7 +43,8 @@ typedef struct Bsdf {
     uint kind;
     uint flags; /* BSDF_* */
     Vec3 color0; /* diffuse, coated, transmission: reflectance. conductor: eta or reflectance. */
-    Vec3 color1; /* conductor: k. diffuse transmission: transmittance. coated: optical thickness, round trip (bsdf/coat.h) */
+    Vec3
+        color1; /* conductor: k. diffuse transmission: transmittance. coated: optical thickness, round trip (bsdf/coat.h) */
     float alpha_x, alpha_y; /* GGX; below ALPHA_DELTA the lobe is a delta */
     float eta; /* inside over outside of the surface */
     uint coat_table; /* first float in `lookup`, NONE when smooth */

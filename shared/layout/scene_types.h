@@ -1,9 +1,9 @@
-/* The plain-data structs that host and device share. Every member is a 4-byte uint, int or float (or a struct of
- * them), so the layouts of C and OpenCL C are the same; tests compare the sizes.
+/* The plain-data structs that host and device share. Every member is a 4-byte uint, int or float (or a struct of them),
+ * so the layouts of C and OpenCL C are the same; tests compare the sizes.
  *
  * A scene reaches the kernels as four buffers: the frame's parameters, `geometry`, `tables` and `texels`. The last
- * three are arrays of 32-bit words into which the host packed the arrays named in SceneLayout; layout/scene_view.h turns
- * them back into typed pointers. */
+ * three are arrays of 32-bit words into which the host packed the arrays named in SceneLayout; layout/scene_view.h
+ * turns them back into typed pointers. */
 #ifndef TWINLIGHT_LAYOUT_SCENE_TYPES_H
 #define TWINLIGHT_LAYOUT_SCENE_TYPES_H
 
@@ -309,7 +309,7 @@ typedef struct SceneLayout {
 #define AOV_COUNT 3u
 
 /* Lights that chains look for. */
-#define AIMS_MAX 8u
+#define LIGHT_GUIDES_MAX 8u
 
 /* Cells of the importance a side. */
 #define IMPORTANCE_SIDE 32u
@@ -343,15 +343,16 @@ typedef struct FrameParams {
     uint unweighted; /* 1: weights are taken for 1 */
     uint mutations; /* bit MUTATION_*: small steps that chains make (chain/chain.h) */
     uint group_mutations; /* 1: at a step all chains make the same kind */
-    float shifts; /* of the steps of the camera's half so many are shifts (chain/shift.h) */
+    float shifts; /* of the steps of the camera subpath so many are shifts (chain/shift.h) */
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
-    float limit; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
+    float clamp_threshold; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
-    uint aim_count; /* of chains and their pools: lights that directions count from (light/aim.h) */
-    Vec3 aims[AIMS_MAX]; /* positions, or directions */
-    float aims_near[AIMS_MAX]; /* 1 of positions, 0 of directions */
-    float aims_power[AIMS_MAX]; /* over the square of the distance, of a direction's length: what they send somewhere */
+    uint guide_count; /* of chains and their pools: lights that directions count from (light/light_guide.h) */
+    Vec3 guides[LIGHT_GUIDES_MAX]; /* positions, or directions */
+    float guides_near[LIGHT_GUIDES_MAX]; /* 1 of positions, 0 of directions */
+    float guides_power
+        [LIGHT_GUIDES_MAX]; /* over the square of the distance, of a direction's length: what they send somewhere */
     float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/mmlt/importance.h) */
     uint visits[IMPORTANCE_CELLS +
                 1u]; /* of a pool: those of all pixels before each cell, and of all; last 0: one of each */

@@ -65,8 +65,8 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_WORDS 5u
 
 /* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. Every pixel has as many samples as splats
- * without SPLAT_FROM_LIGHT; those with it come from paths that could have met any pixel. Those with SPLAT_RARE also count
- * among what path tracing does not show (chain/mutation.h). */
+ * without SPLAT_FROM_LIGHT; those with it come from paths that could have met any pixel. Those with SPLAT_RARE also
+ * count among what path tracing does not show (chain/mutation.h). */
 #define SPLAT_FROM_LIGHT 0x80000000u
 #define SPLAT_RARE 0x40000000u
 #define SPLAT_FLAGS (SPLAT_FROM_LIGHT | SPLAT_RARE)
@@ -82,7 +82,7 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
 }
 
 /* Path tracing shows so many times as much of a path as a pool. */
-#define RARE_OVER_LIMIT 4.0f
+#define RARE_OVER_CLAMP 4.0f
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
 #define SPLAT_WORDS 4u

@@ -175,12 +175,12 @@
     MEMBER(FrameParams, shifts)                                                                                        \
     MEMBER(FrameParams, keep_chains)                                                                                   \
     MEMBER(FrameParams, large_step)                                                                                    \
-    MEMBER(FrameParams, limit)                                                                                         \
+    MEMBER(FrameParams, clamp_threshold)                                                                               \
     MEMBER(FrameParams, brightness)                                                                                    \
-    MEMBER(FrameParams, aim_count)                                                                                     \
-    MEMBER(FrameParams, aims)                                                                                          \
-    MEMBER(FrameParams, aims_near)                                                                                     \
-    MEMBER(FrameParams, aims_power)                                                                                    \
+    MEMBER(FrameParams, guide_count)                                                                                   \
+    MEMBER(FrameParams, guides)                                                                                        \
+    MEMBER(FrameParams, guides_near)                                                                                   \
+    MEMBER(FrameParams, guides_power)                                                                                  \
     MEMBER(FrameParams, importance)                                                                                    \
     MEMBER(FrameParams, visits)                                                                                        \
     MEMBER(FrameParams, seed_low)                                                                                      \

@@ -1,5 +1,5 @@
-/* Light as light paths see it: a ray that leaves a light, and the densities of that. light/light.h is the view from a point
- * that the light shines on. */
+/* Light as light paths see it: a ray that leaves a light, and the densities of that. light/light.h is the view from a
+ * point that the light shines on. */
 #ifndef TWINLIGHT_LIGHT_EMIT_H
 #define TWINLIGHT_LIGHT_EMIT_H
 
@@ -22,8 +22,8 @@ typedef struct LightEmission {
 
 /* ---- the disc that light from infinity comes through ------------------------------------------------------------- */
 
-/* Radius of the disc: that of the scene's bounding sphere, and what the rounding of the centre and of points on the disc
- * may take away where the scene is small and far from (0,0,0). 0 when there is nothing to shine on. */
+/* Radius of the disc: that of the scene's bounding sphere, and what the rounding of the centre and of points on the
+ * disc may take away where the scene is small and far from (0,0,0). 0 when there is nothing to shine on. */
 SHARED_FUNCTION float light_emit_disc_radius(const SceneView *scene)
 {
     float radius = scene->frame->world_radius;

@@ -1,5 +1,5 @@
 SHARED_FILES += \
-	shared/light/aim.h \
+	shared/light/light_guide.h \
 	shared/light/area.h \
 	shared/light/delta.h \
 	shared/light/emit.h \

@@ -298,8 +298,8 @@ SHARED_FUNCTION float float_acos(float x)
     return upper + (((3.14159274f - upper) - 2.0f * s) + (-8.74227766e-08f - 2.0f * tail));
 }
 
-/* The angle of (x, y) in [-pi, pi]. The ratio q of the smaller over the larger magnitude is reduced to (q - 1) / (q + 1)
- * above 1/2, then one base angle (0, pi/4, pi/2, 3 pi/4 or pi) in two parts is added. */
+/* The angle of (x, y) in [-pi, pi]. The ratio q of the smaller over the larger magnitude is reduced to (q - 1) / (q +
+ * 1) above 1/2, then one base angle (0, pi/4, pi/2, 3 pi/4 or pi) in two parts is added. */
 SHARED_FUNCTION float float_atan2(float y, float x)
 {
     if (x != x || y != y)

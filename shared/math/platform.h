@@ -21,8 +21,8 @@
 /* Items run at once and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 #define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
-/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. So does an exchange, which is made if that
- * was `before`. */
+/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. So does an exchange, which is made
+ * if that was `before`. */
 #define atomic_count_add(count, n) atomic_add((volatile __global uint *)(count), n)
 #ifdef cl_khr_int64_base_atomics
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
@@ -68,7 +68,8 @@ typedef uint64_t ulong;
 #define SHARED_FUNCTION static inline __attribute__((unused))
 #endif
 
-/* The item that a kernel works on. One copy per translation unit and thread; the thunks of layout/kernel_list.h set it. */
+/* The item that a kernel works on. One copy per translation unit and thread; the thunks of layout/kernel_list.h set
+ * it. */
 static _Thread_local uint platform_item __attribute__((unused));
 #define get_global_id(dimension) ((size_t)platform_item)
 
@@ -98,10 +99,10 @@ SHARED_FUNCTION float bits_float(uint bits)
 #define float_abs(x) fabsf(x)
 #define float_floor(x) floorf(x)
 
-/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the operators
- * of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad differ from
- * device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use them, which
- * decide no bit of a result. */
+/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the
+ * operators of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad
+ * differ from device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use
+ * them, which decide no bit of a result. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 #define float4_splat(x) ((Float4){(x), (x), (x), (x)})
 #define float4_mad(a, b, c) ((a) * (b) + (c))

@@ -1,6 +1,6 @@
-/* Double arithmetic under the name of float: the yardstick that --enable-double compiles the CPU backend's kernels with.
- * From the end of this file on `float` means double, in every function, struct and cast of shared/; only bits stay those
- * of a float. What takes floats apart, or knows how many bits they have, is here a second time.
+/* Double arithmetic under the name of float: the yardstick that --enable-double compiles the CPU backend's kernels
+ * with. From the end of this file on `float` means double, in every function, struct and cast of shared/; only bits
+ * stay those of a float. What takes floats apart, or knows how many bits they have, is here a second time.
  *
  * Included by math/platform.h, and before the first header that has floats of its own, Embree's for one. */
 #if defined(TWINLIGHT_DOUBLE) && !defined(TWINLIGHT_MATH_PLATFORM_DOUBLE_H)
@@ -25,8 +25,8 @@ SHARED_FUNCTION double bits_float(uint bits)
 }
 
 /* A float in state has its word as ever, so that who reads words, or the film, or another pass, finds it. The double is
- * kept beside it: state lies in the lower quarter of an aligned block, at offset p, and the double at half the block plus
- * 2 p. A word that was copied as a word has no double that fits it, and counts as it is. */
+ * kept beside it: state lies in the lower quarter of an aligned block, at offset p, and the double at half the block
+ * plus 2 p. A word that was copied as a word has no double that fits it, and counts as it is. */
 #define STATE_BLOCK ((size_t)1 << 26)
 
 SHARED_FUNCTION double *state_double(const uint *word)

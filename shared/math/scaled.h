@@ -5,10 +5,10 @@
 
 #include "math/platform.h"
 
-/* value 2^exponent, never negative. The value is SCALED_LEAST or more and below SCALED_MOST, so that products, quotients and
- * sums of two are normal floats: as long as they are within these bounds, too, which is nearly always, there is no more to
- * do than plain arithmetic, and the rounding is that of any other exponent. Zero and infinity are the float's, with
- * exponent 0. Infinity stays it but for a product with zero, which is zero. */
+/* value 2^exponent, never negative. The value is SCALED_LEAST or more and below SCALED_MOST, so that products,
+ * quotients and sums of two are normal floats: as long as they are within these bounds, too, which is nearly always,
+ * there is no more to do than plain arithmetic, and the rounding is that of any other exponent. Zero and infinity are
+ * the float's, with exponent 0. Infinity stays it but for a product with zero, which is zero. */
 typedef struct Scaled {
     float value;
     int exponent;

@@ -32,7 +32,8 @@ SHARED_FUNCTION Vec2 warp_disk_concentric(Vec2 u)
     return warp_disk_polar(u, &radius);
 }
 
-/* The point of the square that warp_disk_polar takes to d, which is in the disk but for rounding; the middle for d = 0. */
+/* The point of the square that warp_disk_polar takes to d, which is in the disk but for rounding; the middle for d =
+ * 0. */
 SHARED_FUNCTION Vec2 warp_disk_inverse(Vec2 d)
 {
     bool wide = float_abs(d.x) > float_abs(d.y);

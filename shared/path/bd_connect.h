@@ -108,8 +108,8 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, c
     return true;
 }
 
-/* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not read.
- * random: of whichever it is. */
+/* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not
+ * read. random: of whichever it is. */
 SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
                                   Random4 random, Connection *connection)
 {
@@ -123,7 +123,7 @@ SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const 
 }
 
 /* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */
-SHARED_FUNCTION bool connection_aim(const SceneView *scene, Random4 random, Connection *connection)
+SHARED_FUNCTION bool connection_target(const SceneView *scene, Random4 random, Connection *connection)
 {
     connection->target =
         film_splat_pixel(scene, connection->film, vec2(random_float(random.x[2]), random_float(random.x[3])),

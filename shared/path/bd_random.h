@@ -1,5 +1,5 @@
-/* Which random number a bidirectional path uses for what: like path/path_random.h, one function of (seed, pixel, sample,
- * block). */
+/* Which random number a bidirectional path uses for what: like path/path_random.h, one function of (seed, pixel,
+ * sample, block). */
 #ifndef TWINLIGHT_PATH_BD_RANDOM_H
 #define TWINLIGHT_PATH_BD_RANDOM_H
 
@@ -11,7 +11,8 @@
 #define BD_RANDOM_LIGHT 1u /* x, y: which light */
 #define BD_RANDOM_EMIT 2u /* point and direction on it */
 #define BD_RANDOM_PIXEL 3u /* of a pool: film position of paths that do not begin there */
-/* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix materials. */
+/* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix
+ * materials. */
 #define BD_RANDOM_VERTICES 4u
 #define BD_RANDOM_SCATTER 0u
 #define BD_RANDOM_MIX 1u

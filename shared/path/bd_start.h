@@ -23,8 +23,8 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     walk_end(paths, rays, stride, t);
 }
 
-/* Draws y_0, stored at `base`, and the light's first ray. choice: which light (x, y); random: point, direction. *own: density of y_0, of a point or of a direction where the
- * light is at infinity. False when the light sends nothing. */
+/* Draws y_0, stored at `base`, and the light's first ray. choice: which light (x, y); random: point, direction. *own:
+ * density of y_0, of a point or of a direction where the light is at infinity. False when the light sends nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global uint *restrict vertices,
                                       __global uint *restrict diagnostics, uint stride, uint t, uint base,
@@ -102,16 +102,16 @@ SHARED_FUNCTION Vec2 film_position(__global const FrameParams *frame, uint x, ui
     return vec2(reach.x + reach.width * random_float(x), reach.y + reach.height * random_float(y));
 }
 
-/* The random number of a place, 0 <= place < extent, in the reach: film_position finds it again within 2^-24 of the extent.
- * rest: gives the bits that say no more about the place. */
+/* The random number of a place, 0 <= place < extent, in the reach: film_position finds it again within 2^-24 of the
+ * extent. rest: gives the bits that say no more about the place. */
 SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
 {
     float cell = float_clamp(place / extent, 0.0f, 0.99999988079071045f) * 8388608.0f;
     return (uint)cell << 9 | (rest & 0x1ffu);
 }
 
-/* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that of
- * splats that are divided by samples per pixel, as those of the light's paths are. */
+/* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that
+ * of splats that are divided by samples per pixel, as those of the light's paths are. */
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
                                      uint t, Random4 random)

@@ -5,7 +5,7 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/material.h"
 #include "layout/diagnostics.h"
-#include "light/aim.h"
+#include "light/light_guide.h"
 #include "math/rng.h"
 #include "path/bd_vertex.h"
 #include "path/strategy.h"
@@ -70,10 +70,10 @@ typedef struct WalkStep {
     uint delta;
 } WalkStep;
 
-/* Roulette leaves at least so many of a pool's walks alive. What the pool shows of a path is limited by what chains see of it,
- * who know no roulette: the paths of a walk that has survived by chance carry more, the inverse of its chance. Without this a
- * glossy room has twice the square error in the same time, much of it single dots, of 75 times the limit; were all walks to
- * live, a quarter more, as there would be fewer. */
+/* Roulette leaves at least so many of a pool's walks alive. What the pool shows of a path is limited by what chains see
+ * of it, who know no roulette: the paths of a walk that has survived by chance carry more, the inverse of its chance.
+ * Without this a glossy room has twice the square error in the same time, much of it single dots, of 75 times the
+ * limit; were all walks to live, a quarter more, as there would be fewer. */
 #define POOL_SURVIVED_LEAST 0.35f
 
 /* The least probability with which roulette lets the walk go on. */
@@ -98,8 +98,8 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     BsdfSample sample;
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     Vec2 u = scatter_point(random), u_base = u;
-    if (side == SIDE_CAMERA && scene->frame->aim_count > 0u && bsdf_has_base(scene, &vertex->bsdf))
-        u_base = scatter_point(aim_numbers(scene->frame, vertex->p, vertex->frame, random));
+    if (side == SIDE_CAMERA && scene->frame->guide_count > 0u && bsdf_has_base(scene, &vertex->bsdf))
+        u_base = scatter_point(light_guide_numbers(scene->frame, vertex->p, vertex->frame, random));
     if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
         return false;
     Vec3 wi = frame_to_world(vertex->frame, sample.wi);
@@ -149,7 +149,7 @@ SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint 
 
 /* ---- what a ray has met ------------------------------------------------------------------------------------------- */
 
-typedef struct WalkMeeting {
+typedef struct WalkHit {
     Ray ray;
     Vec3 from_ng; /* geometric normal where the ray left; its direction for the camera's first */
     float own; /* density with which the walk has made the point; of a miss, of its direction */
@@ -161,50 +161,50 @@ typedef struct WalkMeeting {
     Vec3 from; /* where the ray left */
     float distance2;
     float back; /* Vertex.back there */
-} WalkMeeting;
+} WalkHit;
 
 /* From: the ray under way and its hit. `before`: base of the vertex that it left. */
-SHARED_FUNCTION void walk_meet(const SceneView *scene, __global const uint *restrict paths,
-                               __global const uint *restrict rays, __global const uint *restrict hits,
-                               __global const uint *restrict vertices, uint t, uint before, WalkMeeting *meeting)
+SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
+                                   __global const uint *restrict rays, __global const uint *restrict hits,
+                                   __global const uint *restrict vertices, uint t, uint before, WalkHit *walk_hit)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
     bool first = side == SIDE_CAMERA && depth == 1u;
     Hit hit = hit_load(hits, stride, t);
-    meeting->ray = ray_load(rays, stride, t);
-    meeting->missed = hit.primitive == NONE;
-    meeting->instance = hit.instance;
-    meeting->primitive = hit.primitive;
-    meeting->own = state_load_float(paths, stride, BD_PDF, t);
-    meeting->from_ng = first ? meeting->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
-    meeting->light = NONE;
-    if (meeting->missed)
+    walk_hit->ray = ray_load(rays, stride, t);
+    walk_hit->missed = hit.primitive == NONE;
+    walk_hit->instance = hit.instance;
+    walk_hit->primitive = hit.primitive;
+    walk_hit->own = state_load_float(paths, stride, BD_PDF, t);
+    walk_hit->from_ng = first ? walk_hit->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
+    walk_hit->light = NONE;
+    if (walk_hit->missed)
         return;
-    meeting->surface = surface_from_hit(scene, &meeting->ray, hit);
-    meeting->from = first || (flags & WALK_PARALLEL) != 0u
-                        ? meeting->ray.o
-                        : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
-    meeting->distance2 = vec3_length_squared(vec3_sub(meeting->surface.p, meeting->from));
-    meeting->own = walk_density(scene->frame, &meeting->ray, &meeting->surface, meeting->distance2, side, depth, flags,
-                                meeting->own);
-    meeting->back = walk_back_stored(paths, vertices, stride, t, side, depth, before, meeting->surface.p);
-    uint first_light = scene->shapes[meeting->surface.shape].first_light;
+    walk_hit->surface = surface_from_hit(scene, &walk_hit->ray, hit);
+    walk_hit->from = first || (flags & WALK_PARALLEL) != 0u
+                         ? walk_hit->ray.o
+                         : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+    walk_hit->distance2 = vec3_length_squared(vec3_sub(walk_hit->surface.p, walk_hit->from));
+    walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, side, depth,
+                                 flags, walk_hit->own);
+    walk_hit->back = walk_back_stored(paths, vertices, stride, t, side, depth, before, walk_hit->surface.p);
+    uint first_light = scene->shapes[walk_hit->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
-        meeting->light = first_light + hit.primitive - scene->shapes[meeting->surface.shape].first_primitive;
+        walk_hit->light = first_light + hit.primitive - scene->shapes[walk_hit->surface.shape].first_primitive;
 }
 
-/* Makes the vertex, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it is
- * full. */
+/* Makes the vertex, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it
+ * is full. */
 SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global const uint *restrict vertices, uint t,
-                                      uint before, float u_mix, WalkMeeting *meeting, Vertex *vertex)
+                                      uint before, float u_mix, WalkHit *walk_hit, Vertex *vertex)
 {
     uint stride = scene->frame->stride;
     uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
     if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
-        !vertex_make(scene, &meeting->surface, meeting->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
+        !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
                      vertex)) {
         walk_end(paths, rays, stride, t);
         return false;
@@ -213,18 +213,18 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, t,
                           emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex->p));
-    vertex->back = meeting->back;
+    vertex->back = walk_hit->back;
     return true;
 }
 
 /* The same, and stores it at `base`. */
 SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
                                  __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
-                                 WalkMeeting *meeting)
+                                 WalkHit *walk_hit)
 {
     uint stride = scene->frame->stride;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, t, before, u_mix, meeting, &vertex))
+    if (!walk_vertex_make(scene, paths, rays, vertices, t, before, u_mix, walk_hit, &vertex))
         return false;
     vertex_store(scene, vertices, stride, base, t, &vertex);
     state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
@@ -261,14 +261,14 @@ SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict 
 /* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */
 
 /* What the light met sends back along the ray, and what the weight needs to know. */
-SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkMeeting *meeting, StrategyEnds *ends)
+SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hit, StrategyEnds *ends)
 {
-    const Surface *surface = &meeting->surface;
-    uint light = meeting->light;
-    Vec3 towards = vec3_negate(meeting->ray.d);
+    const Surface *surface = &walk_hit->surface;
+    uint light = walk_hit->light;
+    Vec3 towards = vec3_negate(walk_hit->ray.d);
     ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
-    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * meeting->back;
-    ends->connect = light_connect_ratio(scene, light, meeting->from, meeting->ray.d, meeting->distance2, surface);
+    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * walk_hit->back;
+    ends->connect = light_connect_ratio(scene, light, walk_hit->from, walk_hit->ray.d, walk_hit->distance2, surface);
     ends->hittable = true;
     return light_emitted(scene, light, surface->ng, towards);
 }

@@ -8,8 +8,8 @@
 #include "path/mis.h"
 #include "path/strategy.h"
 
-/* Fields behind those of path/bd_state.h. With v_1, v_2 ... v_j the walk's vertices and r_i the density of v_i as the other
- * side makes it over that as its own side does: r_i is known when the walk has left v_{i+1}. */
+/* Fields behind those of path/bd_state.h. With v_1, v_2 ... v_j the walk's vertices and r_i the density of v_i as the
+ * other side makes it over that as its own side does: r_i is known when the walk has left v_{i+1}. */
 #define IB_PRODUCT BD_HEADER_WORDS /* r_1 r_2 ... r_{j-2}: value, exponent */
 #define IB_OWN (BD_HEADER_WORDS + 2u) /* of v_j, as its own side makes it */
 #define IB_OWN_BEFORE (BD_HEADER_WORDS + 3u) /* of v_{j-1} */

@@ -83,7 +83,8 @@ SHARED_FUNCTION Scaled mis_sum_power(const MisSum *sum, Scaled a)
     return sum->exponent == 2u ? scaled_multiply(a, a) : a;
 }
 
-/* The strategy reached is one of the set. `factor`: what its density has beside the running product. Returns its term. */
+/* The strategy reached is one of the set. `factor`: what its density has beside the running product. Returns its
+ * term. */
 SHARED_FUNCTION Scaled mis_sum_take(MisSum *sum, Scaled factor)
 {
     Scaled part = mis_sum_power(sum, scaled_multiply(sum->term, factor));

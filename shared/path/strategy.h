@@ -51,15 +51,15 @@ SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
 /* What a path's densities say of the strategies that could have made it. */
 typedef struct StrategyWeights {
     float own; /* the weight of the one that did */
-    float plain; /* the weights of path tracing's, s <= 1, together */
+    float path_tracing; /* the weights of path tracing's, s <= 1, together */
 } StrategyWeights;
 
-/* The strategy with s vertices from the light takes part. *plain: the sum of those of path tracing. */
-SHARED_FUNCTION void strategy_sum_take(MisSum *sum, Scaled *plain, uint s, float connect)
+/* The strategy with s vertices from the light takes part. *path_tracing: the sum of those of path tracing. */
+SHARED_FUNCTION void strategy_sum_take(MisSum *sum, Scaled *path_tracing, uint s, float connect)
 {
     Scaled part = mis_sum_take(sum, scaled_from(s == 1u ? connect : 1.0f));
     if (s < 2u)
-        *plain = scaled_add(*plain, part);
+        *path_tracing = scaled_add(*path_tracing, part);
 }
 
 /* Whether an edge between vertex i and vertex i - 1 (0: the side's end, which is never a delta) can be a connection. */
@@ -70,8 +70,8 @@ SHARED_FUNCTION bool edge_connectable(uint delta, uint i)
 }
 
 /* Adds the strategies with more vertices from the light than s: t' = t - 1 ... 1. */
-SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, Scaled *plain, uint set, uint s, uint t, const DensityView *view,
-                                         const StrategyEnds *ends)
+SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, Scaled *path_tracing, uint set, uint s, uint t,
+                                         const DensityView *view, const StrategyEnds *ends)
 {
     uint k = s + t - 1u;
     for (uint i = t - 1u; i >= 1u; --i) {
@@ -79,13 +79,13 @@ SHARED_FUNCTION void strategy_sum_camera(MisSum *sum, Scaled *plain, uint set, u
         mis_sum_step(sum, light, density_own(view, SIDE_CAMERA, i));
         uint other = k - i + 1u;
         if (strategy_taken(set, other, k) && edge_connectable(view->camera_delta, i))
-            strategy_sum_take(sum, plain, other, ends->connect);
+            strategy_sum_take(sum, path_tracing, other, ends->connect);
     }
 }
 
 /* Adds those with fewer: s' = s - 1 ... 0. */
-SHARED_FUNCTION void strategy_sum_light(MisSum *sum, Scaled *plain, uint set, uint s, uint t, const DensityView *view,
-                                        const StrategyEnds *ends)
+SHARED_FUNCTION void strategy_sum_light(MisSum *sum, Scaled *path_tracing, uint set, uint s, uint t,
+                                        const DensityView *view, const StrategyEnds *ends)
 {
     uint k = s + t - 1u;
     for (uint i = s; i-- > 0u;) {
@@ -96,7 +96,7 @@ SHARED_FUNCTION void strategy_sum_light(MisSum *sum, Scaled *plain, uint set, ui
         mis_sum_step(sum, camera, light);
         bool possible = i > 0u ? edge_connectable(view->light_delta, i) : ends->hittable;
         if (strategy_taken(set, i, k) && possible)
-            strategy_sum_take(sum, plain, i, ends->connect);
+            strategy_sum_take(sum, path_tracing, i, ends->connect);
     }
 }
 
@@ -105,19 +105,19 @@ SHARED_FUNCTION StrategyWeights strategy_weights(uint set, uint exponent, uint s
                                                  const StrategyEnds *ends)
 {
     MisSum sum = mis_sum_begin(exponent);
-    Scaled factor = scaled_from(s == 1u ? ends->connect : 1.0f), plain = scaled_zero();
+    Scaled factor = scaled_from(s == 1u ? ends->connect : 1.0f), path_tracing = scaled_zero();
     DensityView path = *view;
     /* By whatever lobe the walks went on from the ends, the connection is none of them. */
     path.camera_delta &= (1u << (t - 1u)) - 1u;
     path.light_delta &= s > 0u ? (1u << (s - 1u)) - 1u : 0u;
-    strategy_sum_camera(&sum, &plain, set, s, t, &path, ends);
+    strategy_sum_camera(&sum, &path_tracing, set, s, t, &path, ends);
     mis_sum_turn(&sum);
-    strategy_sum_light(&sum, &plain, set, s, t, &path, ends);
+    strategy_sum_light(&sum, &path_tracing, set, s, t, &path, ends);
     if (s < 2u)
-        plain = scaled_add(plain, mis_sum_power(&sum, factor));
+        path_tracing = scaled_add(path_tracing, mis_sum_power(&sum, factor));
     StrategyWeights weights;
     weights.own = mis_sum_weight(&sum, factor);
-    weights.plain = mis_sum_part(&sum, factor, plain);
+    weights.path_tracing = mis_sum_part(&sum, factor, path_tracing);
     return weights;
 }
 

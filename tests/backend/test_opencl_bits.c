@@ -114,7 +114,8 @@ START_TEST(test_bits_of_coincident_surfaces)
 }
 END_TEST
 
-/* Units so small that most contributions are clamped, that sums are full of smaller ones, and so large that most vanish. */
+/* Units so small that most contributions are clamped, that sums are full of smaller ones, and so large that most
+ * vanish. */
 START_TEST(test_bits_of_sums_out_of_range)
 {
     static const int EXPONENTS[] = {-66, -61, 4};

@@ -1,5 +1,5 @@
-/* The whole state of every path, step by step: what the device holds is what the CPU holds, and --verify sees when it is
- * not. */
+/* The whole state of every path, step by step: what the device holds is what the CPU holds, and --verify sees when it
+ * is not. */
 #include "backend/test_opencl.h"
 #include "support/verify_fixture.h"
 

@@ -119,7 +119,7 @@ START_TEST(test_records)
     Error error = {0};
     strcpy(record.device, "a device, with words");
     record.chains.steps = 7;
-    record.chains.shares[2] = 0.1;
+    record.chains.weights[2] = 0.1;
     record.chains.proposals[1][31] = 9;
     record.chains.accepted[1][31] = 4;
     record.chains.longest_run[31] = 65535;

@@ -115,8 +115,8 @@ static double inside_reflectance(const TestScene *scene, const Bsdf *coat, TestR
 }
 
 /* A rough coat differs from the walk in nothing but R_i: the walk's is what single scattering leaves of it, the closed
- * form's is 1 - escape, which gives the rest back to the base. With the walk's own R_i put in, the closed form says what
- * the walk does (to 4 standard deviations); with its own it is brighter, by the printed figures. */
+ * form's is 1 - escape, which gives the rest back to the base. With the walk's own R_i put in, the closed form says
+ * what the walk does (to 4 standard deviations); with its own it is brighter, by the printed figures. */
 START_TEST(test_rough_coat_is_the_layers)
 {
     const float alphas[] = {0.01f, 0.1f, 0.3f, 0.6f};

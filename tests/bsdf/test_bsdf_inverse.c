@@ -1,5 +1,5 @@
-/* bsdf_invert against bsdf_sample and bsdf_eval: the point that it finds draws the direction, and the densities of all lobes,
- * each times the probability of its choice, are that of the direction. */
+/* bsdf_invert against bsdf_sample and bsdf_eval: the point that it finds draws the direction, and the densities of all
+ * lobes, each times the probability of its choice, are that of the direction. */
 #include "support/bsdf_cases.h"
 
 #include "bsdf/invert.h"
@@ -77,9 +77,9 @@ static void inverse_try(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, TestR
     }
 }
 
-/* Nearly always a direction is drawn again to 0.01 of the lobe's width; from 0.1 degrees above the surface, where the half
- * vector of floats is that coarse beside a lobe of alpha 1e-3, to 0.2. Rounding moves what is at the edge of a choice between
- * lobes to its other side. */
+/* Nearly always a direction is drawn again to 0.01 of the lobe's width; from 0.1 degrees above the surface, where the
+ * half vector of floats is that coarse beside a lobe of alpha 1e-3, to 0.2. Rounding moves what is at the edge of a
+ * choice between lobes to its other side. */
 START_TEST(test_inverse)
 {
     const struct TestMaterial *kind = &TEST_MATERIALS[_i];
@@ -111,8 +111,8 @@ START_TEST(test_inverse)
 }
 END_TEST
 
-/* For independent directions and lobe numbers: where an inverse is found, it draws the direction with that lobe number, and its
- * density is positive. Narrow lobes are left out: in their tails floats do not resolve half vectors. */
+/* For independent directions and lobe numbers: where an inverse is found, it draws the direction with that lobe number,
+ * and its density is positive. Narrow lobes are left out: in their tails floats do not resolve half vectors. */
 START_TEST(test_any)
 {
     const struct TestMaterial *kind = &TEST_MATERIALS[_i];

@@ -66,7 +66,8 @@ static double lobe_density(const LobeCase *lobe, int s, double a, double b)
 }
 
 /* Integral over a square by Gauss-Legendre 3 x 3, subdivided until the four quarters agree with the whole. At the
- * horizon (a = 0) always subdivided: for a grazing wo, refraction ends at |z| = |wo.z| / eta, a step that no node sees. */
+ * horizon (a = 0) always subdivided: for a grazing wo, refraction ends at |z| = |wo.z| / eta, a step that no node
+ * sees. */
 static double lobe_integrate(const LobeCase *lobe, int s, double a, double b, double width, int depth)
 {
     static const double X[3] = {0.1127016653792583, 0.5, 0.8872983346207417};

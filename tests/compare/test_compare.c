@@ -46,9 +46,10 @@ static DisplayError display_error_of(const float *image, const float *reference,
     return result;
 }
 
-/* The expected figures were computed from these two pictures, clamped to 0 ... 1, by other programs: FLIP by the authors'
- * own (Python package flip-evaluator 1.7, "LDR", inputsRGB false), SSIM by scikit-image 0.26.0 (structural_similarity of
- * the luma, gaussian_weights, sigma 1.5, data_range 1, use_sample_covariance false). flip-evaluator computes in float. */
+/* The expected figures were computed from these two pictures, clamped to 0 ... 1, by other programs: FLIP by the
+ * authors' own (Python package flip-evaluator 1.7, "LDR", inputsRGB false), SSIM by scikit-image 0.26.0
+ * (structural_similarity of the luma, gaussian_weights, sigma 1.5, data_range 1, use_sample_covariance false).
+ * flip-evaluator computes in float. */
 START_TEST(test_reference_programs)
 {
     float image[VALUES], reference[VALUES];
@@ -113,8 +114,8 @@ END_TEST
 #define SIDE 160
 #define HALF_VALUES (3 * SIDE * SIDE)
 
-/* Skewed noise of mean `mean`, as pictures have: an exponential variable. With `grain` > 1 squares of so many pixels share
- * their value, as chains make them. */
+/* Skewed noise of mean `mean`, as pictures have: an exponential variable. With `grain` > 1 squares of so many pixels
+ * share their value, as chains make them. */
 static void half_fill(float *half, double mean, int grain, unsigned *state)
 {
     for (int y = 0; y < SIDE; ++y) {
@@ -164,8 +165,8 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* A pixel at a lamp's edge that both halves of one rendering happened to see and both of the other to miss: one observation,
- * not a difference. */
+/* A pixel at a lamp's edge that both halves of one rendering happened to see and both of the other to miss: one
+ * observation, not a difference. */
 START_TEST(test_halves_one_pixel)
 {
     static float memory[4][HALF_VALUES];

@@ -172,8 +172,8 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
-/* Splats of rare paths are in the sums of all, and by themselves; other films like this one have no such sums, and merging
- * leaves them alone. */
+/* Splats of rare paths are in the sums of all, and by themselves; other films like this one have no such sums, and
+ * merging leaves them alone. */
 START_TEST(test_rare)
 {
     Error error = {0};
@@ -201,8 +201,8 @@ START_TEST(test_rare)
 }
 END_TEST
 
-/* Splats that name their path's number of segments are in the sums of all, and once more by themselves: those from the light,
- * and in a film that has rare ones its own and the rare ones, too. */
+/* Splats that name their path's number of segments are in the sums of all, and once more by themselves: those from the
+ * light, and in a film that has rare ones its own and the rare ones, too. */
 START_TEST(test_depths)
 {
     const uint four = splat_depth(3, 4), five = splat_depth(3, 5);
@@ -241,8 +241,8 @@ START_TEST(test_depths)
 }
 END_TEST
 
-/* What a device keeps: 12 pixels of three sums, three counters, counts by twos, and the light's and the rare ones when there are
- * any. */
+/* What a device keeps: 12 pixels of three sums, three counters, counts by twos, and the light's and the rare ones when
+ * there are any. */
 START_TEST(test_sums_of_a_device)
 {
     ulong words[3 * 12 + 3 + 6 + 2 * 3 * 12] = {0};
@@ -475,7 +475,8 @@ START_TEST(test_crop)
 }
 END_TEST
 
-/* The parts of a device's buffer (film_view_words) do not overlap, also with an odd number of pixels, and fit film_words. */
+/* The parts of a device's buffer (film_view_words) do not overlap, also with an odd number of pixels, and fit
+ * film_words. */
 START_TEST(test_buffer)
 {
     static ulong words[1024];

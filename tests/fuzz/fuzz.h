@@ -1,5 +1,6 @@
-/* What fuzz/fuzz_scene.c, fuzz/fuzz_image.c and fuzz/fuzz_options.c are: targets of libFuzzer (make fuzz), or with fuzz/fuzz_replay.c
- * programs that try the inputs of tests/corpus (make check) or of the files and folders they are given. */
+/* What fuzz/fuzz_scene.c, fuzz/fuzz_image.c and fuzz/fuzz_options.c are: targets of libFuzzer (make fuzz), or with
+ * fuzz/fuzz_replay.c programs that try the inputs of tests/corpus (make check) or of the files and folders they are
+ * given. */
 #ifndef TWINLIGHT_TESTS_FUZZ_FUZZ_H
 #define TWINLIGHT_TESTS_FUZZ_FUZZ_H
 

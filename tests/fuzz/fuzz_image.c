@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* The readers take a name. Of this one TGA, which has no signature, is told by the ending, the others by their bytes. */
+/* The readers take a name. Of this one TGA, which has no signature, is told by the ending, the others by their
+ * bytes. */
 static char path[1024];
 static FILE *file;
 

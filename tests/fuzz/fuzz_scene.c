@@ -21,7 +21,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         ply_try(data, size);
         return 0;
     }
-    /* The first byte chooses --lenient, and whether to go on behind errors, so that all ways through the reader are tried. */
+    /* The first byte chooses --lenient, and whether to go on behind errors, so that all ways through the reader are
+     * tried. */
     ImportOptions options = {.lenient = size > 0 && (data[0] & 1), .all_errors = size > 0 && (data[0] & 2)};
     Scene scene;
     Error error = {{0}, {0}};

@@ -1,8 +1,8 @@
-/* Rays that are made to break the agreement of hierarchies, against asking every primitive: Embree's walk and the device's
- * (as C) must find the same bits. Ends of rays are vertices, points of edges and faces of primitives and their boxes, off by
- * a few units in the last place; directions lie in the planes of triangles, along axes, or have components next to nothing.
- * Half of the rays are found by climbing: a ray is changed by units in the last place, and a change is kept when its hit
- * is further outside the primitive's box than before. */
+/* Rays that are made to break the agreement of hierarchies, against asking every primitive: Embree's walk and the
+ * device's (as C) must find the same bits. Ends of rays are vertices, points of edges and faces of primitives and their
+ * boxes, off by a few units in the last place; directions lie in the planes of triangles, along axes, or have
+ * components next to nothing. Half of the rays are found by climbing: a ray is changed by units in the last place, and
+ * a change is kept when its hit is further outside the primitive's box than before. */
 #include "backend/bvh.h"
 #include "geometry/bvh_scenes.h"
 #include "geometry/bvh_traverse.h"
@@ -373,8 +373,8 @@ static void *adversary_thread(void *argument)
     return NULL;
 }
 
-/* 10^7 rays for each unit of effort up to 7; the long test 10^9, over a hundred times as many scenes, in LONG_PARTS: Check
- * knows no test of more than 2^31 microseconds. */
+/* 10^7 rays for each unit of effort up to 7; the long test 10^9, over a hundred times as many scenes, in LONG_PARTS:
+ * Check knows no test of more than 2^31 microseconds. */
 #define LONG_PARTS 20u
 
 START_TEST(test_adversary)

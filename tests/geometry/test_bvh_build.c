@@ -172,7 +172,8 @@ END_TEST
 
 /* ---- limits ------------------------------------------------------------------------------------------------------ */
 
-/* Triangles that shrink by a half towards a corner: a tree by the surface area heuristic is as deep as they are many. */
+/* Triangles that shrink by a half towards a corner: a tree by the surface area heuristic is as deep as they are
+ * many. */
 static void make_shrinking(TestScene *test, uint count)
 {
     TestMesh mesh = mesh_create(3 * (size_t)count, count);

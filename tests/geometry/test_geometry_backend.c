@@ -159,8 +159,8 @@ static void collect_and_stop(void *context, const uint *splats, uint count, uint
     stop_now = 1;
 }
 
-/* A stop that comes while a chunk is under way, which has shown a part of itself: it is finished, so that the film has none
- * by halves, unless the pass is of no use any more. */
+/* A stop that comes while a chunk is under way, which has shown a part of itself: it is finished, so that the film has
+ * none by halves, unless the pass is of no use any more. */
 START_TEST(test_stop_in_chunk)
 {
     static const Step steps[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},

@@ -103,7 +103,8 @@ START_TEST(test_sphere_accuracy)
 }
 END_TEST
 
-/* Clipped spheres under any map: a hit lies on the kept part, and the ray through a kept point finds it or one before. */
+/* Clipped spheres under any map: a hit lies on the kept part, and the ray through a kept point finds it or one
+ * before. */
 START_TEST(test_partial_sphere)
 {
     TestRandom random = {.seed = 310};

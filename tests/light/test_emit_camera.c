@@ -106,7 +106,8 @@ static void meet(const FrameParams *frame, Vec2 film, Vec2 u, Vec3 p, Vec3 d, do
         out[k] = o[k] + along / cosine * w[k];
 }
 
-/* How far within the reach of the outermost pixels of the crop window the position is, in pixels along the worse axis. */
+/* How far within the reach of the outermost pixels of the crop window the position is, in pixels along the worse
+ * axis. */
 static double reach_margin(const FrameParams *frame, Vec2 film)
 {
     double rx = (double)frame->filter.radius_x, ry = (double)frame->filter.radius_y;

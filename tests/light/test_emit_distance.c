@@ -1,5 +1,5 @@
-/* Light from infinity in small and large scenes, near and far from (0,0,0): a distant light, and a sun that is one texel
- * of an environment. Nothing of the scene may be missed by rounding. */
+/* Light from infinity in small and large scenes, near and far from (0,0,0): a distant light, and a sun that is one
+ * texel of an environment. Nothing of the scene may be missed by rounding. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -89,8 +89,8 @@ START_TEST(test_covers)
 }
 END_TEST
 
-/* Receivers across the light, a twentieth of the scene wide: in the middle of the scene, inside it and at its rim; their
- * centres in units of the scene's radius, in the frame around the direction to the light. */
+/* Receivers across the light, a twentieth of the scene wide: in the middle of the scene, inside it and at its rim;
+ * their centres in units of the scene's radius, in the frame around the direction to the light. */
 static const double RECEIVERS[][2] = {{0.0, 0.0}, {0.94, 0.0}, {-0.5, 0.5}, {0.0, 0.94}};
 enum { RECEIVER_COUNT = sizeof RECEIVERS / sizeof *RECEIVERS };
 #define RECEIVER_RADIUS 0.05

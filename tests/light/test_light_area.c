@@ -216,8 +216,8 @@ static void check_sample(const LightFixture *f, const AreaShape *s, const LightS
     ck_assert_double_eq_tol((double)vec3_length(sample->ng), 1.0, 1e-6);
 }
 
-/* The ray towards the sample meets the light in the same point with the same normal, and there light_pdf_w says what the
- * sample said. False when something nearer of the same shape is met. */
+/* The ray towards the sample meets the light in the same point with the same normal, and there light_pdf_w says what
+ * the sample said. False when something nearer of the same shape is met. */
 static bool check_ray(const LightFixture *f, const AreaShape *s, const LightSample *sample)
 {
     Ray ray = {.o = to_vec3(s->ref), .d = sample->wi, .t_max = FLOAT_MAX};

@@ -171,8 +171,8 @@ START_TEST(test_projection)
 }
 END_TEST
 
-/* What the header of an image says of the camera leads points of its rays to where on the film they were seen, also where
- * camera space is scaled and the importer has moved the scene. */
+/* What the header of an image says of the camera leads points of its rays to where on the film they were seen, also
+ * where camera space is scaled and the importer has moved the scene. */
 START_TEST(test_matrices)
 {
     static const double SCALES[] = {1.0, 1e-13, 37.0};
@@ -239,8 +239,8 @@ START_TEST(test_reach)
 }
 END_TEST
 
-/* Far from the origin a camera sees a point where one at the origin sees the same point beside it: places and differences are whole
- * numbers of floats here, so that nothing is rounded before it is turned. */
+/* Far from the origin a camera sees a point where one at the origin sees the same point beside it: places and
+ * differences are whole numbers of floats here, so that nothing is rounded before it is turned. */
 START_TEST(test_far)
 {
     CameraSettings settings = settings_placed(CAMERA_PERSPECTIVE, 90.0f);

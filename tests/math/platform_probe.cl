@@ -1,5 +1,5 @@
-/* What math/test_platform_bits.c runs both as C and as OpenCL C. Item i of a kernel reads words 4 i ... 4 i + 3 of `in` and
- * writes PROBE_WORDS words of `out`, zeroed before; `table` holds what distributions need. */
+/* What math/test_platform_bits.c runs both as C and as OpenCL C. Item i of a kernel reads words 4 i ... 4 i + 3 of `in`
+ * and writes PROBE_WORDS words of `out`, zeroed before; `table` holds what distributions need. */
 #include "layout/distribution.h"
 #include "layout/struct_members.h"
 #include "math/rng.h"

@@ -1,6 +1,6 @@
-/* The same text as C and as OpenCL C gives the same layouts and the same bits: math/platform_probe.cl is compiled into this
- * program and built for an OpenCL CPU device, and both are run over the same inputs. Skipped (exit 77) where there is no
- * such device. */
+/* The same text as C and as OpenCL C gives the same layouts and the same bits: math/platform_probe.cl is compiled into
+ * this program and built for an OpenCL CPU device, and both are run over the same inputs. Skipped (exit 77) where there
+ * is no such device. */
 #include "math/test_math.h"
 
 #include "layout/scene_types.h"

@@ -1,5 +1,6 @@
-/* The chain's rule on a target that is known: what begins in proportion to it stays so, under every kind of mutation and
- * with all of them, coordinates that a mutation leaves alone keep their bits, and the film gets one visit for each step. */
+/* The chain's rule on a target that is known: what begins in proportion to it stays so, under every kind of mutation
+ * and with all of them, coordinates that a mutation leaves alone keep their bits, and the film gets one visit for each
+ * step. */
 #include "mmlt/test_chain.h"
 
 #include "chain/mutation.h"
@@ -51,7 +52,8 @@ static void toy_end(Toy *toy)
     free(toy->vertices);
 }
 
-/* The three coordinates that the target looks at: of the film, of a vertex of the light's half, of one of the camera's. */
+/* The three coordinates that the target looks at: of the film, of a vertex of the light's half, of one of the
+ * camera's. */
 static void coordinates(const Toy *toy, uint t, float x[3])
 {
     x[0] = random_float(chain_camera(&toy->frame, toy->paths, t).x[0]);
@@ -76,8 +78,8 @@ static float place_exponent(float x)
     return 1.0f + 2.0f * x;
 }
 
-/* The camera's half of a proposal: where z_2 is, or if it is to stay, by which numbers it does. Paths from a part of the film
- * cannot be shifted. */
+/* The camera's half of a proposal: where z_2 is, or if it is to stay, by which numbers it does. Paths from a part of
+ * the film cannot be shifted. */
 static void walk(Toy *toy, uint t)
 {
     uint number = shift_number(&toy->frame, DEPTH, 1, 0),
@@ -85,12 +87,12 @@ static void walk(Toy *toy, uint t)
     uint current = shift_base(shift_bank(toy->paths, STRIDE, t));
     bool keeps = (chain_move(toy->paths, STRIDE, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u;
     float x = random_float(chain_camera(&toy->frame, toy->paths, t).x[0]), e = place_exponent(x), density = 1.0f;
-    if ((chain_move(toy->paths, STRIDE, t, MOVE_CHANGED) & HALF_CAMERA) == 0u)
+    if ((chain_move(toy->paths, STRIDE, t, MOVE_CHANGED) & SUBPATH_CAMERA) == 0u)
         return;
     for (uint k = 0; k < 2; ++k) {
         if (keeps) {
             float kept = state_load_float(toy->vertices, STRIDE, current + SHIFT_POINTS + k, t);
-            state_store(toy->paths, STRIDE, number + k, t, aim_bits(powf(kept, 1.0f / e)));
+            state_store(toy->paths, STRIDE, number + k, t, light_guide_bits(powf(kept, 1.0f / e)));
         }
         float u = random_float(state_load(toy->paths, STRIDE, number + k, t));
         state_store_float(toy->vertices, STRIDE, base + SHIFT_POINTS + k, t, powf(u, e));
@@ -101,7 +103,8 @@ static void walk(Toy *toy, uint t)
 
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
-/* Draws the state of chain t exactly from the target by rejection: uniform coordinates, taken with probability f / 8. */
+/* Draws the state of chain t exactly from the target by rejection: uniform coordinates, taken with probability f /
+ * 8. */
 static void draw(Toy *toy, uint t, bool any_s)
 {
     for (uint attempt = 0;; ++attempt) {
@@ -122,7 +125,7 @@ static void draw(Toy *toy, uint t, bool any_s)
             state_store_vec3(toy->paths, STRIDE, CHAIN_COLOR, t, vec3_splat(1.0f));
             state_store_float(toy->paths, STRIDE, CHAIN_FILM, t, 1.0f);
             state_store_float(toy->paths, STRIDE, CHAIN_FILM + 1u, t, 1.0f);
-            state_store(toy->paths, STRIDE, CHAIN_MOVE, t, HALF_BOTH << MOVE_CHANGED | HALF_BOTH << MOVE_BANKS);
+            state_store(toy->paths, STRIDE, CHAIN_MOVE, t, SUBPATH_BOTH << MOVE_CHANGED | SUBPATH_BOTH << MOVE_BANKS);
             walk(toy, t); /* to bank 0 */
             state_store(toy->paths, STRIDE, CHAIN_MOVE, t, 0u);
             return;
@@ -259,8 +262,8 @@ START_TEST(test_offsets_of_a_word)
         uint word = random_four(i, 3, 2, 1, 4, 5).x[0];
         double signed_size[2];
         for (uint k = 0; k < 2; ++k) {
-            uint bits = mutation_half_bits(word, k), offset = mutation_offset(bits, shift, length);
-            uint turned = mutation_offset(mutation_half_bits(word ^ MUTATION_SIGNS, k), shift, length);
+            uint bits = mutation_subpath_bits(word, k), offset = mutation_offset(bits, shift, length);
+            uint turned = mutation_offset(mutation_subpath_bits(word ^ MUTATION_SIGNS, k), shift, length);
             TEST_TRUE(turned == 0u - offset);
             sum[k] += (double)((bits & 1u) != 0u ? offset : 0u - offset) / most;
             signed_size[k] = (double)(int)offset / most;
@@ -317,8 +320,8 @@ START_TEST(test_null_mutations)
                      shift_ratio(toy.paths, toy.vertices, STRIDE, 0));
     }
     for (uint i = 0; i < WORDS - CHAIN_NUMBERS; ++i) {
-        bool light =
-            i >= NUMBER_VERTICES ? chain_slot_half(2u, (i - NUMBER_VERTICES) / 3u) == HALF_LIGHT : i >= NUMBER_EMIT;
+        bool light = i >= NUMBER_VERTICES ? chain_slot_subpath(2u, (i - NUMBER_VERTICES) / 3u) == SUBPATH_LIGHT
+                                          : i >= NUMBER_EMIT;
         bool same = state_load(toy.paths, STRIDE, CHAIN_NUMBERS + i, 0) == before[CHAIN_NUMBERS + i];
         TEST_TRUE(same || light == (kind == MUTATION_LIGHT));
         moved += !same;
@@ -354,8 +357,8 @@ START_TEST(test_zero_never_accepted)
 }
 END_TEST
 
-/* A chain that carries a million times as much as what is around it stays: its run is every step since it began, as far as
- * the count goes, and is remembered when it has ended. */
+/* A chain that carries a million times as much as what is around it stays: its run is every step since it began, as far
+ * as the count goes, and is remembered when it has ended. */
 START_TEST(test_stuck)
 {
     Toy toy;

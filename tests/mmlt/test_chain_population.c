@@ -1,4 +1,5 @@
-/* A population and a pool together: sums come out right whatever the part of either, at once and after many generations. */
+/* A population and a pool together: sums come out right whatever the part of either, at once and after many
+ * generations. */
 #include "mmlt/chain_population.h"
 
 #include "chain/chain.h"
@@ -18,7 +19,8 @@
 #define OFFSETS 4096u
 #define FIELDS (CHAIN_PASS_NUMBERS + 2u)
 
-/* Every chain and sample has a depth of its own, so that it is known again, and chains coordinates that go on with them. */
+/* Every chain and sample has a depth of its own, so that it is known again, and chains coordinates that go on with
+ * them. */
 static void chains_make(ChainPopulation *population, uint *words)
 {
     chain_population_init(population, FIELDS);
@@ -116,8 +118,9 @@ static void eight_renew(ChainPopulation *population, const uint *pool, ChainStar
         population->words[CHAIN_PASS_LUMINANCE * 8 + i] = float_bits(1.0f);
 }
 
-/* Eight chains from samples worth 4, 2, 1 and 1, of 3, 5, 3 and 5 segments. Then half of everything is the chains': of a
- * comb of eight teeth, (k + 0.4) / 4, five meet chains, whose weights are 1/8, and three the samples of 1/2, 1/4, 1/8, 1/8. */
+/* Eight chains from samples worth 4, 2, 1 and 1, of 3, 5, 3 and 5 segments. Then half of everything is the chains': of
+ * a comb of eight teeth, (k + 0.4) / 4, five meet chains, whose weights are 1/8, and three the samples of 1/2, 1/4,
+ * 1/8, 1/8. */
 START_TEST(test_starts)
 {
     uint pool[POOL_WORDS * 4];
@@ -212,8 +215,8 @@ static void generation_run(ChainPopulation *population, bool rare, uint repeat, 
     }
 }
 
-/* In every generation, of a population that grows, every state has on average what it is worth, also where there is mostly
- * no population because all pools were black. */
+/* In every generation, of a population that grows, every state has on average what it is worth, also where there is
+ * mostly no population because all pools were black. */
 START_TEST(test_unbiased)
 {
     const bool rare = _i == 1;

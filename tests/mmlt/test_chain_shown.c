@@ -1,5 +1,5 @@
-/* Single paths in chains and pools: how much of them path tracing shows, where they are splatted and how often, and which path of a
- * sample the pool keeps. Expectations over the random numbers are compared with the definitions. */
+/* Single paths in chains and pools: how much of them path tracing shows, where they are splatted and how often, and
+ * which path of a sample the pool keeps. Expectations over the random numbers are compared with the definitions. */
 #include "mmlt/test_chain.h"
 
 #include "chain/chain_light.h"
@@ -38,7 +38,7 @@ static void shown_init(Shown *shown, unsigned seed)
     frame->stride = 1;
     frame->pool = 1;
     frame->max_depth = 10;
-    frame->limit = LIMIT;
+    frame->clamp_threshold = LIMIT;
     frame->brightness = 1.7f;
     frame->pool_lights_weight = LIGHTS_WEIGHT;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
@@ -100,8 +100,9 @@ static double luminance_of(Vec3 color)
 
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
-/* Path tracing would contribute color / plain. It shows that, times the importance, up to four times the limit. Camera walks of
- * chains start with the reach as a factor, which is divided out; paths with t = 1 have none. Depth and s stay in the key. */
+/* Path tracing would contribute color / path_tracing. It shows that, times the importance, up to four times the limit.
+ * Camera walks of chains start with the reach as a factor, which is divided out; paths with t = 1 have none. Depth and
+ * s stay in the key. */
 START_TEST(test_key)
 {
     Shown shown;
@@ -109,18 +110,18 @@ START_TEST(test_key)
     shown_init(&shown, 1);
     for (int i = 0; i < 20000; ++i) {
         uint d = 3u + (uint)i % 8u, s = (uint)i / 8u % (d + 1u);
-        float plain = octaves(&shown, 4.0);
+        float path_tracing = octaves(&shown, 4.0);
         Vec3 color = vec3_scale(color_draw(&shown), 8.0f);
         Vec2 film = film_draw(&shown);
         double f = luminance_of(color) * importance_at(&shown, film) / (s < d ? reach_factor() : 1.0);
-        double part = fmin(4.0 * (double)LIMIT * (double)plain / f, 1.0);
-        uint key = chain_key_shown(shown.light.view.frame, chain_key(d, s) | 0x1234u << 16, film, color, plain);
+        double part = fmin(4.0 * (double)LIMIT * (double)path_tracing / f, 1.0);
+        uint key = chain_key_shown(shown.light.view.frame, chain_key(d, s) | 0x1234u << 16, film, color, path_tracing);
         TEST_TRUE(chain_key_depth(key) == d && chain_key_s(key) == s);
         TEST_NEAR((key >> 16) / 65535.0, part, 1.0 / 65535.0);
         parts += part < 1.0;
     }
     ck_assert_uint_gt(parts, 2000);
-    shown.light.scene.frame.limit = FLOAT_MAX;
+    shown.light.scene.frame.clamp_threshold = FLOAT_MAX;
     ck_assert_uint_eq(
         chain_key_shown(shown.light.view.frame, chain_key(5, 2), vec2(3.0f, 3.0f), vec3_splat(1e30f), 0.0f),
         chain_key(5, 2) | KEY_SHOWN_ALL << 16);
@@ -151,8 +152,8 @@ START_TEST(test_flags)
 }
 END_TEST
 
-/* A pixel receives visits * brightness * filter(position) on average; f is the luminance times the sum of all pixels' filters times
- * the importance. */
+/* A pixel receives visits * brightness * filter(position) on average; f is the luminance times the sum of all pixels'
+ * filters times the importance. */
 START_TEST(test_splat)
 {
     enum { N = 128 };
@@ -193,10 +194,10 @@ START_TEST(test_halves)
     for (uint d = CHAIN_DEPTH_MIN; d < 9; ++d)
         for (uint s = 0; s <= d; ++s) {
             bool both = s == 0 || s == d;
-            ck_assert_uint_eq(mutation_halves(MUTATION_ALL, d, s), HALF_BOTH);
-            ck_assert_uint_eq(mutation_halves(MUTATION_LARGE, d, s), HALF_BOTH);
-            ck_assert_uint_eq(mutation_halves(MUTATION_LIGHT, d, s), both ? HALF_BOTH : HALF_LIGHT);
-            ck_assert_uint_eq(mutation_halves(MUTATION_CAMERA, d, s), both ? HALF_BOTH : HALF_CAMERA);
+            ck_assert_uint_eq(mutation_subpaths(MUTATION_ALL, d, s), SUBPATH_BOTH);
+            ck_assert_uint_eq(mutation_subpaths(MUTATION_LARGE, d, s), SUBPATH_BOTH);
+            ck_assert_uint_eq(mutation_subpaths(MUTATION_LIGHT, d, s), both ? SUBPATH_BOTH : SUBPATH_LIGHT);
+            ck_assert_uint_eq(mutation_subpaths(MUTATION_CAMERA, d, s), both ? SUBPATH_BOTH : SUBPATH_CAMERA);
         }
 }
 END_TEST
@@ -253,8 +254,8 @@ START_TEST(test_shifts)
 }
 END_TEST
 
-/* One light at infinity, drawn with u, stands for all: the luminance is that of all for every u, the expected color is the sum of
- * all, and color / plain is that of the light drawn. */
+/* One light at infinity, drawn with u, stands for all: the luminance is that of all for every u, the expected color is
+ * the sum of all, and color / path_tracing is that of the light drawn. */
 START_TEST(test_environment)
 {
     enum { LIGHTS = 4, N = 4096 };
@@ -265,7 +266,7 @@ START_TEST(test_environment)
     uint densities[2 * 4 * DENSITY_WORDS];
     double all = 0.0, mean[3] = {0.0}, expected[3] = {0.0};
     Vec3 colors[LIGHTS], beta = vec3(0.3f, 0.5f, 0.2f);
-    float plains[LIGHTS];
+    float by_path_tracing[LIGHTS];
     shown_init(&shown, 5);
     for (int i = 0; i < LIGHTS; ++i) {
         Vec3 emission = i == 2 ? vec3_splat(0.0f) : color_draw(&shown);
@@ -283,21 +284,21 @@ START_TEST(test_environment)
         Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], d, ng, &ends);
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, depth + 1, &view, &ends);
         colors[i] = vec3_scale(vec3_mul(beta, met), weights.own);
-        plains[i] = weights.plain;
+        by_path_tracing[i] = weights.path_tracing;
         all += luminance_of(colors[i]);
         expected[0] += (double)colors[i].x;
         expected[1] += (double)colors[i].y;
         expected[2] += (double)colors[i].z;
     }
     for (uint k = 0; k < N; ++k) {
-        float plain = 0.0f;
-        Vec3 got = chain_environment(&shown.light.view, beta, view, d, ng, depth, ((float)k + 0.5f) / N, &plain);
+        float path_tracing = 0.0f;
+        Vec3 got = chain_environment(&shown.light.view, beta, view, d, ng, depth, ((float)k + 0.5f) / N, &path_tracing);
         bool one = false;
         TEST_NEAR(luminance_of(got) / all, 1.0, 1e-5);
         for (uint i = 0; i < frame->infinite_light_count; ++i)
-            one = one ||
-                  (luminance_of(colors[i]) > 0.0 && fabsf(got.x / plain / (colors[i].x / plains[i]) - 1.0f) < 1e-4f &&
-                   fabsf(got.z / plain / (colors[i].z / plains[i]) - 1.0f) < 1e-4f);
+            one = one || (luminance_of(colors[i]) > 0.0 &&
+                          fabsf(got.x / path_tracing / (colors[i].x / by_path_tracing[i]) - 1.0f) < 1e-4f &&
+                          fabsf(got.z / path_tracing / (colors[i].z / by_path_tracing[i]) - 1.0f) < 1e-4f);
         TEST_TRUE(one);
         mean[0] += (double)got.x / N;
         mean[1] += (double)got.y / N;
@@ -309,8 +310,8 @@ START_TEST(test_environment)
 }
 END_TEST
 
-/* A camera walk of four segments meets a lamp (s = 0): its weight takes the walk's delta vertices into account, and the key has what
- * path tracing shows, by the weight of s = 0 and s = 1 together. */
+/* A camera walk of four segments meets a lamp (s = 0): its weight takes the walk's delta vertices into account, and the
+ * key has what path tracing shows, by the weight of s = 0 and s = 1 together. */
 START_TEST(test_met_lamp)
 {
     enum { D = 4 };
@@ -326,7 +327,7 @@ START_TEST(test_met_lamp)
     frame->strategies = STRATEGIES_BDPT;
     frame->mis_exponent = 2;
     frame->only_s = NONE;
-    frame->limit = 0.01f;
+    frame->clamp_threshold = 0.01f;
     for (uint delta = 0; delta < 2; ++delta) { /* delta == 1: z_2 scatters by a delta lobe */
         for (uint i = 0; i < D; ++i) {
             float own = octaves(&shown, 0.5), other = octaves(&shown, 0.5);
@@ -334,25 +335,25 @@ START_TEST(test_met_lamp)
             full[i * DENSITY_WORDS + DENSITY_OTHER] = float_bits(other);
             compact[i] = float_bits(i + 2 < D ? other / own : own);
         }
-        WalkMeeting meeting = {.light = 0, .instance = 0, .primitive = 0, .back = 0.7f};
-        meeting.from = vec3(0.3f, 0.2f, 2.0f);
-        meeting.ray.o = meeting.from;
-        meeting.ray.d = vec3(0.0f, 0.0f, -1.0f);
-        meeting.distance2 = 4.0f;
-        meeting.surface = (Surface){.p = vec3(0.3f, 0.2f, 0.0f), .ng = vec3(0.0f, 0.0f, 1.0f)};
+        WalkHit walk_hit = {.light = 0, .instance = 0, .primitive = 0, .back = 0.7f};
+        walk_hit.from = vec3(0.3f, 0.2f, 2.0f);
+        walk_hit.ray.o = walk_hit.from;
+        walk_hit.ray.d = vec3(0.0f, 0.0f, -1.0f);
+        walk_hit.distance2 = 4.0f;
+        walk_hit.surface = (Surface){.p = vec3(0.3f, 0.2f, 0.0f), .ng = vec3(0.0f, 0.0f, 1.0f)};
         StrategyEnds ends = {0};
-        Vec3 met = emission_met(&shown.light.view, &meeting, &ends);
+        Vec3 met = emission_met(&shown.light.view, &walk_hit, &ends);
         DensityView view = {.light = full, .camera = full, .stride = 1, .camera_delta = delta << 2};
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, D + 1, &view, &ends);
         weights_seen[delta] = weights.own;
-        TEST_TRUE(weights.own < 0.9f * weights.plain); /* else the two could not be told apart below */
+        TEST_TRUE(weights.own < 0.9f * weights.path_tracing); /* else the two could not be told apart below */
         memset(shown.paths, 0, sizeof shown.paths);
         state_store(shown.paths, 1, CHAIN_PROPOSED_KEY, 0, chain_key(D, 0));
         state_store_vec3(shown.paths, 1, BD_BETA, 0, beta);
         state_store(shown.paths, 1, BD_CAMERA_DELTA, 0, delta << 2);
         state_store(shown.paths, 1, CHAIN_NUMBERS + NUMBER_CAMERA, 0, 0x40000000u);
         state_store(shown.paths, 1, CHAIN_NUMBERS + NUMBER_CAMERA + 1u, 0, 0xc0000000u);
-        chain_meet_light(&shown.light.view, shown.paths, compact, 0, D, &meeting);
+        chain_hit_light(&shown.light.view, shown.paths, compact, 0, D, &walk_hit);
         Vec3 expected = vec3_scale(vec3_mul(beta, met), weights.own);
         Vec3 got = state_load_vec3(shown.paths, 1, BD_CONTRIBUTION, 0);
         Vec2 film = chain_film_load(shown.paths, 1, CHAIN_PROPOSED_FILM, 0);
@@ -361,7 +362,7 @@ START_TEST(test_met_lamp)
         TEST_NEAR(vec3_length(vec3_sub(got, expected)) / vec3_length(expected), 0.0, 1e-5);
         uint key = state_load(shown.paths, 1, CHAIN_PROPOSED_KEY, 0);
         double f = luminance_of(expected) * importance_at(&shown, film) / reach_factor();
-        TEST_NEAR((key >> 16) / 65535.0, 4.0 * 0.01 * (double)weights.plain / f, 2.0 / 65535.0);
+        TEST_NEAR((key >> 16) / 65535.0, 4.0 * 0.01 * (double)weights.path_tracing / f, 2.0 / 65535.0);
     }
     TEST_TRUE(fabsf(weights_seen[0] - weights_seen[1]) > 0.01f);
     fixture_destroy(&shown.light);
@@ -384,20 +385,22 @@ static void visits_set(FrameParams *frame)
 }
 
 /* Half of the columns are visited once, the others three times: the mean is two. */
-static double rarity_of(uint pixel)
+static double density_ratio_of(uint pixel)
 {
     return (pixel % WIDTH - X0) % 2 == 0 ? 2.0 : 2.0 / 3.0;
 }
 
-/* Luminance times importance over the density of the numbers that make the path: pool_lights_weight where only samples with a light
- * walk can (s > 1); film positions have the density of the pixel's filter, or are uniform where the path has none (t = 1). */
-static double worth_of(uint s, uint t, double luminance, double cover, uint pixel)
+/* Luminance times importance over the density of the numbers that make the path: pool_lights_weight where only samples
+ * with a light walk can (s > 1); film positions have the density of the pixel's filter, or are uniform where the path
+ * has none (t = 1). */
+static double contribution_of(uint s, uint t, double luminance, double cover, uint pixel)
 {
-    return luminance * (s > 1 ? (double)LIGHTS_WEIGHT : 1.0) * (t == 1 ? cover : rarity_of(pixel) / reach_factor());
+    return luminance * (s > 1 ? (double)LIGHTS_WEIGHT : 1.0) *
+           (t == 1 ? cover : density_ratio_of(pixel) / reach_factor());
 }
 
-/* The candidate is a sample's path with probability proportional to its worth; its f is without roulette. The film is shown
- * min(1, limit / f) of every path. */
+/* The candidate is a sample's path with probability proportional to its worth; its f is without roulette. The film is
+ * shown min(1, limit / f) of every path. */
 START_TEST(test_candidates)
 {
     enum { PATHS = 8, SAMPLES = 40000 };
@@ -416,8 +419,8 @@ START_TEST(test_candidates)
         cover[i] = 0.5f + 0.0625f * (float)i;
         importance[i] = octaves(&shown, 1.0);
         colors[i] = vec3_scale(color_draw(&shown), i % 2 == 0 ? 2.0f : 40.0f); /* below the limit and above */
-        worths[i] = worth_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
-                             (double)cover[i], pixel);
+        worths[i] = contribution_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
+                                    (double)cover[i], pixel);
         sum += worths[i];
     }
     for (uint sample = 0; sample < SAMPLES; ++sample) {
@@ -427,8 +430,8 @@ START_TEST(test_candidates)
         for (int i = 0; i < PATHS; ++i) {
             double f = luminance_of(colors[i]) * (double)(importance[i] * cover[i] * survival[i]);
             double counted = KINDS[i][0] > 1 ? (double)LIGHTS_WEIGHT : 1.0;
-            Vec3 got = candidate_offer(frame, shown.paths, 0, KINDS[i][0], KINDS[i][1], survival[i], cover[i],
-                                       importance[i], colors[i]);
+            Vec3 got = reservoir_update(frame, shown.paths, 0, KINDS[i][0], KINDS[i][1], survival[i], cover[i],
+                                        importance[i], colors[i]);
             TEST_TRUE((f > (double)LIMIT) == (i % 2 == 1));
             TEST_NEAR(luminance_of(got) / luminance_of(colors[i]), counted * fmin((double)LIMIT / f, 1.0), 1e-5);
         }
@@ -451,9 +454,9 @@ START_TEST(test_candidates)
 }
 END_TEST
 
-/* Film positions of a pool's sample have the mean and variance of its pixel's triangle filter, 0 and radius^2 / 6. Its weight is the
- * rarity of its pixel over the reach; roulette is scaled by the rarity where that is above one, and by pool_lights_weight where the
- * sample has a light walk. */
+/* Film positions of a pool's sample have the mean and variance of its pixel's triangle filter, 0 and radius^2 / 6. Its
+ * weight is the density_ratio of its pixel over the reach; roulette is scaled by the density_ratio where that is above
+ * one, and by pool_lights_weight where the sample has a light walk. */
 START_TEST(test_start)
 {
     enum { SAMPLES = 20000 };
@@ -494,8 +497,9 @@ START_TEST(test_start)
             ck_assert_double_eq_tol(squares[a] / variance, 1.0, 0.05);
         }
         /* walk_begin divides by the throughput, which is the reach. */
-        double counts = fmax(rarity_of(pixel), 1.0) * (walk ? (double)LIGHTS_WEIGHT : 1.0);
-        ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_WEIGHT]), rarity_of(pixel) / reach_factor(), 1e-6);
+        double counts = fmax(density_ratio_of(pixel), 1.0) * (walk ? (double)LIGHTS_WEIGHT : 1.0);
+        ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_WEIGHT]), density_ratio_of(pixel) / reach_factor(),
+                                1e-6);
         ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_ROULETTE_SCALE]) * reach_factor(), counts, 1e-5);
         ck_assert(pool_has_light(frame, item) == walk);
     }

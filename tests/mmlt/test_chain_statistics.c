@@ -79,8 +79,8 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Chains that never begin again: the parts are those that stand together, and have no more than that in common. Where the
- * light's walk meets the lens, the coordinates of the film say nothing. */
+/* Chains that never begin again: the parts are those that stand together, and have no more than that in common. Where
+ * the light's walk meets the lens, the coordinates of the film say nothing. */
 START_TEST(test_parts)
 {
     static uint words[FIELDS * CHAINS];

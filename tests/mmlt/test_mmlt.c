@@ -1,10 +1,10 @@
-/* Metropolis light transport against bidirectional path tracing, from the first step on: chains that begin in proportion
- * to what they carry have the right mean however few steps they make. Blended pictures are consistent. */
+/* Metropolis light transport against bidirectional path tracing, from the first step on: chains that begin in
+ * proportion to what they carry have the right mean however few steps they make. Blended pictures are consistent. */
 #include "support/bidirectional.h"
 
 #include "backend/group.h"
 #include "backend_cpu.h"
-#include "mmlt/blend.h"
+#include "mmlt/combination.h"
 
 static const unsigned STEPS[] = {1, 4, 16, 64};
 #define STEPS_COUNT (int)(sizeof STEPS / sizeof STEPS[0])
@@ -51,8 +51,8 @@ START_TEST(test_unbiased)
 }
 END_TEST
 
-/* Many generations, so that shares and plans follow what earlier ones have shown: no bias to be seen. */
-START_TEST(test_blended)
+/* Many generations, so that weights and plans follow what earlier ones have shown: no bias to be seen. */
+START_TEST(test_combined)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
     PictureGroups expected, got;
@@ -69,21 +69,21 @@ START_TEST(test_blended)
 }
 END_TEST
 
-/* Each stream alone with what it leaves to chains is all of the light. */
-START_TEST(test_streams)
+/* Each estimator alone with what it leaves to chains is all of the light. */
+START_TEST(test_estimators)
 {
-    const int stream = _i % BLEND_STREAMS;
-    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / BLEND_STREAMS];
+    const int estimator = _i % ESTIMATOR_COUNT;
+    const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / ESTIMATOR_COUNT];
     PictureGroups expected, got;
     char name[96];
-    if (test_effort() == 1 && (stream != BLEND_PATHS || _i / BLEND_STREAMS % 3 != 1))
+    if (test_effort() == 1 && (estimator != ESTIMATOR_PATHS || _i / ESTIMATOR_COUNT % 3 != 1))
         return; /* make check-long does them all */
     GroupSetup setup = expected_render(scene, 32, &expected);
     setup.render.samples = 128;
     setup.render.seed = 7000;
-    setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .shown = 1 + stream};
+    setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .shown = 1 + estimator};
     groups_render(&setup, &got);
-    snprintf(name, sizeof name, "%s, stream %d", scene->name, stream);
+    snprintf(name, sizeof name, "%s, estimator %d", scene->name, estimator);
     groups_compare(name, &got, &expected, 4, false);
     groups_destroy(&got);
     groups_destroy(&expected);
@@ -109,7 +109,7 @@ START_TEST(test_depths)
         setup.render.samples = 128;
         setup.render.seed = 9000;
         setup.render.integrator = integrator_mmlt();
-        setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .unblended = depth % 2 == 0};
+        setup.render.chains = (ChainOptions){.chains = 64, .steps = 16, .chains_only = depth % 2 == 0};
         groups_render(&setup, &got);
         snprintf(name, sizeof name, "%s, %d segments", scene->name, depth);
         groups_compare(name, &got, &expected, 4, false);
@@ -144,7 +144,8 @@ static double caustic_mean(const PictureGroups *picture, int group, int x0)
     return sum;
 }
 
-/* The scene is its own mirror image: with every seed both caustics get half. 97,000 samples of path tracing show 0.759. */
+/* The scene is its own mirror image: with every seed both caustics get half. 97,000 samples of path tracing show
+ * 0.759. */
 START_TEST(test_modes)
 {
     PictureGroups got;
@@ -268,16 +269,16 @@ END_TEST
 
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
-/* The mean square error against what path tracing sees falls as one over the work: nothing is left over. Of chains alone
- * over two decades; blended, it falls faster as long as shares and where pools look are learnt (glass, from 3000 samples to
- * 30,000: slope -1.19), and then as it should. */
+/* The mean square error against what path tracing sees falls as one over the work: nothing is left over. Of chains
+ * alone over two decades; combined, it falls faster as long as weights and where pools look are learnt (glass, from
+ * 3000 samples to 30,000: slope -1.19), and then as it should. */
 START_TEST(test_slope)
 {
     enum { BUDGETS = 3 };
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / 2];
-    const bool blended = _i % 2 == 0;
-    const double work[BUDGETS] = {blended ? 1e3 : 3e2, blended ? 1e4 : 3e3, blended ? 1e5 : 3e4};
-    const int first = blended ? 1 : 0;
+    const bool combined = _i % 2 == 0;
+    const double work[BUDGETS] = {combined ? 1e3 : 3e2, combined ? 1e4 : 3e3, combined ? 1e5 : 3e4};
+    const int first = combined ? 1 : 0;
     double error[BUDGETS];
     PictureGroups expected;
     if (test_effort() == 1)
@@ -289,7 +290,8 @@ START_TEST(test_slope)
                                    .threads = 2}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_mmlt();
-    setup.render.chains = (ChainOptions){.chains = 64, .unblended = !blended}; /* many generations from the first on */
+    setup.render.chains =
+        (ChainOptions){.chains = 64, .chains_only = !combined}; /* many generations from the first on */
     for (int i = 0; i < BUDGETS; ++i) {
         PictureGroups got;
         setup.render.samples = (unsigned)work[i] / test_effort();
@@ -300,7 +302,7 @@ START_TEST(test_slope)
     }
     groups_destroy(&expected);
     double slope = log10(error[BUDGETS - 1] / error[first]) / log10(work[BUDGETS - 1] / work[first]);
-    printf("%s, %s: square error %.3g %.3g %.3g, slope %.3f\n", scene->name, blended ? "blended" : "chains alone",
+    printf("%s, %s: square error %.3g %.3g %.3g, slope %.3f\n", scene->name, combined ? "combined" : "chains alone",
            error[0], error[1], error[2], slope);
     fflush(stdout);
     ck_assert_double_lt(error[1], error[0] / 8.0);
@@ -342,17 +344,17 @@ START_TEST(test_brightness)
 }
 END_TEST
 
-/* A lamp in a ball of glass: pools meet it rarely by the camera's walk, so that shares, limits and where pools look change
- * most from one generation to the next. */
+/* A lamp in a ball of glass: pools meet it rarely by the camera's walk, so that weights, limits and where pools look
+ * change most from one generation to the next. */
 static const char LAMP_IN_GLASS[] = BD_BEGIN
     "AttributeBegin Translate 0 0.2 0 AreaLightSource \"diffuse\" \"rgb L\" [ 60 60 60 ]\n"
     "Shape \"sphere\" \"float radius\" 0.15 AttributeEnd\n"
     "AttributeBegin Translate 0 0.2 0 Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5 "
     "AttributeEnd\n" BD_GREY BD_FLOOR "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 3  4 -1 3  -4 4 3  4 4 3 ]\n";
 
-/* What the two halves of a picture learn from each other makes it a ratio of sums that are not independent: consistent, not
- * unbiased. Means of many short pictures, which have the most of that, against bidirectional path tracing. Fewer than two
- * generations there are not. */
+/* What the two halves of a picture learn from each other makes it a ratio of sums that are not independent: consistent,
+ * not unbiased. Means of many short pictures, which have the most of that, against bidirectional path tracing. Fewer
+ * than two generations there are not. */
 START_TEST(test_bias)
 {
     enum { SIZES = 5, REPETITIONS = 80000 };
@@ -404,8 +406,9 @@ int main(void)
     Suite *suite = suite_create("mmlt");
     TCase *unbiased = case_make(suite, "unbiased");
     tcase_add_loop_test(unbiased, test_unbiased, 0, BIDIRECTIONAL_SCENE_COUNT);
-    tcase_add_loop_test(unbiased, test_blended, 0, BIDIRECTIONAL_SCENE_COUNT);
-    tcase_add_loop_test(case_make(suite, "streams"), test_streams, 0, BIDIRECTIONAL_SCENE_COUNT * BLEND_STREAMS);
+    tcase_add_loop_test(unbiased, test_combined, 0, BIDIRECTIONAL_SCENE_COUNT);
+    tcase_add_loop_test(case_make(suite, "estimators"), test_estimators, 0,
+                        BIDIRECTIONAL_SCENE_COUNT * ESTIMATOR_COUNT);
     suite_add_tcase(suite, mmlt_shown_case());
     tcase_add_loop_test(case_make(suite, "depths"), test_depths, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);

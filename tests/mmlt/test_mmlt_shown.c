@@ -2,7 +2,7 @@
  * strategy makes it, wherever on the film it begins, and however many lights send what it carries. */
 #include "support/bidirectional.h"
 
-#include "mmlt/blend.h"
+#include "mmlt/combination.h"
 
 /* A sun in the sky, a hundredth of all directions, over a pane of glass: paths that meet it are some times above path
  * tracing's limit, which shows a part of them and leaves the rest to chains. */
@@ -13,8 +13,8 @@
     "Material \"thindielectric\" \"float eta\" 1.5 Shape \"bilinearmesh\" \"point3 P\" [ -" side " " y " -" side       \
     "  " side " " y " -" side "  -" side " " y " " side "  " side " " y " " side " ]\n"
 
-/* The scene with one stream alone and what that leaves to chains, against path tracing. */
-static void stream_compare(const char *name, const BidirectionalScene *scene, int stream, unsigned expected_samples,
+/* The scene with one estimator alone and what that leaves to chains, against path tracing. */
+static void stream_compare(const char *name, const BidirectionalScene *scene, int estimator, unsigned expected_samples,
                            unsigned samples)
 {
     PictureGroups expected, got;
@@ -27,29 +27,29 @@ static void stream_compare(const char *name, const BidirectionalScene *scene, in
     setup.render.samples = samples;
     setup.render.seed = 11000;
     setup.render.integrator = integrator_mmlt();
-    setup.render.chains = (ChainOptions){.chains = 256, .steps = 16, .shown = 1 + stream};
+    setup.render.chains = (ChainOptions){.chains = 256, .steps = 16, .shown = 1 + estimator};
     groups_render(&setup, &got);
-    snprintf(line, sizeof line, "%s, stream %d", name, stream);
+    snprintf(line, sizeof line, "%s, estimator %d", name, estimator);
     groups_compare(line, &got, &expected, 2, false);
     groups_destroy(&got);
     groups_destroy(&expected);
 }
 
-/* At effort 1 the stream of path tracing alone; make check-long does them all. */
-static bool stream_left_out(int stream)
+/* At effort 1 the estimator of path tracing alone; make check-long does them all. */
+static bool stream_left_out(int estimator)
 {
-    return test_effort() == 1 && stream != BLEND_PATHS;
+    return test_effort() == 1 && estimator != ESTIMATOR_PATHS;
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
-/* Large pixels of a small scene, so that the light's walks (t = 1) make a good part of it, and a small crop window, so that
- * filters reach far beyond it. */
+/* Large pixels of a small scene, so that the light's walks (t = 1) make a good part of it, and a small crop window, so
+ * that filters reach far beyond it. */
 START_TEST(test_shown_filters)
 {
-    const int stream = _i % BLEND_STREAMS, filter = _i / BLEND_STREAMS;
+    const int estimator = _i % ESTIMATOR_COUNT, filter = _i / ESTIMATOR_COUNT;
     char text[2048];
-    if (stream_left_out(stream))
+    if (stream_left_out(estimator))
         return;
     snprintf(text, sizeof text,
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
@@ -58,7 +58,7 @@ START_TEST(test_shown_filters)
              "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
              BIDIRECTIONAL_FILTERS[filter]);
     const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
-    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, stream, 2048, 4096);
+    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
 }
 END_TEST
 
@@ -78,10 +78,10 @@ static const BidirectionalScene SUNS[] = {
 
 START_TEST(test_shown_lights)
 {
-    const int stream = _i % BLEND_STREAMS;
-    const BidirectionalScene *scene = &SUNS[_i / BLEND_STREAMS];
-    if (!stream_left_out(stream))
-        stream_compare(scene->name, scene, stream, 128, 512);
+    const int estimator = _i % ESTIMATOR_COUNT;
+    const BidirectionalScene *scene = &SUNS[_i / ESTIMATOR_COUNT];
+    if (!stream_left_out(estimator))
+        stream_compare(scene->name, scene, estimator, 128, 512);
 }
 END_TEST
 
@@ -100,8 +100,8 @@ static const char SIGNS[] = BD_BEGIN BD_LAMP
     "Material \"diffusetransmission\" \"texture reflectance\" \"factor\" \"texture transmittance\" \"mix\"\n"
     "AttributeBegin Translate 1 0 0 " BD_BALL "AttributeEnd\n";
 
-/* Chains go after luminance, and what has none above 0 they cannot show, though pools and path tracing would. No path carries
- * such a thing: lights and what surfaces reflect are nowhere below 0. */
+/* Chains go after luminance, and what has none above 0 they cannot show, though pools and path tracing would. No path
+ * carries such a thing: lights and what surfaces reflect are nowhere below 0. */
 START_TEST(test_signs)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
@@ -128,8 +128,8 @@ TCase *mmlt_shown_case(void)
     TCase *tcase = tcase_create("shown");
     tcase_set_timeout(tcase, 3000);
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
-    tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * BLEND_STREAMS);
-    tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * BLEND_STREAMS);
+    tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * ESTIMATOR_COUNT);
+    tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * ESTIMATOR_COUNT);
     tcase_add_test(tcase, test_signs);
     return tcase;
 }

@@ -1,4 +1,5 @@
-/* Which pixels' samples of a pool have a walk from the light, over many generations: on a backend that only keeps a record. */
+/* Which pixels' samples of a pool have a walk from the light, over many generations: on a backend that only keeps a
+ * record. */
 #include "support/test_util.h"
 
 #include "base/sample_statistics.h"
@@ -110,8 +111,9 @@ static const struct {
              {128, 0.37, false},    {128, 0.81, false}, {128, 1.13, false}, {128, 0.2, false}, {128, 1.0 / 13, false},
              {127, 2.0 / 3, false}, {128, 1.0, true},   {128, 0.5, true},   {128, 0.37, true}, {128, 0.1, true}};
 
-/* Numbers of walks of the pixels vary no more than half as much as if they were drawn, whatever the sizes, and where pools
- * visit some pixels more often, of which they go through few rounds before it changes, no more. Nearly no pixel is left out. */
+/* Numbers of walks of the pixels vary no more than half as much as if they were drawn, whatever the sizes, and where
+ * pools visit some pixels more often, of which they go through few rounds before it changes, no more. Nearly no pixel
+ * is left out. */
 START_TEST(test_even)
 {
     int side = SIZES[_i].side;

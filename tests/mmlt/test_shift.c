@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A distant light comes from below and passes the floor, at y = 0. A black triangle far away makes the scene large and thereby
- * light tracing rare, so that paths with one vertex from the light, whose z_2 shifts keep, have nearly all of the weight. */
+/* A distant light comes from below and passes the floor, at y = 0. A black triangle far away makes the scene large and
+ * thereby light tracing rare, so that paths with one vertex from the light, whose z_2 shifts keep, have nearly all of
+ * the weight. */
 static const char FLOOR[] = BD_FILM "LookAt -1 3 0  -1 0 0  0 0 1 Camera \"perspective\" \"float fov\" 36\n"
                                     "WorldBegin\n"
                                     "LightSource \"distant\" \"point3 from\" [ -.2 -.6 -1.5 ] \"point3 to\" [ 0 0 0 ]\n"
@@ -18,8 +19,8 @@ static const char FLOOR[] = BD_FILM "LookAt -1 3 0  -1 0 0  0 0 1 Camera \"persp
                                     "Material \"diffuse\" \"rgb reflectance\" [ 0.2 0.2 0.2 ]\n"
                                     "Shape \"bilinearmesh\" \"point3 P\" [ .1 1 -.5  .3 1 -.5  .1 1 .5  .3 1 .5 ]\n";
 
-/* Bright fins hang from the dark patch at y = 1, so many, as long as they are apart: 0.0008. The floor's pixels see the patch at
- * slants from 0.2 to 2.2, and more and more of what is between the fins is hidden. */
+/* Bright fins hang from the dark patch at y = 1, so many, as long as they are apart: 0.0008. The floor's pixels see the
+ * patch at slants from 0.2 to 2.2, and more and more of what is between the fins is hidden. */
 #define FINS 250
 
 static void fins_print(FILE *file)
@@ -52,7 +53,7 @@ START_TEST(test_fins)
     setup.render.integrator = integrator_mmlt();
     setup.render.samples = 1536;
     setup.render.seed = 100;
-    setup.render.chains = (ChainOptions){.chains = 64, .steps = _i == 0 ? 64 : 2048, .unblended = true};
+    setup.render.chains = (ChainOptions){.chains = 64, .steps = _i == 0 ? 64 : 2048, .chains_only = true};
     groups_render(&setup, &got);
     for (int quarter = 0; quarter < 4; ++quarter) {
         double mean, error, other, other_error;
@@ -76,44 +77,44 @@ END_TEST
 typedef struct Kept {
     FrameParams frame;
     uint paths[CHAIN_NUMBERS + 64], vertices[CHAIN_VERTEX_WORDS];
-    WalkMeeting meeting; /* of z_2, and then of z_3 */
+    WalkHit walk_hit; /* of z_2, and then of z_3 */
 } Kept;
 
 static void kept_init(Kept *kept, uint shift)
 {
     memset(kept, 0, sizeof *kept);
     kept->frame.stride = 1;
-    kept->paths[CHAIN_MOVE] = HALF_CAMERA << MOVE_CHANGED | shift << MOVE_SHIFT;
+    kept->paths[CHAIN_MOVE] = SUBPATH_CAMERA << MOVE_CHANGED | shift << MOVE_SHIFT;
 }
 
 /* The walk that draws directions with density pdf_w goes from o to p, on a primitive whose normal is ng. */
 static void kept_walk(Kept *kept, Vec3 o, Vec3 p, Vec3 ng, float pdf_w)
 {
-    WalkMeeting *meeting = &kept->meeting;
+    WalkHit *walk_hit = &kept->walk_hit;
     Vec3 d = vec3_sub(p, o);
-    *meeting = (WalkMeeting){.from = o, .light = NONE, .instance = 7, .primitive = 9};
-    meeting->ray.o = o;
-    meeting->ray.d = vec3_normalize(d);
-    meeting->distance2 = vec3_length_squared(d);
-    meeting->surface.p = p;
-    meeting->surface.ng = ng;
+    *walk_hit = (WalkHit){.from = o, .light = NONE, .instance = 7, .primitive = 9};
+    walk_hit->ray.o = o;
+    walk_hit->ray.d = vec3_normalize(d);
+    walk_hit->distance2 = vec3_length_squared(d);
+    walk_hit->surface.p = p;
+    walk_hit->surface.ng = ng;
     kept->paths[BD_SHIFT_DENSITY] = float_bits(pdf_w);
 }
 
-static bool kept_meet(Kept *kept, uint depth)
+static bool kept_hit(Kept *kept, uint depth)
 {
-    return shift_meet(&kept->frame, kept->paths, kept->vertices, 0, depth, &kept->meeting);
+    return shift_hit(&kept->frame, kept->paths, kept->vertices, 0, depth, &kept->walk_hit);
 }
 
 /* Density per area by the definition. */
 static double area_density(const Kept *kept, double pdf_w)
 {
-    const WalkMeeting *meeting = &kept->meeting;
-    return pdf_w * fabs((double)vec3_dot(meeting->ray.d, meeting->surface.ng)) / (double)meeting->distance2;
+    const WalkHit *walk_hit = &kept->walk_hit;
+    return pdf_w * fabs((double)vec3_dot(walk_hit->ray.d, walk_hit->surface.ng)) / (double)walk_hit->distance2;
 }
 
-/* The density noted is the product of those of z_2 and z_3 per area, and shift_ratio that of the proposal over that of the current
- * path. A path that cannot be shifted has density 0; none is proposed from there to one that can. */
+/* The density noted is the product of those of z_2 and z_3 per area, and shift_ratio that of the proposal over that of
+ * the current path. A path that cannot be shifted has density 0; none is proposed from there to one that can. */
 START_TEST(test_kept_density)
 {
     Kept kept;
@@ -122,37 +123,37 @@ START_TEST(test_kept_density)
         if (path == 0)
             kept_init(&kept, 0);
         /* As if the first path had been accepted. */
-        kept.paths[CHAIN_MOVE] = HALF_CAMERA << MOVE_CHANGED | (path == 0 ? 0u : HALF_CAMERA) << MOVE_BANKS;
+        kept.paths[CHAIN_MOVE] = SUBPATH_CAMERA << MOVE_CHANGED | (path == 0 ? 0u : SUBPATH_CAMERA) << MOVE_BANKS;
         kept_walk(&kept, vec3((float)path, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
         expected[path] = area_density(&kept, (double)0.7f);
-        ck_assert(kept_meet(&kept, 2));
+        ck_assert(kept_hit(&kept, 2));
         kept_walk(&kept, vec3(1.0f, 2.0f, 3.0f), vec3(-1.0f, 5.0f, (float)path), vec3(1.0f, 0.0f, 0.0f),
                   4.0f + (float)path);
         expected[path] *= area_density(&kept, 4.0 + path);
-        ck_assert(kept_meet(&kept, 3));
+        ck_assert(kept_hit(&kept, 3));
         TEST_NEAR(shift_density(kept.vertices, 1, 1u - path, 0) / expected[path], 1.0, 1e-6);
     }
     /* An infinite density is none. */
     Kept again = kept;
     kept_walk(&again, vec3_splat(0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), FLOAT_INFINITY);
-    kept_meet(&again, 2);
+    kept_hit(&again, 2);
     ck_assert_float_eq(shift_density(again.vertices, 1, 0, 0), 0.0f);
     /* The current path again: both of its vertices are where they are kept. */
     again = kept;
     again.paths[CHAIN_MOVE] =
-        HALF_CAMERA << MOVE_CHANGED | HALF_CAMERA << MOVE_BANKS | (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
+        SUBPATH_CAMERA << MOVE_CHANGED | SUBPATH_CAMERA << MOVE_BANKS | (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
     kept_walk(&again, vec3(0.0f, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
-    ck_assert(kept_meet(&again, 2));
+    ck_assert(kept_hit(&again, 2));
     kept_walk(&again, vec3(1.0f, 2.0f, 3.0f), vec3(-1.0f, 5.0f, 0.0f), vec3(1.0f, 0.0f, 0.0f), 4.0f);
-    ck_assert(kept_meet(&again, 3));
+    ck_assert(kept_hit(&again, 3));
     TEST_NEAR(shift_ratio(again.paths, again.vertices, 1, 0), 1.0, 1e-6);
     /* The path in bank 0 is proposed, that in bank 1 current. */
     kept.paths[CHAIN_MOVE] |= (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
     TEST_NEAR(shift_ratio(kept.paths, kept.vertices, 1, 0) / (expected[1] / expected[0]), 1.0, 1e-6);
     kept.paths[CHAIN_MOVE] ^= SHIFT_KEEPS << MOVE_SHIFT;
     ck_assert_float_eq(shift_ratio(kept.paths, kept.vertices, 1, 0), 0.0f);
-    kept.meeting.missed = true;
-    kept_meet(&kept, 3);
+    kept.walk_hit.missed = true;
+    kept_hit(&kept, 3);
     ck_assert_float_eq(shift_density(kept.vertices, 1, 0, 0), 0.0f);
     ck_assert_float_eq(shift_ratio(kept.paths, kept.vertices, 1, 0), 1.0f);
     ck_assert_uint_eq(shift_kind(kept.paths, kept.vertices, 1, 0), SHIFT_STEP | SHIFT_KEEPS);
@@ -163,8 +164,9 @@ START_TEST(test_kept_density)
 }
 END_TEST
 
-/* shift_found: the same primitive of the same instance, near the old point. Random numbers are 2^-23 apart, which moves a direction
- * of density p by up to 2^-23 / p: a point that far off is found. One further away than a thousandth of the segment is not. */
+/* shift_found: the same primitive of the same instance, near the old point. Random numbers are 2^-23 apart, which moves
+ * a direction of density p by up to 2^-23 / p: a point that far off is found. One further away than a thousandth of the
+ * segment is not. */
 START_TEST(test_kept_point)
 {
     static const struct {
@@ -193,22 +195,23 @@ START_TEST(test_kept_point)
             state_store_vec3(kept.vertices, 1, point, 0, p);
             kept.vertices[point + SHIFT_INSTANCE] = CASES[i].instance;
             kept.vertices[point + SHIFT_PRIMITIVE] = CASES[i].primitive;
-            ck_assert_msg(kept_meet(&kept, 2) == CASES[i].found, "case %zu, distance %g", i, (double)distance);
+            ck_assert_msg(kept_hit(&kept, 2) == CASES[i].found, "case %zu, distance %g", i, (double)distance);
         }
 }
 END_TEST
 
-/* The numbers that shift_aim finds and stores make walk_scatter draw the direction to the next vertex, also where numbers are relative
- * to the direction to a light (second run). shift_drawn notes the density of the diffuse lobe, cosine / pi. */
+/* The numbers that shift_guide finds and stores make walk_scatter draw the direction to the next vertex, also where
+ * numbers are relative to the direction to a light (second run). shift_drawn notes the density of the diffuse lobe,
+ * cosine / pi. */
 START_TEST(test_kept_numbers)
 {
     static Scene scene;
     static Kept kept;
     unsigned state = 5;
     scene_init(&scene);
-    scene.frame.aim_count = (uint)_i;
-    scene.frame.aims[0] = vec3(1.0f, 3.0f, -2.0f);
-    scene.frame.aims_near[0] = scene.frame.aims_power[0] = 1.0f;
+    scene.frame.guide_count = (uint)_i;
+    scene.frame.guides[0] = vec3(1.0f, 3.0f, -2.0f);
+    scene.frame.guides_near[0] = scene.frame.guides_power[0] = 1.0f;
     scene.frame.stride = 1;
     scene.frame.max_depth = 5;
     scene.frame.roulette_depth = 100;
@@ -229,7 +232,7 @@ START_TEST(test_kept_numbers)
         Random4 numbers = {{(uint)(u[2] * 4e9f), (uint)(u[3] * 4e9f), (uint)(u[4] * 4e9f), 0u}};
         kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);
         state_store_vec3(kept.vertices, 1, shift_point(0, i + 1), 0, vec3_mad(vertex.p, 1.0f + 3.0f * u[5], w));
-        ck_assert(shift_aim(&view, kept.paths, kept.vertices, 0, d, i, &vertex, &numbers));
+        ck_assert(shift_guide(&view, kept.paths, kept.vertices, 0, d, i, &vertex, &numbers));
         for (uint k = 0; k < 2; ++k)
             TEST_TRUE(state_load(kept.paths, 1, shift_number(&scene.frame, d, i, k), 0) == numbers.x[1 + k]);
         TEST_TRUE(walk_scatter(&view, &vertex, SIDE_CAMERA, 1, 1.0f, 0.0f, numbers, &step));
@@ -252,7 +255,7 @@ START_TEST(test_kept_slanted)
     state_store_vec3(kept.vertices, 1, point, 0, vec3(0.0f, 0.0f, 1.0f + away));
     kept.vertices[point + SHIFT_INSTANCE] = 7;
     kept.vertices[point + SHIFT_PRIMITIVE] = 9;
-    ck_assert(kept_meet(&kept, 2));
+    ck_assert(kept_hit(&kept, 2));
 }
 END_TEST
 

@@ -198,7 +198,7 @@ likely() {
     shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_bidirectional:walks test_analytic ;;
     shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
-    host/*) echo test_blend test_pool test_layers ;;
+    host/*) echo test_combination test_pool test_layers ;;
     esac
 }
 others() {
@@ -206,8 +206,8 @@ others() {
     shared/path/mis.h | shared/path/strategy.h | shared/light/*.h | shared/camera/camera.h)
         echo test_bidirectional test_numerics test_render test_scenes test_mmlt command/test_cli.sh ;;
     shared/camera/film_sum.h)
-        echo test_blend test_render test_group test_verify command/test_cli.sh test_numerics test_bidirectional test_mmlt ;;
-    *) echo test_mmlt test_layers test_aim test_numerics test_scenes command/test_cli.sh ;;
+        echo test_combination test_render test_group test_verify command/test_cli.sh test_numerics test_bidirectional test_mmlt ;;
+    *) echo test_mmlt test_layers test_light_guide test_numerics test_scenes command/test_cli.sh ;;
     esac
 }
 # Those of `make check-long` that take more samples or have more cases there.

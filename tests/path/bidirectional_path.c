@@ -12,8 +12,8 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
     return !path->delta[t - 1] && !path->delta[t];
 }
 
-/* Compact densities give the same weights: the last two vertices of a side have their own density, those before the ratio of
- * both. Left out where a ratio is not a normal number. */
+/* Compact densities give the same weights: the last two vertices of a side have their own density, those before the
+ * ratio of both. Left out where a ratio is not a normal number. */
 static void compact_check(const DensityView *full, uint set, uint exponent, uint s, uint t, const StrategyEnds *ends,
                           StrategyWeights expected)
 {
@@ -40,11 +40,11 @@ static void compact_check(const DensityView *full, uint set, uint exponent, uint
             return;
     const StrategyWeights got = strategy_weights(set, exponent, s, t, &view, ends);
     TEST_NEAR(got.own, expected.own, 1e-5);
-    TEST_NEAR(got.plain, expected.plain, 1e-5);
+    TEST_NEAR(got.path_tracing, expected.path_tracing, 1e-5);
 }
 
-/* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left out
- * of the buffer: NaN there must not matter. */
+/* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left
+ * out of the buffer: NaN there must not matter. */
 StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent, uint s)
 {
     uint k = path->k, t = k + 1 - s;

@@ -114,8 +114,8 @@ END_TEST
 
 /* ---- the corner of one degree ------------------------------------------------------------------------------------ */
 
-/* Two planes that meet at one degree, lit from the open side: connections deep inside are arbitrarily close. No pixel is
- * brighter than 100 times the median, over pictures of 16 samples. */
+/* Two planes that meet at one degree, lit from the open side: connections deep inside are arbitrarily close. No pixel
+ * is brighter than 100 times the median, over pictures of 16 samples. */
 START_TEST(test_corner)
 {
     enum { PIXELS = 16 * 16 };

@@ -1,5 +1,5 @@
-/* Every strategy alone and unweighted against path tracing's paths of the same length (Veach 1997, section 10.2: each is
- * an unbiased estimator of what it can make), and all together, or IBPT's three, weighted, against path tracing. */
+/* Every strategy alone and unweighted against path tracing's paths of the same length (Veach 1997, section 10.2: each
+ * is an unbiased estimator of what it can make), and all together, or IBPT's three, weighted, against path tracing. */
 #include "support/bidirectional.h"
 
 /* ---- one strategy ------------------------------------------------------------------------------------------------ */

@@ -1,5 +1,5 @@
-/* Weights on real walks: paths that BDPT's kernels have made, each with the weight that they gave it, against the weights
- * of all its strategies from densities that are computed here, from the path's vertices alone. */
+/* Weights on real walks: paths that BDPT's kernels have made, each with the weight that they gave it, against the
+ * weights of all its strategies from densities that are computed here, from the path's vertices alone. */
 #include "path/bidirectional_path.h"
 #include "support/bidirectional.h"
 #include "support/verify_fixture.h"
@@ -121,8 +121,8 @@ static float light_point(const Walks *walks, const RealPath *path)
                                     : light_emit_pdf_p(view, path->light, &path->end));
 }
 
-/* All densities from the vertices. Those of delta lobes are no densities but ratios: `path->densities` has them from the
- * walk that made them, and keeps them. */
+/* All densities from the vertices. Those of delta lobes are no densities but ratios: `path->densities` has them from
+ * the walk that made them, and keeps them. */
 static void path_densities(const Walks *walks, RealPath *path)
 {
     TestPath *d = &path->densities;
@@ -150,7 +150,8 @@ static void path_densities(const Walks *walks, RealPath *path)
 
 /* ---- paths from the kernels' state ------------------------------------------------------------------------------- */
 
-/* Where the camera's ray that made z_1 = p began, `back` from it: a point of the lens, or of the film of an orthographic camera. */
+/* Where the camera's ray that made z_1 = p began, `back` from it: a point of the lens, or of the film of an
+ * orthographic camera. */
 static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
 {
     const Camera *camera = &walks->frame.camera;
@@ -158,7 +159,8 @@ static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
     return vec3_mad(p, -depth / affine_vector(camera->camera_from_world, back).z, back);
 }
 
-/* A walk's part of the path of (s, t), and the densities around its delta vertices, all but the ends of the connection. */
+/* A walk's part of the path of (s, t), and the densities around its delta vertices, all but the ends of the
+ * connection. */
 static void camera_part(const Walks *walks, uint item, uint s, uint t, RealPath *path)
 {
     const DensityView view =
@@ -281,8 +283,9 @@ typedef struct Tally {
     double worst;
 } Tally;
 
-/* A ray leaves its surface a little beside the vertex (geometry/ray.h). Kernels take the one way's density along the ray and the
- * other's between the vertices, and these directions, hence cosines, hence densities differ by this part. */
+/* A ray leaves its surface a little beside the vertex (geometry/ray.h). Kernels take the one way's density along the
+ * ray and the other's between the vertices, and these directions, hence cosines, hence densities differ by this
+ * part. */
 static double path_rounding(const RealPath *path)
 {
     double sum = 0.0;

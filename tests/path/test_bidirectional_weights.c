@@ -18,14 +18,14 @@ static long double exact_density(const TestPath *path, uint s)
 /* Returns the largest error of a weight. */
 static double path_check(const TestPath *path, uint set, uint exponent)
 {
-    long double sum = 0.0L, plain = 0.0L;
+    long double sum = 0.0L, path_tracing = 0.0L;
     double weights = 0.0, worst = 0.0;
     bool any = false;
     for (uint s = 0; s <= path->k; ++s)
         if (test_path_possible(path, set, s)) {
             sum += powl(exact_density(path, s), exponent);
             if (s < 2)
-                plain = sum;
+                path_tracing = sum;
         }
     for (uint s = 0; s <= path->k; ++s) {
         if (!test_path_possible(path, set, s))
@@ -34,7 +34,7 @@ static double path_check(const TestPath *path, uint set, uint exponent)
         const StrategyWeights both = test_path_weights(path, set, exponent, s);
         double weight = (double)both.own;
         TEST_NEAR(weight, expected, 1e-5); /* the requirement is 1e-4 */
-        TEST_NEAR(both.plain, plain / sum, 1e-5); /* whoever made the path */
+        TEST_NEAR(both.path_tracing, path_tracing / sum, 1e-5); /* whoever made the path */
         worst = fmax(worst, fabs(weight - (double)expected));
         weights += weight;
         any = true;

@@ -198,8 +198,8 @@ static void emission_not_negative(const char *text)
     scene_destroy(&scene);
 }
 
-/* Chains go after luminance (chain/mutation.h): no light may have a channel below 0. Spectra whose colour is outside of the gamut
- * of sRGB lose what is below 0, numbers below 0 are refused (tests/bad has those of a point light). */
+/* Chains go after luminance (chain/mutation.h): no light may have a channel below 0. Spectra whose colour is outside of
+ * the gamut of sRGB lose what is below 0, numbers below 0 are refused (tests/bad has those of a point light). */
 START_TEST(no_light_is_negative)
 {
     static const char *const REFUSED[] = {

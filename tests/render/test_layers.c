@@ -133,8 +133,8 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Layers by depth add up to indirect light, but for the rounding of single sums; of chains alone, too. The picture is the one
- * without them, but for the rounding of paths that bring light of several depths. */
+/* Layers by depth add up to indirect light, but for the rounding of single sums; of chains alone, too. The picture is
+ * the one without them, but for the rounding of paths that bring light of several depths. */
 START_TEST(test_by_depth)
 {
     char path[512];
@@ -147,7 +147,7 @@ START_TEST(test_by_depth)
                          .samples = 200,
                          .max_depth = 6,
                          .integrator = integrator_mmlt(),
-                         .chains = {.unblended = _i == 1}};
+                         .chains = {.chains_only = _i == 1}};
     snprintf(path, sizeof path, "%s/scenes/glossy.pbrt", test_source_folder());
     fixture_render(&setup, &plain);
     setup.layers = &layers;

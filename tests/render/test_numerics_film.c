@@ -1,5 +1,5 @@
-/* Borders under every filter, lights of any brightness, tangent frames without texture coordinates, shapes of no area, and
- * numbers that are none. */
+/* Borders under every filter, lights of any brightness, tangent frames without texture coordinates, shapes of no area,
+ * and numbers that are none. */
 #include "support/numerics.h"
 
 #include "backend_cpu.h"
@@ -9,7 +9,8 @@
 
 /* ---- borders ----------------------------------------------------------------------------------------------------- */
 
-/* Inside a sphere of emission 0.5 and albedo 0.5: every pixel has 0.5 + 0.25 + ... for as many segments as there are. */
+/* Inside a sphere of emission 0.5 and albedo 0.5: every pixel has 0.5 + 0.25 + ... for as many segments as there
+ * are. */
 #define CONSTANT_SCENE                                                                                                 \
     "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 10\nPixelFilter %s\n"                             \
     "LookAt 0.3 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 60\nWorldBegin\n"                              \
@@ -156,8 +157,8 @@ START_TEST(test_quantum_of_pilot)
 }
 END_TEST
 
-/* A unit so small that sums of chains, pools and path tracing are full: nothing wraps, every pixel says so, and all threads
- * give the same. */
+/* A unit so small that sums of chains, pools and path tracing are full: nothing wraps, every pixel says so, and all
+ * threads give the same. */
 START_TEST(test_full_chains)
 {
     const Film fine = {.quantum_exponent = -80};

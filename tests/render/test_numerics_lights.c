@@ -59,9 +59,9 @@ END_TEST
                 BD_FLOOR "Material \"dielectric\" \"float eta\" 1.33\n"                                                \
             "Shape \"bilinearmesh\" \"point3 P\" [ -40 0 -40  40 0 -40  -40 0 40  40 0 40 ]\n"
 
-/* The floor of a pool under a sun that is a point: through the water to the floor and out again, no strategy can connect
- * anything and nothing can meet the sun. The picture is black to the last bit, and not a NaN. That the log says so is
- * command/test_cli.sh's to check. */
+/* The floor of a pool under a sun that is a point: through the water to the floor and out again, no strategy can
+ * connect anything and nothing can meet the sun. The picture is black to the last bit, and not a NaN. That the log says
+ * so is command/test_cli.sh's to check. */
 START_TEST(test_nothing_can_make)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};

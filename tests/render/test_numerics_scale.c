@@ -146,8 +146,8 @@ START_TEST(test_moved)
 }
 END_TEST
 
-/* A lamp that hangs 0.005 under a ceiling, less than floats resolve 10^5 away: points are moved before they are rounded.
- * What the file has are the numbers of a room at the origin, and a transform. */
+/* A lamp that hangs 0.005 under a ceiling, less than floats resolve 10^5 away: points are moved before they are
+ * rounded. What the file has are the numbers of a room at the origin, and a transform. */
 static const char *ceiling_text(double shift)
 {
     static char text[2048];

@@ -17,9 +17,9 @@ typedef struct ReferenceCase {
 #define GRAY(folder) folder "/gray.pbrt", folder "/gray_pbrt-v4.exr"
 #define CORNELL_COLOR "cornell-box/scene-v4.pbrt", "cornell-box/TungstenRender.exr"
 
-/* The noise of our own side is part of the difference, and every figure is the mean over 256 blocks, so it hardly changes
- * from seed to seed. At these samples and effort 1, two seeds differ in the same measure, which is sqrt(2) times the
- * noise, by about
+/* The noise of our own side is part of the difference, and every figure is the mean over 256 blocks, so it hardly
+ * changes from seed to seed. At these samples and effort 1, two seeds differ in the same measure, which is sqrt(2)
+ * times the noise, by about
  *   pt    0.8 % (cornell-box), 1.6 % (veach-mis), 1.1 % (coffee)
  *   ibpt  0.7 % (cornell-box), 1.5 % (veach-mis), 2.1 % (veach-bidir), 1.4 % (cornell-box in colour)
  *   bdpt  0.75 %, 2.0 %, 1.7 %, 1.7 %

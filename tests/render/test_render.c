@@ -48,8 +48,9 @@ START_TEST(test_pixel_order)
 }
 END_TEST
 
-/* A pool that visits cells differently often: in one round each of a pixel's visits is another sample, there are as many as its
- * rarity says, and the next round has other samples. Pictures with more and with fewer pixels than cells, and crops. */
+/* A pool that visits cells differently often: in one round each of a pixel's visits is another sample, there are as
+ * many as its density_ratio says, and the next round has other samples. Pictures with more and with fewer pixels than
+ * cells, and crops. */
 START_TEST(test_visits)
 {
     static const uint CROPS[][4] = {{0, 0, 1, 1}, {0, 0, 5, 90}, {3, 2, 36, 40}, {10, 0, 74, 64}, {1, 7, 200, 101}};
@@ -86,7 +87,7 @@ START_TEST(test_visits)
     }
     for (uint i = 0; i < frame.width * frame.height; ++i)
         if (counts[i] > 0)
-            ck_assert_float_eq_tol(pool_rarity(&frame, i) * (float)counts[i], (float)all / (float)pixels,
+            ck_assert_float_eq_tol(pool_density_ratio(&frame, i) * (float)counts[i], (float)all / (float)pixels,
                                    1e-5f * (float)all / (float)pixels);
     free(seen);
     free(counts);

@@ -9,8 +9,8 @@
 enum { INTEGRATORS = 4, SIDE = 32, GRID = 4 };
 
 /* Median relative difference of the means of GRID x GRID blocks that noise explains, of pt, ibpt, bdpt and mmlt with
- * SAMPLES: the largest of eight seeds (1 to 8) and half as much again, but less than what a black picture has. The median,
- * because single paths that are found once in a million samples make a block or two many times too bright. */
+ * SAMPLES: the largest of eight seeds (1 to 8) and half as much again, but less than what a black picture has. The
+ * median, because single paths that are found once in a million samples make a block or two many times too bright. */
 static const struct {
     const char *name;
     double reference; /* mean error of the reference's blocks (docs/SCENES.md); for cornell's pixel filter, 0.01 */

@@ -21,8 +21,8 @@
     "AttributeBegin\nMaterial \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"                                       \
     "Shape \"bilinearmesh\" \"point3 P\" [ -50 -50 0  50 -50 0  -50 50 0  50 50 0 ]\nAttributeEnd\n"
 
-/* The square [0,1]^2 of the plane z = 0 seen from above on a film of %d x %d, x to the right and y up, by rays through the
- * middles of the pixels. Under the light from overhead the radiance is the reflectance. */
+/* The square [0,1]^2 of the plane z = 0 seen from above on a film of %d x %d, x to the right and y up, by rays through
+ * the middles of the pixels. Under the light from overhead the radiance is the reflectance. */
 #define ANALYTIC_FROM_ABOVE                                                                                            \
     "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"                                             \
     "PixelFilter \"box\" \"float xradius\" 1e-4 \"float yradius\" 1e-4\n"                                              \

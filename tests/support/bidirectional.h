@@ -76,7 +76,8 @@ void groups_block(const PictureGroups *picture, int x0, int y0, int x1, int y1, 
 /* Two-sided p-value of Welch's t-test for equal means of that block. */
 double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, int y0, int x1, int y1);
 
-/* All tests of a run fail together with probability 0.01 when nothing is wrong: fewer than 40,000 values are compared. */
+/* All tests of a run fail together with probability 0.01 when nothing is wrong: fewer than 40,000 values are
+ * compared. */
 #define P_LIMIT 2.5e-7
 
 /* Mean square distance of one group's pixels from the mean of another picture, less the variance of that. */

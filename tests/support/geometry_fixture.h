@@ -51,14 +51,15 @@ typedef struct TestScene {
 void test_scene_init(TestScene *test);
 void test_scene_mesh(TestScene *test, const TestMesh *mesh, uint flags);
 void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const double world_from_object[16]);
-/* Whole and cut spheres and disks, `count` at random places in the unit ball; instances of an object in a larger one, their
- * scales below `size`. Some are mirrored, all stretched. */
+/* Whole and cut spheres and disks, `count` at random places in the unit ball; instances of an object in a larger one,
+ * their scales below `size`. Some are mirrored, all stretched. */
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count);
 void test_scene_instances(TestScene *test, TestRandom *random, uint object, uint count, float size);
 void test_scene_finish(TestScene *test);
 void test_scene_destroy(TestScene *test);
 
-/* 4x4, row-major. Rotation about a random axis times scales in [low, high] (negative with even odds when `mirror`), then a shift. */
+/* 4x4, row-major. Rotation about a random axis times scales in [low, high] (negative with even odds when `mirror`),
+ * then a shift. */
 void matrix_random(TestRandom *random, float low, float high, bool mirror, Vec3 shift, double out[16]);
 
 /* The closest hit by asking every primitive of the world and of every instance. */

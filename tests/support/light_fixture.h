@@ -146,8 +146,8 @@ static inline Vec2 fixture_stratified(uint stream, uint i, uint n)
     return vec2(((float)(i % n) + r.x) / (float)n, ((float)(i / n) + r.y) / (float)n);
 }
 
-/* Irradiance at `ref` with normal n from one light, by n_samples x n_samples stratified samples of light_sample; *error:
- * one standard error as if they were independent, an upper bound. */
+/* Irradiance at `ref` with normal n from one light, by n_samples x n_samples stratified samples of light_sample;
+ * *error: one standard error as if they were independent, an upper bound. */
 static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 ref, Vec3 n, uint stream,
                                         uint n_samples, double *error)
 {

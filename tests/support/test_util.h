@@ -51,8 +51,8 @@ static inline unsigned test_effort(void)
     return effort > 0 ? (unsigned)effort : 1;
 }
 
-/* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line on
- * standard error, when it is not there. */
+/* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line
+ * on standard error, when it is not there. */
 static inline bool test_public_scene(const char *name, char *path, size_t size)
 {
     const char *folder = getenv("SCENES");

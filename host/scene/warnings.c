@@ -1,4 +1,4 @@
-#include "scene/advice.h"
+#include "scene/warnings.h"
 
 #include "backend/ray_reach.h"
 #include "base/log.h"

@@ -1,8 +1,8 @@
-/* Aims: which lights a scene has for them, and that numbers of 0, 0 draw the direction to one wherever a surface is and however
- * it is turned, while each pair of numbers stays as probable as any other. */
+/* Light guides: which lights a scene has for them, and that numbers of 0, 0 draw the direction to one wherever a
+ * surface is and however it is turned, while each pair of numbers stays as probable as any other. */
 #include "math/test_math.h"
 
-#include "light/aim.h"
+#include "light/light_guide.h"
 #include "math/rng.h"
 #include "support/render_fixture.h"
 
@@ -11,19 +11,19 @@
 #define HEAD "Film \"rgb\" \"integer xresolution\" [4] \"integer yresolution\" [4] Camera \"perspective\" WorldBegin "
 #define LAMP(L) "AreaLightSource \"diffuse\" \"rgb L\" [" L "] Shape \"sphere\" \"float radius\" [0.1] "
 
-static void aims_of(const char *text, Scene *scene)
+static void guides_of(const char *text, Scene *scene)
 {
     fixture_scene(&(RenderSetup){.text = text}, scene);
 }
 
-/* Whether aim i is there, to within 1e-4 in every coordinate. */
-static void aim_require(const Scene *scene, uint i, Vec3 place, float near)
+/* Whether light guide i is there, to within 1e-4 in every coordinate. */
+static void guide_require(const Scene *scene, uint i, Vec3 place, float near)
 {
-    Vec3 aim = scene->frame.aims[i];
-    ck_assert_uint_lt(i, scene->frame.aim_count);
-    ck_assert_msg(vec3_length(vec3_sub(aim, place)) < 1e-4f, "aim %u is at (%g, %g, %g)", i, (double)aim.x,
-                  (double)aim.y, (double)aim.z);
-    ck_assert_float_eq(scene->frame.aims_near[i], near);
+    Vec3 guide = scene->frame.guides[i];
+    ck_assert_uint_lt(i, scene->frame.guide_count);
+    ck_assert_msg(vec3_length(vec3_sub(guide, place)) < 1e-4f, "guide %u is at (%g, %g, %g)", i, (double)guide.x,
+                  (double)guide.y, (double)guide.z);
+    ck_assert_float_eq(scene->frame.guides_near[i], near);
 }
 
 /* ---- which ------------------------------------------------------------------------------------------------------- */
@@ -31,17 +31,18 @@ static void aim_require(const Scene *scene, uint i, Vec3 place, float near)
 START_TEST(test_shapes)
 {
     Scene scene;
-    /* Two triangles of a mesh, the first of three times the area of the second, are one aim at the mean of their boxes. */
-    aims_of(HEAD "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
-                 "Shape \"trianglemesh\" \"point3 P\" [0 0 0  3 0 0  0 2 0  0 0 4  1 0 4  0 2 4] "
-                 "\"integer indices\" [0 1 2 3 4 5] AttributeEnd "
-                 "AttributeBegin Translate 5 6 7 " LAMP("100 100 100") "AttributeEnd",
-            &scene);
-    ck_assert_uint_eq(scene.frame.aim_count, 2);
-    aim_require(&scene, 0, vec3(5.0f, 6.0f, 7.0f), 1.0f);
-    aim_require(&scene, 1, vec3(0.75f * 1.5f + 0.25f * 0.5f, 1.0f, 1.0f), 1.0f);
+    /* Two triangles of a mesh, the first of three times the area of the second, are one light guide at the mean of
+     * their boxes. */
+    guides_of(HEAD "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
+                   "Shape \"trianglemesh\" \"point3 P\" [0 0 0  3 0 0  0 2 0  0 0 4  1 0 4  0 2 4] "
+                   "\"integer indices\" [0 1 2 3 4 5] AttributeEnd "
+                   "AttributeBegin Translate 5 6 7 " LAMP("100 100 100") "AttributeEnd",
+              &scene);
+    ck_assert_uint_eq(scene.frame.guide_count, 2);
+    guide_require(&scene, 0, vec3(5.0f, 6.0f, 7.0f), 1.0f);
+    guide_require(&scene, 1, vec3(0.75f * 1.5f + 0.25f * 0.5f, 1.0f, 1.0f), 1.0f);
     double sphere = 100.0 * 4.0 * M_PI * 0.01, mesh = 4.0;
-    ck_assert_double_eq_tol((double)(scene.frame.aims_power[0] / scene.frame.aims_power[1]), sphere / mesh,
+    ck_assert_double_eq_tol((double)(scene.frame.guides_power[0] / scene.frame.guides_power[1]), sphere / mesh,
                             1e-4 * sphere / mesh);
     scene_destroy(&scene);
 }
@@ -50,12 +51,13 @@ END_TEST
 START_TEST(test_none)
 {
     Scene scene;
-    aims_of(HEAD "LightSource \"point\" \"point3 from\" [1 2 3] LightSource \"infinite\" \"rgb L\" [1 1 1] "
-                 "LightSource \"distant\" Shape \"sphere\"",
-            &scene);
-    ck_assert_uint_eq(scene.frame.aim_count, 0);
+    guides_of(HEAD "LightSource \"point\" \"point3 from\" [1 2 3] LightSource \"infinite\" \"rgb L\" [1 1 1] "
+                   "LightSource \"distant\" Shape \"sphere\"",
+              &scene);
+    ck_assert_uint_eq(scene.frame.guide_count, 0);
     const Random4 random = {{1, 2, 3, 4}};
-    Random4 same = aim_numbers(&scene.frame, vec3(0.5f, 0.0f, 0.0f), frame_from_normal(vec3(0.0f, 1.0f, 0.0f)), random);
+    Random4 same =
+        light_guide_numbers(&scene.frame, vec3(0.5f, 0.0f, 0.0f), frame_from_normal(vec3(0.0f, 1.0f, 0.0f)), random);
     ck_assert_mem_eq(&random, &same, sizeof same);
     scene_destroy(&scene);
 }
@@ -64,32 +66,32 @@ END_TEST
 /* Of more lights than there is room for the strongest, the strongest first. */
 START_TEST(test_strongest)
 {
-    enum { LIGHTS = 3 * AIMS_MAX };
+    enum { LIGHTS = 3 * LIGHT_GUIDES_MAX };
     char text[LIGHTS * 160 + sizeof HEAD] = HEAD;
     for (int i = 0; i < LIGHTS; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "AttributeBegin Translate %d 0 0 " LAMP("%d 1 1") "AttributeEnd ", i, 1 + 7 * i % LIGHTS);
     Scene scene;
-    aims_of(text, &scene);
-    ck_assert_uint_eq(scene.frame.aim_count, AIMS_MAX);
-    for (uint i = 0; i < AIMS_MAX; ++i)
+    guides_of(text, &scene);
+    ck_assert_uint_eq(scene.frame.guide_count, LIGHT_GUIDES_MAX);
+    for (uint i = 0; i < LIGHT_GUIDES_MAX; ++i)
         for (int k = 0; k < LIGHTS; ++k)
             if (7 * k % LIGHTS == LIGHTS - 1 - (int)i)
-                aim_require(&scene, i, vec3((float)k, 0.0f, 0.0f), 1.0f);
+                guide_require(&scene, i, vec3((float)k, 0.0f, 0.0f), 1.0f);
     scene_destroy(&scene);
 }
 END_TEST
 
-/* The sun of scenes/windows.pbrt, which is no light that a shape has; the sky has no place to aim at. */
+/* The sun of scenes/windows.pbrt, which is no light that a shape has; the sky has no place to light guide at. */
 START_TEST(test_sun)
 {
     Scene scene;
     char path[4096];
     snprintf(path, sizeof path, "%s/scenes/windows.pbrt", test_source_folder());
     fixture_scene(&(RenderSetup){.path = path}, &scene);
-    ck_assert_uint_eq(scene.frame.aim_count, 1);
-    ck_assert_float_eq(scene.frame.aims_near[0], 0.0f);
-    Vec3 sun = scene.frame.aims[0];
+    ck_assert_uint_eq(scene.frame.guide_count, 1);
+    ck_assert_float_eq(scene.frame.guides_near[0], 0.0f);
+    Vec3 sun = scene.frame.guides[0];
     ck_assert_float_eq_tol(vec3_length(sun), 1.0f, 1e-5f);
     ck_assert_float_eq_tol(sun.y, sinf(23.0f * (float)M_PI / 180.0f), 0.01f); /* 23 degrees high */
     ck_assert_float_lt(sun.x, -0.5f); /* behind the left wall */
@@ -99,42 +101,42 @@ END_TEST
 
 /* ---- where to ------------------------------------------------------------------------------------------------------ */
 
-/* Two aims and a direction. */
-static FrameParams three_aims(void)
+/* Two light guides and a direction. */
+static FrameParams three_guides(void)
 {
-    FrameParams frame = {.aim_count = 3,
-                         .aims = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
-                         .aims_near = {1.0f, 1.0f, 0.0f},
-                         .aims_power = {1.0f, 4.0f, 0.01f}};
+    FrameParams frame = {.guide_count = 3,
+                         .guides = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
+                         .guides_near = {1.0f, 1.0f, 0.0f},
+                         .guides_power = {1.0f, 4.0f, 0.01f}};
     return frame;
 }
 
 /* The strongest from here, whatever the order. */
 START_TEST(test_nearest)
 {
-    const FrameParams frame = three_aims();
-    Vec3 d = aim_from(&frame, vec3(0.0f, 0.0f, 0.0f));
+    const FrameParams frame = three_guides();
+    Vec3 d = light_guide_from(&frame, vec3(0.0f, 0.0f, 0.0f));
     ck_assert_float_eq(d.y, 3.0f);
     ck_assert_float_eq(d.x, 0.0f);
-    d = aim_from(&frame, vec3(4.0f, 3.0f, 0.0f)); /* 1 / 16 < 4 / 36 */
+    d = light_guide_from(&frame, vec3(4.0f, 3.0f, 0.0f)); /* 1 / 16 < 4 / 36 */
     ck_assert_float_eq(d.x, 6.0f);
-    d = aim_from(&frame, vec3(0.0f, -40.0f, 0.0f));
+    d = light_guide_from(&frame, vec3(0.0f, -40.0f, 0.0f));
     ck_assert_float_eq(d.z, 1.0f);
-    d = aim_from(&frame, vec3(0.0f, 3.0f, 0.0f)); /* the aim itself: something finite */
+    d = light_guide_from(&frame, vec3(0.0f, 3.0f, 0.0f)); /* the light guide itself: something finite */
     ck_assert(vec3_finite(d));
 }
 END_TEST
 
 START_TEST(test_zero_is_the_light)
 {
-    const FrameParams frame = three_aims();
+    const FrameParams frame = three_guides();
     const Random4 zero = {{5, 0, 0, 6}};
     uint64_t state = 3;
     for (int i = 0; i < 100000; ++i) {
         Vec3 p = vec3(20.0f * test_uniform(&state) - 5.0f, 8.0f * test_uniform(&state) - 4.0f, test_uniform(&state));
         Frame shading = frame_from_normal(warp_sphere(vec2(test_uniform(&state), test_uniform(&state))));
-        Vec3 to = frame_to_local(shading, vec3_normalize(aim_from(&frame, p)));
-        Random4 random = aim_numbers(&frame, p, shading, zero);
+        Vec3 to = frame_to_local(shading, vec3_normalize(light_guide_from(&frame, p)));
+        Random4 random = light_guide_numbers(&frame, p, shading, zero);
         ck_assert(random.x[0] == 5 && random.x[3] == 6);
         Vec3 w = warp_cosine_hemisphere(vec2(random_float(random.x[1]), random_float(random.x[2])));
         /* A light behind is mirrored. z is the root of a difference: as good as its square. */
@@ -148,12 +150,12 @@ END_TEST
 /* Numbers are shifted modulo 2^32 by what depends on the place alone. */
 START_TEST(test_shift)
 {
-    const FrameParams frame = three_aims();
+    const FrameParams frame = three_guides();
     const Vec3 p = vec3(1.0f, -1.0f, 0.5f);
     const Frame shading = frame_from_normal(vec3_normalize(vec3(0.3f, 0.9f, -0.2f)));
-    const Random4 zero = aim_numbers(&frame, p, shading, (Random4){{0, 0, 0, 0}});
+    const Random4 zero = light_guide_numbers(&frame, p, shading, (Random4){{0, 0, 0, 0}});
     for (uint i = 0; i < 10000; ++i) {
-        Random4 random = random_four(i, 0, 0, 0, 1, 2), shifted = aim_numbers(&frame, p, shading, random);
+        Random4 random = random_four(i, 0, 0, 0, 1, 2), shifted = light_guide_numbers(&frame, p, shading, random);
         TEST_TRUE(shifted.x[1] - random.x[1] == zero.x[1] && shifted.x[2] - random.x[2] == zero.x[2]);
     }
 }
@@ -161,34 +163,34 @@ END_TEST
 
 /* ---- which integrators --------------------------------------------------------------------------------------------- */
 
-/* Chains have aims, unless told not to; others do not, and the paper's scheme does not. */
+/* Chains have light guides, unless told not to; others do not, and the paper's scheme does not. */
 START_TEST(test_users)
 {
     Scene scene;
     FrameParams frame;
-    aims_of(HEAD LAMP("1 1 1"), &scene);
+    guides_of(HEAD LAMP("1 1 1"), &scene);
     RenderOptions options = {.max_depth = 5};
     const Integrator *const others[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt()};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         render_frame(others[i], &scene, &options, &frame);
-        ck_assert_uint_eq(frame.aim_count, 0);
+        ck_assert_uint_eq(frame.guide_count, 0);
     }
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.aim_count, 1);
-    options.chains.aimless = true;
+    ck_assert_uint_eq(frame.guide_count, 1);
+    options.chains.unguided = true;
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.aim_count, 0);
+    ck_assert_uint_eq(frame.guide_count, 0);
     options.chains = (ChainOptions){.paper = true};
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.aim_count, 0);
+    ck_assert_uint_eq(frame.guide_count, 0);
     scene_destroy(&scene);
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("aim");
-    TCase *tcase = tcase_create("aim");
+    Suite *suite = suite_create("light_guide");
+    TCase *tcase = tcase_create("light_guide");
     tcase_add_test(tcase, test_shapes);
     tcase_add_test(tcase, test_none);
     tcase_add_test(tcase, test_strongest);

@@ -1,43 +1,44 @@
-#include "scene/aim_setup.h"
+#include "scene/light_guide_setup.h"
 
 #include "geometry/box.h"
 #include "layout/distribution.h"
 #include "math/warp.h"
 
-/* A light's shape has several primitives, which are one aim: the mean of their boxes' centres by what they send. */
-typedef struct Aim {
+/* A light's shape has several primitives, which are one light guide: the mean of their boxes' centres by what they
+ * send. */
+typedef struct LightGuide {
     double place[3];
     double near; /* 1 of a position, 0 of a direction */
-    double power; /* as FrameParams.aims_power */
-} Aim;
+    double power; /* as FrameParams.guides_power */
+} LightGuide;
 
 /* Takes its place among the strongest, the strongest first. */
-static void aim_add(FrameParams *frame, const Aim *aim)
+static void guide_add(FrameParams *frame, const LightGuide *guide)
 {
-    uint place = frame->aim_count;
-    float power = (float)aim->power;
-    while (place > 0 && frame->aims_power[place - 1] < power)
+    uint place = frame->guide_count;
+    float power = (float)guide->power;
+    while (place > 0 && frame->guides_power[place - 1] < power)
         --place;
-    if (!(power > 0.0f) || place == AIMS_MAX)
+    if (!(power > 0.0f) || place == LIGHT_GUIDES_MAX)
         return;
-    frame->aim_count += frame->aim_count < AIMS_MAX;
-    for (uint i = frame->aim_count - 1; i > place; --i) {
-        frame->aims[i] = frame->aims[i - 1];
-        frame->aims_near[i] = frame->aims_near[i - 1];
-        frame->aims_power[i] = frame->aims_power[i - 1];
+    frame->guide_count += frame->guide_count < LIGHT_GUIDES_MAX;
+    for (uint i = frame->guide_count - 1; i > place; --i) {
+        frame->guides[i] = frame->guides[i - 1];
+        frame->guides_near[i] = frame->guides_near[i - 1];
+        frame->guides_power[i] = frame->guides_power[i - 1];
     }
-    frame->aims[place] = vec3((float)aim->place[0], (float)aim->place[1], (float)aim->place[2]);
-    frame->aims_near[place] = (float)aim->near;
-    frame->aims_power[place] = power;
+    frame->guides[place] = vec3((float)guide->place[0], (float)guide->place[1], (float)guide->place[2]);
+    frame->guides_near[place] = (float)guide->near;
+    frame->guides_power[place] = power;
 }
 
 /* The lights of the shape that light `first` is of. Returns the first light that is not. */
-static size_t shape_aim(const Scene *scene, const SceneView *view, size_t first, Aim *aim)
+static size_t shape_guide(const Scene *scene, const SceneView *view, size_t first, LightGuide *guide)
 {
     uint shape = view->primitives[view->lights[first].primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK;
     double sum[3] = {0.0, 0.0, 0.0};
     size_t i = first;
-    *aim = (Aim){.near = 1.0};
+    *guide = (LightGuide){.near = 1.0};
     for (; i < scene->lights.count && view->lights[i].kind == LIGHT_AREA; ++i) {
         uint primitive = view->lights[i].primitive;
         double power = (double)view->lights[i].select_pdf;
@@ -46,15 +47,15 @@ static size_t shape_aim(const Scene *scene, const SceneView *view, size_t first,
         Box box = primitive_box(view, primitive);
         for (int k = 0; k < 3; ++k)
             sum[k] += power * 0.5 * ((double)box.low[k] + (double)box.high[k]);
-        aim->power += power;
+        guide->power += power;
     }
-    for (int k = 0; k < 3 && aim->power > 0.0; ++k)
-        aim->place[k] = sum[k] / aim->power;
+    for (int k = 0; k < 3 && guide->power > 0.0; ++k)
+        guide->place[k] = sum[k] / guide->power;
     return i;
 }
 
 /* The brightest place of an environment's image. radius: of the scene; its power has passed a disk of that. */
-static Aim environment_aim(const SceneView *view, const Light *light, double radius)
+static LightGuide environment_guide(const SceneView *view, const Light *light, double radius)
 {
     Distribution2D d = view->distributions2d[light->distribution];
     bool equirectangular = (light->flags & LIGHT_EQUIRECTANGULAR) != 0;
@@ -73,11 +74,11 @@ static Aim environment_aim(const SceneView *view, const Light *light, double rad
     }
     Vec3 w = vec3_normalize(affine_vector(light->world_from_light,
                                           equirectangular ? equirectangular_to_sphere(uv) : octahedral_to_sphere(uv)));
-    return (Aim){.place = {(double)w.x, (double)w.y, (double)w.z},
-                 .power = (double)light->select_pdf / (4.0 * radius * radius)};
+    return (LightGuide){.place = {(double)w.x, (double)w.y, (double)w.z},
+                        .power = (double)light->select_pdf / (4.0 * radius * radius)};
 }
 
-void aim_setup(Scene *scene)
+void light_guide_setup(Scene *scene)
 {
     SceneView view = {.positions = scene->positions.data,
                       .primitives = scene->primitives.data,
@@ -87,15 +88,15 @@ void aim_setup(Scene *scene)
                       .distributions2d = scene->distributions2d.data,
                       .lookup = scene->lookup.data};
     double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
-    scene->frame.aim_count = 0;
+    scene->frame.guide_count = 0;
     for (size_t i = 0, next; i < scene->lights.count; i = next) {
         const Light *light = &view.lights[i];
-        Aim aim = {.power = 0.0};
+        LightGuide guide = {.power = 0.0};
         next = i + 1;
         if (light->kind == LIGHT_AREA)
-            next = shape_aim(scene, &view, i, &aim);
+            next = shape_guide(scene, &view, i, &guide);
         else if (light->kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)
-            aim = environment_aim(&view, light, radius);
-        aim_add(&scene->frame, &aim);
+            guide = environment_guide(&view, light, radius);
+        guide_add(&scene->frame, &guide);
     }
 }

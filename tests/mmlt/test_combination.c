@@ -1,0 +1,353 @@
+/* Shares of chains, pool and path tracing, on generations made up of noise. */
+#include "math/rng.h"
+#include "mmlt/combination.h"
+#include "mmlt/importance.h"
+
+#include "mmlt/test_combination.h"
+
+#include <string.h>
+
+#define SIDE 32
+#define PIXELS ((size_t)SIDE * SIDE)
+
+static const atomic_int never = 0; /* a stop */
+
+typedef struct Estimators {
+    Film films[ESTIMATOR_COUNT];
+    Combination combination;
+    uint draws;
+} Estimators;
+
+static void estimators_init(Estimators *estimators)
+{
+    const int crop[4] = {0, 0, SIDE, SIDE};
+    Error error = {0};
+    *estimators = (Estimators){0};
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        ck_assert(film_init(&estimators->films[s], SIDE, SIDE, crop, &error));
+        ck_assert(film_light_reserve(&estimators->films[s], &error));
+    }
+    ck_assert(film_rare_reserve(&estimators->films[ESTIMATOR_CHAINS], &error));
+    ck_assert(combination_init(&estimators->combination, &estimators->films[0], &error));
+}
+
+static void estimators_destroy(Estimators *estimators)
+{
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        film_destroy(&estimators->films[s]);
+    combination_destroy(&estimators->combination);
+}
+
+/* Uniform with mean 0 and variance 1. */
+static double noise(Estimators *estimators)
+{
+    Random4 random = random_four(estimators->draws++, 1, 2, 3, 4, 5);
+    return (((double)random.x[0] + 0.5) / 4294967296.0 - 0.5) * sqrt(12.0);
+}
+
+/* Every pixel of the estimator shows `mean` + noise: `deviation` for one sample a pixel. */
+static void estimator_set(Estimators *estimators, int s, double samples, double mean, double deviation)
+{
+    Film *film = &estimators->films[s];
+    film_clear(film);
+    film->light_samples = (uint64_t)(samples * (double)PIXELS);
+    for (size_t i = 0; i < PIXELS; ++i) {
+        double value = mean + deviation * noise(estimators) / sqrt(samples);
+        for (size_t c = 0; c < 3; ++c)
+            film->light_sums[3 * i + c] = llrint(value * samples * 0x1p30);
+    }
+}
+
+static double generation(Estimators *estimators)
+{
+    Film *const films[ESTIMATOR_COUNT] = {&estimators->films[0], &estimators->films[1], &estimators->films[2]};
+    Error error = {0};
+    double sum = 0.0;
+    ck_assert(combination_generation(&estimators->combination, &estimators->combination, films, &never, &error));
+    for (size_t i = 0; i < 3 * PIXELS; ++i)
+        sum += (double)films[ESTIMATOR_CHAINS]->light_sums[i];
+    return sum * 0x1p-30 / 3.0 / (double)films[ESTIMATOR_CHAINS]->light_samples;
+}
+
+/* Shares go as samples over variance. */
+START_TEST(test_weights)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 60; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
+        double mean = generation(&estimators);
+        ck_assert_double_eq_tol(mean, 1.0, 0.08);
+    }
+    /* 4 / 1, 1 / 0.25, 2 / 4 */
+    const double *weight = estimators.combination.weight;
+    printf("weights %.3f %.3f %.3f\n", weight[0], weight[1], weight[2]);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_CHAINS], 4.0 / 8.5, 0.02);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], 4.0 / 8.5, 0.02);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_PATHS], 0.5 / 8.5, 0.02);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* A estimator that never sees the light has no variance, and yet no weight worth speaking of. */
+START_TEST(test_blind)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 30; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, _i == ESTIMATOR_POOL ? 0.0 : 1.0,
+                      _i == ESTIMATOR_POOL ? 0.0 : 1.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, _i == ESTIMATOR_PATHS ? 0.0 : 1.0,
+                      _i == ESTIMATOR_PATHS ? 0.0 : 1.0);
+        generation(&estimators);
+    }
+    printf("a blind estimator's weight: %.5f\n", estimators.combination.weight[_i]);
+    ck_assert_double_lt(estimators.combination.weight[_i], 0.01);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* A estimator without samples this time has no weight, and the others have all. Before variances are known path
+ * tracing's goes as a part of its work, those of chains and pool as the pool's: in hard light it is far worse than the
+ * others, and of a large picture it is nearly all. */
+START_TEST(test_absent)
+{
+    Estimators estimators;
+    const double pool[ESTIMATOR_COUNT] = {[ESTIMATOR_POOL] = 1.0}, paths[ESTIMATOR_COUNT] = {[ESTIMATOR_PATHS] = 2.0};
+    const double part = 0.25 * combination_work(paths);
+    estimators_init(&estimators);
+    for (int g = 0; g < 6; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 1.0);
+        if (g == _i) {
+            film_clear(&estimators.films[ESTIMATOR_PATHS]);
+            estimators.films[ESTIMATOR_PATHS].light_samples = 0;
+        }
+        ck_assert_double_eq_tol(generation(&estimators), 1.0, 0.08);
+        const double *weight = estimators.combination.weight;
+        ck_assert_double_eq_tol(weight[0] + weight[1] + weight[2], 1.0, 1e-12);
+        if (g == _i)
+            ck_assert_double_eq(weight[ESTIMATOR_PATHS], 0.0);
+        else if (g < 2)
+            ck_assert_double_eq_tol(weight[ESTIMATOR_PATHS], part / (2.0 * combination_work(pool) + part), 1e-12);
+        else if (g > 2)
+            ck_assert_double_gt(weight[ESTIMATOR_PATHS], 0.0);
+    }
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* A estimator that is shown alone has all, and nothing in a generation in which it has no samples. */
+START_TEST(test_alone)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    estimators.combination.shown = 1 + ESTIMATOR_PATHS;
+    for (int g = 0; g < 6; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 1.0);
+        if (g % 2 == 1)
+            estimators.films[ESTIMATOR_PATHS].light_samples = 0;
+        ck_assert_double_eq_tol(generation(&estimators), 1.0, 0.08);
+        ck_assert_double_eq(estimators.combination.weight[ESTIMATOR_PATHS], g % 2 == 1 ? 0.0 : 1.0);
+    }
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* A pool of half a sample a pixel shows every other pixel twice as bright, and the next pool the others: that is no
+ * variance of what it shows in the end, and counts as little as a correction may make it. */
+START_TEST(test_partial)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 20; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 0.5, 1.0, 0.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            estimators.films[ESTIMATOR_POOL].light_sums[i] *= i / 3 % 2 == (size_t)g % 2 ? 2 : 0;
+        generation(&estimators);
+    }
+    /* 4 / 1, 0.5 / (0.5 / 4), 2 / 4: without the correction the pool's were 0.5 / 0.5. */
+    const double *weight = estimators.combination.weight;
+    printf("weights with a partial pool %.3f %.3f %.3f\n", weight[0], weight[1], weight[2]);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], 4.0 / 8.5, 0.04);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* Bright dots in one tile are expected in those beside it, and not elsewhere. */
+START_TEST(test_beside)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 20; ++g) {
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            estimator_set(&estimators, s, 1.0, 1.0, 1.0);
+        if (g % 4 == 0)
+            estimators.films[ESTIMATOR_POOL].light_sums[0] += llrint(1000.0 * 0x1p30);
+        generation(&estimators);
+    }
+    const CombinationTile *known = estimators.combination.known;
+    double own = known[0].spread[ESTIMATOR_POOL], beside = known[5].spread[ESTIMATOR_POOL],
+           elsewhere = known[15].spread[ESTIMATOR_POOL];
+    printf("variance with dots %.3g, beside them %.3g, elsewhere %.3g\n", own, beside, elsewhere);
+    ck_assert_double_gt(own, 1.5 * elsewhere);
+    ck_assert_double_gt(beside, 1.5 * elsewhere);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* What chains keep apart counts with chains and pool, not with path tracing. */
+START_TEST(test_excess)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 6; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 0.1);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.1);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 3.0, 0.1);
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            estimators.films[ESTIMATOR_CHAINS].sums[i] = llrint(4.0 * 2.0 * 0x1p30);
+        ck_assert_double_eq_tol(generation(&estimators), 3.0, 0.02);
+    }
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* The plan gives the time to what is good: nothing but path tracing is, or nothing but chains. Their errors fall with
+ * the pools, too, so that pools get 0.45 of the time of both; path tracing gets the least there is, a part of 20. */
+START_TEST(test_plan)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    ck_assert_double_eq(combination_plan(&estimators.combination).paths_per_step, 0.0);
+    for (int g = 0; g < 20; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, _i == 0 ? 10.0 : 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 10.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, _i == 0 ? 1.0 : 10.0);
+        generation(&estimators);
+    }
+    Plan plan = combination_plan(&estimators.combination);
+    printf("plan: %.3f paths, %.3f samples of a pool for a step\n", plan.paths_per_step, plan.pool_per_step);
+    ck_assert_int_eq(plan.paths_per_step > 10.0, _i == 0);
+    if (_i == 1) {
+        double steps = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_CHAINS] = 1.0});
+        double pool = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_POOL] = plan.pool_per_step});
+        double paths = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_PATHS] = plan.paths_per_step});
+        ck_assert_double_eq_tol(paths / (steps + pool + paths), 0.05, 1e-6);
+        ck_assert_double_eq_tol(pool / (steps + pool), 0.45, 0.05);
+    }
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* Of a picture whose right half is a hundred times as dark as its left one: far from the border the root of that, but
+ * for what every place has at least, so that the mean worth of a path stays the same. A picture without light has no
+ * place before another. */
+START_TEST(test_importance)
+{
+    Estimators estimators;
+    float importance[IMPORTANCE_CELLS];
+    double sum = 0.0, worth = 0.0, least = 0.05 * 0.505;
+    estimators_init(&estimators);
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        estimator_set(&estimators, s, 1.0, 0.0, 0.0);
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            estimators.films[s].light_sums[i] = (i / 3 % SIDE < SIDE / 2 ? 100 : 1) * (1ll << 22);
+    }
+    importance_learn(&estimators.combination, importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        ck_assert_float_eq(importance[i], 1.0f);
+    generation(&estimators);
+    generation(&estimators);
+    importance_learn(&estimators.combination, importance);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        uint column = i % IMPORTANCE_SIDE;
+        ck_assert_float_eq(importance[i], importance[column]); /* all rows are alike */
+        ck_assert(column == 0 || importance[i] >= importance[i - 1]);
+    }
+    ck_assert_double_eq_tol((double)importance[IMPORTANCE_SIDE - 1] / (double)importance[0],
+                            sqrt((1.0 + least) / (0.01 + least)), 0.01);
+    for (size_t i = 0; i < IMPORTANCE_CELLS; ++i) {
+        double light = i % IMPORTANCE_SIDE < IMPORTANCE_SIDE / 2 ? 1.0 : 0.01;
+        sum += light;
+        worth += light * (double)importance[i];
+    }
+    ck_assert_double_eq_tol(worth / sum, 1.0, 0.1);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* Pools go where the error is: of a picture of four columns of tiles, whose last one has ten times the standard
+ * deviation of the others, by the root of the square error, but for a quarter that is even. The column beside it is
+ * believed to have a third of that square (mmlt/combination_learn.c). Pools that have been there more often already say
+ * that there is more. What nothing is known of is visited alike. */
+START_TEST(test_visits)
+{
+    Estimators estimators;
+    Error error = {0};
+    double samples[ESTIMATOR_COUNT] = {1.0, 1.0, 1.0}, visited[IMPORTANCE_CELLS];
+    uint visits[IMPORTANCE_CELLS + 1];
+    estimators_init(&estimators);
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        visited[i] = _i == 0 || i % IMPORTANCE_SIDE < 24 ? 1.0 : 4.0;
+    ck_assert(importance_visits(&estimators.combination, samples, visited, visits, &error));
+    ck_assert_uint_eq(visits[IMPORTANCE_CELLS], 0);
+    for (int g = 0; g < 20; ++g) {
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+            estimator_set(&estimators, s, 1.0, 1.0, 0.1);
+            for (size_t i = 0; i < 3 * PIXELS; ++i)
+                if (i / 3 % SIDE >= 24)
+                    estimators.films[s].light_sums[i] = llrint((1.0 + noise(&estimators)) * 0x1p30);
+        }
+        generation(&estimators);
+    }
+    ck_assert(importance_visits(&estimators.combination, samples, visited, visits, &error));
+    double columns[4] = {0.0}, all = (double)visits[IMPORTANCE_CELLS] / (double)PIXELS, sum = 0.0;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) { /* a pixel each */
+        double each = visits[i + 1] - visits[i];
+        ck_assert(each >= 1.0 && each <= VISITS_MOST);
+        ck_assert_double_eq_tol(importance_density_ratio(&estimators.combination, visits, i) * each, all, 1e-9);
+        columns[i % IMPORTANCE_SIDE / 8] += each / (all * (double)PIXELS / 4.0);
+    }
+    const double deviations[4] = {1.0, 1.0, sqrt(34.0), _i == 0 ? 10.0 : 20.0};
+    for (int i = 0; i < 4; ++i)
+        sum += deviations[i] / 4.0;
+    for (int i = 0; i < 4; ++i) {
+        printf("visits of column %d: %.3f times the mean\n", i, columns[i]);
+        ck_assert_double_eq_tol(columns[i], 0.25 + 0.75 * deviations[i] / sum, 0.25);
+    }
+    importance_tell(visits, &estimators.combination);
+    double tiles = 0.0;
+    for (size_t i = 0; i < 16; ++i)
+        tiles += 1.0 / estimators.combination.density_ratio[i] / 16.0;
+    ck_assert_double_eq_tol(tiles, 1.0, 0.05);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("combination");
+    TCase *tcase = tcase_create("combination");
+    tcase_add_test(tcase, test_weights);
+    tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
+    tcase_add_loop_test(tcase, test_absent, 0, 6);
+    tcase_add_test(tcase, test_alone);
+    tcase_add_test(tcase, test_partial);
+    tcase_add_test(tcase, test_beside);
+    tcase_add_test(tcase, test_excess);
+    tcase_add_loop_test(tcase, test_plan, 0, 2);
+    tcase_add_test(tcase, test_importance);
+    tcase_add_loop_test(tcase, test_visits, 0, 2);
+    suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, combination_known_tests());
+    return test_run(suite);
+}

@@ -1,0 +1,370 @@
+/* Shares, errors, plans, importance and visits that a combination derives from given variances, against a search for
+ * the optimum. */
+#include "mmlt/test_combination.h"
+#include "support/test_files.h"
+
+#include "camera/film_sum.h"
+#include "mmlt/combination_learn.h"
+#include "mmlt/importance.h"
+
+/* Width and height differ, and the last row of tiles is half outside the picture. */
+#define WIDTH 64
+#define HEIGHT 44
+#define PIXELS ((size_t)WIDTH * HEIGHT)
+#define ROUNDS 40
+
+static const atomic_int never = 0; /* a stop */
+
+/* The part that pools have of the time of pools and chains together where both are all that counts (test_plan in
+ * mmlt/test_combination.c). */
+#define POOL_PART 0.45
+
+typedef struct Known {
+    Film film;
+    Combination combination;
+    unsigned state;
+} Known;
+
+static double octaves(Known *known, double most)
+{
+    return exp2(most * (2.0 * test_random_unit(&known->state) - 1.0));
+}
+
+/* Sets random variances of all estimators, and random numbers of the samples that they were estimated from. */
+static void known_tell(Known *known, double range)
+{
+    for (size_t i = 0; i < combination_tile_count(&known->combination); ++i) {
+        CombinationTile *tile = &known->combination.known[i];
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            tile->spread[s] = octaves(known, range);
+        tile->direct = octaves(known, range);
+        tile->light = octaves(known, 3.0);
+    }
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        known->combination.sums[s].weight[0] = (float)octaves(known, 3.0);
+}
+
+static void known_init(Known *known, unsigned seed)
+{
+    Error error = {0};
+    *known = (Known){.state = seed};
+    ck_assert(film_init(&known->film, WIDTH, HEIGHT, (const int[4]){0, 0, WIDTH, HEIGHT}, &error));
+    ck_assert(film_light_reserve(&known->film, &error));
+    ck_assert(film_rare_reserve(&known->film, &error));
+    ck_assert(combination_init(&known->combination, &known->film, &error));
+    for (int s = 0; s < SERIES_COUNT; ++s)
+        known->combination.ready[s] = true;
+    known_tell(known, 3.0);
+}
+
+static void known_destroy(Known *known)
+{
+    film_destroy(&known->film);
+    combination_destroy(&known->combination);
+}
+
+/* ---- weights ------------------------------------------------------------------------------------------------------ */
+
+/* Variance of a tile in which path tracing has the weight w and the rest is split between chains (weight c) and pool.
+ * What pools clamp (excess) comes from chains and goes with chains and pool; what path tracing clamps (rare) goes with
+ * path tracing. The model of mmlt/combination.c: the chains' part of the first estimate weights the rare remainder with
+ * the second. */
+static double combined_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double w, double c)
+{
+    double rare = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS];
+    double others = c * c * tile->spread[ESTIMATOR_CHAINS] / samples[ESTIMATOR_CHAINS] +
+                    (1.0 - c) * (1.0 - c) * tile->spread[ESTIMATOR_POOL] / samples[ESTIMATOR_POOL] +
+                    tile->spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
+    double paths = tile->spread[ESTIMATOR_PATHS] / samples[ESTIMATOR_PATHS] + rare;
+    if (!(w > 0.0))
+        return others; /* also where path tracing has no samples */
+    return (1.0 - w) * (1.0 - w) * others + w * w * paths + 2.0 * w * (1.0 - w) * c * fmin(rare, others);
+}
+
+/* Ternary search in [0, 1] for the weight of path tracing (of_paths) or of chains among chains and pool with the least
+ * variance, which is convex in either. */
+static double weight_search(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], bool of_paths, double c)
+{
+    double low = 0.0, high = 1.0;
+    for (int step = 0; step < 100; ++step) {
+        double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+        double at_a = of_paths ? combined_variance(tile, samples, a, c) : combined_variance(tile, samples, 0.0, a);
+        double at_b = of_paths ? combined_variance(tile, samples, b, c) : combined_variance(tile, samples, 0.0, b);
+        *(at_a < at_b ? &high : &low) = at_a < at_b ? b : a;
+    }
+    return 0.5 * (low + high);
+}
+
+static double least_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double *w, double *c)
+{
+    *c = weight_search(tile, samples, false, 0.0);
+    *w = weight_search(tile, samples, true, *c);
+    return combined_variance(tile, samples, *w, *c);
+}
+
+/* What a estimator has in a channel of pixel i, in units of the film: different in all estimators, channels and
+ * neighbouring pixels. */
+static double estimator_value(int s, size_t i, size_t channel)
+{
+    return ldexp(1.0 + s * 3.0 + (double)(i % 7) + 20.0 * (double)channel, 20);
+}
+
+/* A generation is combined with the teacher's weights of least variance, not the pupil's, in every pixel and channel. A
+ * estimator without samples has no weight, and then its variances need not be known. Pixels with a full sum in a
+ * estimator count as saturated. */
+START_TEST(test_weights_known)
+{
+    Known teacher, pupil, others[2];
+    Error error = {0};
+    double samples[ESTIMATOR_COUNT] = {4.0 * PIXELS, 1.0 * PIXELS, _i == 1 ? 0.0 : 2.0 * PIXELS};
+    known_init(&teacher, 1);
+    known_init(&pupil, 2);
+    known_init(&others[0], 3);
+    known_init(&others[1], 4);
+    if (_i == 1)
+        teacher.combination.ready[ESTIMATOR_PATHS] = false;
+    Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        films[s]->light_samples = (uint64_t)samples[s];
+        for (size_t i = 0; i < 3 * PIXELS; ++i)
+            films[s]->light_sums[i] = llrint(samples[s] / PIXELS * estimator_value(s, i / 3, i % 3));
+    }
+    for (size_t i = 0; i < 3 * PIXELS; ++i) {
+        pupil.film.sums[i] = llrint(4.0 * estimator_value(SERIES_EXCESS, i / 3, i % 3));
+        pupil.film.rare_sums[i] = llrint(4.0 * estimator_value(SERIES_RARE, i / 3, i % 3));
+    }
+    if (_i == 2)
+        others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
+    ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
+    double work = (double)pupil.film.light_samples / PIXELS;
+    TEST_NEAR(work * PIXELS, combination_work(samples), 1.0);
+    for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
+        const CombinationTile *tile = &teacher.combination.known[combination_tile_of(&teacher.combination, i)];
+        double w = 0.0, c = weight_search(tile, samples, false, 0.0);
+        if (_i != 1)
+            least_variance(tile, samples, &w, &c);
+        for (size_t k = 0; k < 3; ++k) {
+            double expected =
+                (1.0 - w) * (c * estimator_value(ESTIMATOR_CHAINS, i, k) +
+                             (1.0 - c) * estimator_value(ESTIMATOR_POOL, i, k) + estimator_value(SERIES_EXCESS, i, k)) +
+                w * (estimator_value(ESTIMATOR_PATHS, i, k) + estimator_value(SERIES_RARE, i, k));
+            TEST_NEAR((double)pupil.film.light_sums[3 * i + k] / work / expected, 1.0, 1e-6);
+        }
+    }
+    ck_assert_uint_eq(pupil.film.saturated, _i == 2);
+    known_destroy(&teacher);
+    known_destroy(&pupil);
+    known_destroy(&others[0]);
+    known_destroy(&others[1]);
+}
+END_TEST
+
+/* ---- errors and plans -------------------------------------------------------------------------------------------- */
+
+static double dark_square(const Combination *combination)
+{
+    double light = 0.0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        light += combination->known[i].light / (double)combination_tile_count(combination);
+    return DARK_PART * light * light;
+}
+
+/* The error of a tile is the least variance over the square of its light, to which DARK_PART of the mean's square is
+ * added. */
+START_TEST(test_errors_known)
+{
+    Known known;
+    known_init(&known, 7);
+    double errors[WIDTH * HEIGHT], samples[ESTIMATOR_COUNT] = {4000.0, 1000.0, 2000.0}, w, c;
+    size_t tiles = combination_tile_count(&known.combination);
+    known.combination.known[3].light = 0.0;
+    combination_errors(&known.combination, samples, errors);
+    for (size_t i = 0; i < tiles; ++i) {
+        const CombinationTile *tile = &known.combination.known[i];
+        double expected =
+            least_variance(tile, samples, &w, &c) / (tile->light * tile->light + dark_square(&known.combination));
+        TEST_NEAR(errors[i] / expected, 1.0, 1e-6);
+    }
+    known_destroy(&known);
+}
+END_TEST
+
+/* The variance of chains is a / T_pool + b / T_steps. In a given time it is least where pools have the part
+ * sqrt(a) / (sqrt(a) + sqrt(b)), which is POOL_PART. Returns the variance of one step relative to that of the past. */
+static double chains_vary(const Combination *combination, const double samples[ESTIMATOR_COUNT],
+                          const double costs[ESTIMATOR_COUNT])
+{
+    double a = POOL_PART * POOL_PART, b = (1.0 - POOL_PART) * (1.0 - POOL_PART);
+    double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
+           steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
+    double now =
+        a * samples[ESTIMATOR_CHAINS] * costs[ESTIMATOR_CHAINS] / (samples[ESTIMATOR_POOL] * costs[ESTIMATOR_POOL]) + b;
+    double before = a * steps * costs[ESTIMATOR_CHAINS] / (pools * costs[ESTIMATOR_POOL]) + b;
+    return now / before;
+}
+
+/* The picture's error with so many samples. */
+static double picture_error(const Combination *combination, const double samples[ESTIMATOR_COUNT],
+                            const double costs[ESTIMATOR_COUNT])
+{
+    double sum = 0.0, w, c, factor = chains_vary(combination, samples, costs), dark = dark_square(combination);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        CombinationTile tile = combination->known[i];
+        tile.spread[ESTIMATOR_CHAINS] *= factor;
+        tile.spread[SERIES_EXCESS] *= factor;
+        tile.spread[SERIES_RARE] *= factor;
+        sum += (least_variance(&tile, samples, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
+               (tile.light * tile.light + dark);
+    }
+    return sum;
+}
+
+/* Of all divisions of the time into twentieths the plan has the least error. */
+START_TEST(test_plan_known)
+{
+    Known known;
+    double costs[ESTIMATOR_COUNT];
+    known_init(&known, 11);
+    known.combination.tiles[0] = 2; /* two tiles, so that 171 plans are quickly searched */
+    known.combination.tiles[1] = 1;
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        double one[ESTIMATOR_COUNT] = {0.0};
+        one[s] = 1.0;
+        costs[s] = combination_work(one);
+    }
+    for (int round = 0; round < ROUNDS; ++round) {
+        double least = HUGE_VAL;
+        Plan best = {0};
+        known_tell(&known, 4.0);
+        for (int paths = 1; paths < 20; ++paths)
+            for (int pool = 1; paths + pool < 20; ++pool) {
+                double samples[ESTIMATOR_COUNT] = {(20 - paths - pool) / costs[ESTIMATOR_CHAINS],
+                                                   pool / costs[ESTIMATOR_POOL], paths / costs[ESTIMATOR_PATHS]};
+                double error = picture_error(&known.combination, samples, costs);
+                if (error < least) {
+                    least = error;
+                    best = (Plan){samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
+                                  samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
+                }
+            }
+        Plan plan = combination_plan(&known.combination);
+        TEST_NEAR(plan.paths_per_step, best.paths_per_step, 1e-9);
+        TEST_NEAR(plan.pool_per_step, best.pool_per_step, 1e-9);
+    }
+    known_destroy(&known);
+}
+END_TEST
+
+/* ---- importance and visits ---------------------------------------------------------------------------------------- */
+
+static uint cell_of(size_t x, size_t y)
+{
+    return (uint)(y * IMPORTANCE_SIDE / HEIGHT * IMPORTANCE_SIDE + x * IMPORTANCE_SIDE / WIDTH);
+}
+
+/* Whether tile and cell overlap along an axis of `size` pixels. */
+static bool tile_meets(int tile, int cell, int size)
+{
+    double begin = (double)cell * size / IMPORTANCE_SIDE, end = (double)(cell + 1) * size / IMPORTANCE_SIDE;
+    return tile * TILE_SIDE < end && (tile + 1) * TILE_SIDE > begin;
+}
+
+static bool tile_near(int tile, int cell, int size)
+{
+    return tile_meets(tile - 1, cell, size) || tile_meets(tile, cell, size) || tile_meets(tile + 1, cell, size);
+}
+
+/* Importance is (L + 0.05 mean)^(-1/2), L the light per pixel of the tiles that the cell overlaps and their neighbours,
+ * scaled so that the sum of L times importance is the sum of L. */
+START_TEST(test_importance_known)
+{
+    Known known;
+    float importance[IMPORTANCE_CELLS];
+    double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
+    known_init(&known, 13);
+    importance_learn(&known.combination, importance);
+    for (int cell = 0; cell < (int)IMPORTANCE_CELLS; ++cell) {
+        double all = 0.0, pixels = 0.0;
+        for (int y = 0; y < known.combination.tiles[1]; ++y)
+            for (int x = 0; x < known.combination.tiles[0]; ++x)
+                if (tile_near(x, cell % (int)IMPORTANCE_SIDE, WIDTH) &&
+                    tile_near(y, cell / (int)IMPORTANCE_SIDE, HEIGHT)) {
+                    all += known.combination.known[y * known.combination.tiles[0] + x].light;
+                    pixels += TILE_SIDE * (y * TILE_SIDE + TILE_SIDE <= HEIGHT ? TILE_SIDE : HEIGHT % TILE_SIDE);
+                }
+        sum += light[cell] = all / pixels;
+    }
+    for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
+        worth += light[cell] / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS);
+    for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
+        TEST_NEAR(importance[cell], sum / worth / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS), 1e-5);
+    known_destroy(&known);
+}
+END_TEST
+
+/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, VISITS_MOST at most, v the root of `visited`
+ * times the mean error of the tiles that its pixels are in. Rarity is the mean number of visits over the cell's; that
+ * of a tile is the mean over its pixels. */
+START_TEST(test_visits_known)
+{
+    Known known;
+    Error error = {0};
+    double errors[WIDTH * HEIGHT], samples[ESTIMATOR_COUNT] = {4000.0, 1000.0, 2000.0}, visited[IMPORTANCE_CELLS];
+    double deviation[IMPORTANCE_CELLS], sum = 0.0, density_ratio[WIDTH * HEIGHT] = {0.0};
+    uint visits[IMPORTANCE_CELLS + 1], pixels[IMPORTANCE_CELLS] = {0};
+    known_init(&known, 17);
+    for (int s = 0; _i == 1 && s < SERIES_COUNT; ++s)
+        known.combination.known[5].spread[s] = 1e6; /* one tile has nearly all of the error */
+    combination_errors(&known.combination, samples, errors);
+    for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell) {
+        double mean = 0.0;
+        int tiles = 0;
+        bool seen[WIDTH * HEIGHT] = {false};
+        visited[cell] = octaves(&known, 2.0);
+        for (size_t i = 0; i < PIXELS; ++i) {
+            size_t tile = combination_tile_of(&known.combination, i);
+            if (cell_of(i % WIDTH, i / WIDTH) != cell)
+                continue;
+            ++pixels[cell];
+            mean += seen[tile] ? 0.0 : errors[tile];
+            tiles += !seen[tile];
+            seen[tile] = true;
+        }
+        deviation[cell] = sqrt(mean / tiles * visited[cell]);
+        sum += pixels[cell] * deviation[cell] / PIXELS;
+    }
+    ck_assert(importance_visits(&known.combination, samples, visited, visits, &error));
+    uint all = visits[IMPORTANCE_CELLS], next = 0, most = 0;
+    for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell) {
+        double each = fmin(rint(4.0 * (0.25 + 0.75 * deviation[cell] / sum)), VISITS_MOST);
+        most = each > most ? (uint)each : most;
+        TEST_TRUE(visits[cell] == next);
+        next += pixels[cell] * (uint)each;
+        TEST_NEAR(importance_density_ratio(&known.combination, visits, cell), all / (each * PIXELS), 1e-9);
+    }
+    ck_assert_uint_eq(all, next);
+    ck_assert((most == VISITS_MOST) == (_i == 1));
+    importance_tell(visits, &known.combination);
+    for (size_t i = 0; i < PIXELS; ++i)
+        density_ratio[combination_tile_of(&known.combination, i)] +=
+            importance_density_ratio(&known.combination, visits, cell_of(i % WIDTH, i / WIDTH));
+    for (size_t i = 0; i < combination_tile_count(&known.combination); ++i) {
+        bool whole = (i / (size_t)known.combination.tiles[0] + 1) * TILE_SIDE <= HEIGHT;
+        double area = TILE_SIDE * (whole ? TILE_SIDE : HEIGHT % TILE_SIDE);
+        TEST_NEAR(known.combination.density_ratio[i], density_ratio[i] / area, 1e-9);
+    }
+    known_destroy(&known);
+}
+END_TEST
+
+TCase *combination_known_tests(void)
+{
+    TCase *tcase = tcase_create("known");
+    tcase_set_timeout(tcase, 60);
+    tcase_add_loop_test(tcase, test_weights_known, 0, 3);
+    tcase_add_test(tcase, test_errors_known);
+    tcase_add_test(tcase, test_plan_known);
+    tcase_add_test(tcase, test_importance_known);
+    tcase_add_loop_test(tcase, test_visits_known, 0, 2);
+    return tcase;
+}
