@@ -109,8 +109,7 @@ same instances.pbrt opencl --max-depth=65535 --samples=1
 # plant FOLDER EDIT [FILE]: the kernels' sources with one, bsdf/diffuse.h, that is not as it should be; EDIT is for sed.
 plant() {
     plant_file=${3:-bsdf/diffuse.h}
-    mkdir "$1"
-    cp "$sources"/*.h "$sources"/*.cl "$1/"
+    cp -r "$sources" "$1"
     sed -i "$2" "$1/$plant_file"
     ! cmp -s "$1/$plant_file" "$sources/$plant_file"
     result 'no fault was planted' $?
