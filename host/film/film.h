@@ -37,7 +37,7 @@ void film_destroy(Film *film);
  * it. */
 bool film_init_like(Film *film, const Film *model, Error *error);
 
-/* Makes room for splats that paths from the light bring (SPLAT_FROM_LIGHT). Only while the film is empty. */
+/* Makes room for splats that paths from the light bring (SPLAT_LIGHT). Only while the film is empty. */
 bool film_light_reserve(Film *film, Error *error);
 
 /* Makes room for sums of the rare ones (SPLAT_RARE) of a film that has those of the light. They are this film's own: no

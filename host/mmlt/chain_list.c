@@ -12,7 +12,7 @@ static const StateField CHAIN_FIELDS[] = {
     {BUFFER_PATHS, CHAIN_KEY, 1, false, "key of the current path"},
     {BUFFER_PATHS, CHAIN_PROPOSED_KEY, 1, false, "key of the proposal"},
     {BUFFER_PATHS, CHAIN_STEP, 1, false, "step"},
-    {BUFFER_PATHS, CHAIN_MOVE, 1, false, "mutation, halves and banks"},
+    {BUFFER_PATHS, CHAIN_MOVE, 1, false, "mutation, subpaths and banks"},
     {BUFFER_PATHS, CHAIN_LUMINANCE, 1, true, "luminance of the current path"},
     {BUFFER_PATHS, CHAIN_COLOR, 3, true, "its colour"},
     {BUFFER_PATHS, CHAIN_FILM, 1, true, "film x of the current path"},
@@ -23,7 +23,8 @@ static const StateField CHAIN_FIELDS[] = {
     {BUFFER_PATHS, CHAIN_TALLY, MUTATION_COUNT, false, "proposals and acceptances"},
     {BUFFER_PATHS, CHAIN_BAD, 1, false, "first proposal that was not finite"},
     {BUFFER_PATHS, CHAIN_RUN, 1, false, "proposals refused in a row"},
-    {BUFFER_PATHS, CHAIN_HALVES, CHAIN_NUMBERS - CHAIN_HALVES, false, "halves"},
+    {BUFFER_PATHS, CHAIN_EXPECTED, 1, true, "luminance that the first proposal must have"},
+    {BUFFER_PATHS, CHAIN_SUBPATHS, CHAIN_NUMBERS - CHAIN_SUBPATHS, false, "subpaths"},
     {BUFFER_PATHS, CHAIN_NUMBERS, NUMBER_VERTICES, false, "coordinates of camera and light"},
 };
 

@@ -55,25 +55,26 @@ static float luminance_of(const int64_t *sums, double scale)
 }
 
 /* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */
-static void series_learn(Combination *combination, int s, const Film *film, const int64_t *sums, float *picture,
-                         float *tiles)
+static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture, float *tiles)
 {
     size_t pixels = film_pixels(film);
-    double samples = (double)film->light_samples;
-    double unit = ldexp((double)pixels / samples, film->quantum_exponent);
+    double unit = ldexp((double)pixels / (double)film->light_samples, film->quantum_exponent);
     memset(tiles, 0, combination_tile_count(combination) * sizeof *tiles);
     for (size_t i = 0; i < pixels; ++i) {
         picture[i] = luminance_of(sums + 3 * i, unit);
         tiles[combination_tile_of(combination, i)] += picture[i];
     }
-    if (s == SERIES_COUNT) {
-        pixel_series_add(&combination->direct, picture, NULL, samples);
-        return;
-    }
+}
+
+static void series_learn(Combination *combination, int s, const Film *film, const int64_t *sums, float *picture,
+                         float *tiles)
+{
+    double samples = (double)film->light_samples;
+    image_of(combination, film, sums, picture, tiles);
     pixel_series_add(&combination->pixels[s], picture, NULL, samples);
     pixel_series_add(&combination->sums[s], tiles, NULL, samples);
     for (size_t i = 0; s == ESTIMATOR_POOL && i < combination_tile_count(combination); ++i)
-        combination->gaps[i] += fmax(combination->density_ratio[i] - samples / (double)pixels, 0.0);
+        combination->gaps[i] += fmax(combination->density_ratio[i] - samples / (double)film_pixels(film), 0.0);
 }
 
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
@@ -87,8 +88,10 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
         series_learn(combination, SERIES_EXCESS, chains, chains->sums, picture, tiles);
     if (!*stop)
         series_learn(combination, SERIES_RARE, chains, chains->rare_sums, picture, tiles);
-    if (!*stop && paths->light_samples > 0)
-        series_learn(combination, SERIES_COUNT, paths, paths->sums, picture, tiles);
+    if (!*stop && paths->light_samples > 0) {
+        image_of(combination, paths, paths->sums, picture, tiles);
+        pixel_series_add(&combination->direct, picture, NULL, (double)paths->light_samples);
+    }
 }
 
 /* ---- variances ---------------------------------------------------------------------------------------------------- */

@@ -35,7 +35,7 @@ typedef struct FilmView {
     uint x0, y0, x1, y1;
     int exponent;
     __global ulong *sums; /* 3 a pixel */
-    __global ulong *light_sums; /* the same for splats with SPLAT_FROM_LIGHT */
+    __global ulong *light_sums; /* the same for splats with SPLAT_LIGHT */
     __global ulong *rare_sums; /* of all with SPLAT_RARE, which are in one of the others, too */
     __global ulong *depth_sums; /* the same once more for every number of segments: film_depth_place */
     uint depth_kinds; /* of them: 0 (names have no depth), 1: from the light, or 3: their own and rare ones, too */
@@ -178,7 +178,7 @@ SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, 
 {
     uint pixels = (film->x1 - film->x0) * (film->y1 - film->y0), kinds = film->depth_kinds;
     uint depth = name >> SPLAT_DEPTH_SHIFT & SPLAT_DEPTH_MAX;
-    uint kind = (name & SPLAT_FROM_LIGHT) != 0u ? FILM_KIND_LIGHT : FILM_KIND_OWN;
+    uint kind = (name & SPLAT_LIGHT) != 0u ? FILM_KIND_LIGHT : FILM_KIND_OWN;
     if (depth < SPLAT_DEPTH_MIN || depth > film->depth_last)
         return;
     if (kind < kinds)
@@ -194,8 +194,8 @@ SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, 
 SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint t)
 {
     uint name = state_load(splats, stride, SPLAT_PIXEL, t);
-    bool from_light = (name & SPLAT_FROM_LIGHT) != 0u;
-    uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_FLAGS);
+    bool from_light = (name & SPLAT_LIGHT) != 0u;
+    uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
     uint slot = name != NONE ? film_slot(film, pixel) : NONE;
     if (slot == NONE)
         return;

@@ -24,15 +24,17 @@
 #define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16 of each kind of mutation, 4 */
 #define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* number of the first proposal whose f was not finite; NONE: all were */
 #define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals refused in a row: run_after */
+/* f that the first proposal of a pass must have, which is the current path made again; 0: not known. */
+#define CHAIN_EXPECTED (BD_HEADER_WORDS + 19u)
 /* What the connection has to know of a subpath, twice for each side: chain_subpath. */
-#define CHAIN_HALVES (BD_HEADER_WORDS + 19u)
-#define CHAIN_NUMBERS (CHAIN_HALVES + 2u * (CHAIN_LIGHT_SUBPATH_WORDS + CHAIN_CAMERA_SUBPATH_WORDS))
+#define CHAIN_SUBPATHS (BD_HEADER_WORDS + 20u)
+#define CHAIN_NUMBERS (CHAIN_SUBPATHS + 2u * (CHAIN_LIGHT_SUBPATH_WORDS + CHAIN_CAMERA_SUBPATH_WORDS))
 
 /* Places in CHAIN_MOVE. */
 #define MOVE_MUTATION 0u /* of the proposal: MUTATION_* */
-#define MOVE_CHANGED 4u /* subpaths that the proposal has of its own: HALF_* */
+#define MOVE_CHANGED 4u /* subpaths that the proposal has of its own: SUBPATH_* */
 #define MOVE_REACHED 8u /* subpaths of the proposal whose last vertex is there */
-#define MOVE_BANKS 12u /* HALF_*: the current path's is in bank 1 */
+#define MOVE_BANKS 12u /* SUBPATH_*: the current path's is in bank 1 */
 #define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
 #define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS: the proposal is a shift (chain/shift.h) */
 
@@ -73,8 +75,8 @@ SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, u
 /* Fields of subpath `side` (SIDE_*) in bank 0 or 1. */
 SHARED_FUNCTION uint chain_subpath(uint side, uint bank)
 {
-    return CHAIN_HALVES + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_SUBPATH_WORDS
-                                              : 2u * CHAIN_LIGHT_SUBPATH_WORDS + bank * CHAIN_CAMERA_SUBPATH_WORDS);
+    return CHAIN_SUBPATHS + (side == SIDE_LIGHT ? bank * CHAIN_LIGHT_SUBPATH_WORDS
+                                                : 2u * CHAIN_LIGHT_SUBPATH_WORDS + bank * CHAIN_CAMERA_SUBPATH_WORDS);
 }
 
 /* The bank of a subpath of the proposal: the one that the current path does not have where the subpath is its own. */

@@ -95,21 +95,22 @@ SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film
 {
     __global const FrameParams *frame = scene->frame;
     uint d = chain_key_depth(key), s = chain_key_s(key), shown = KEY_SHOWN_ALL;
-    float limit = RARE_OVER_CLAMP * frame->clamp_threshold * path_tracing;
+    float limit = partition_threshold(frame, PARTITION_PATHS) * path_tracing;
     float worth = rgb_luminance(color) * film_importance(frame, scene->guide, film);
     if (s < d)
         worth /= film_reach_factor(frame);
-    if (frame->clamp_threshold < FLOAT_MAX && worth > limit)
-        shown = (uint)(limit / worth * (float)KEY_SHOWN_ALL + 0.5f);
+    if (partition_clamps(frame) && worth > limit)
+        shown = (uint)(partition_shown(worth, limit) * (float)KEY_SHOWN_ALL + 0.5f);
     return chain_key(d, s) | shown << 16;
 }
 
 /* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by
  * chance. */
-SHARED_FUNCTION uint chain_splat_flags(__global const FrameParams *frame, uint key, float f, float u)
+SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint key, float f, float u)
 {
-    uint flags = u * f < frame->clamp_threshold ? SPLAT_FROM_LIGHT : 0u;
-    return u * (float)KEY_SHOWN_ALL < (float)(key >> 16) ? flags : flags | SPLAT_RARE;
+    bool by_pool = partition_draw(u, f, partition_threshold(frame, PARTITION_POOL));
+    bool by_paths = partition_draw(u, (float)KEY_SHOWN_ALL, (float)(key >> 16));
+    return (by_pool ? SPLAT_LIGHT : SPLAT_EXCESS) | (by_paths ? 0u : SPLAT_RARE);
 }
 
 /* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What
@@ -127,7 +128,7 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
     else
         splat_store(splats, diagnostics, stride, t,
-                    chain_splat_flags(frame, key, f, random_float(random.x[3])) | pixel |
+                    chain_splat_layers(frame, key, f, random_float(random.x[3])) | pixel |
                         splat_depth(frame->split_depths, chain_key_depth(key)),
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
@@ -195,9 +196,9 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     }
     f = float_max(f, 0.0f);
     if (mutation == MUTATION_REPLAY) {
-        uint before = state_load(paths, stride, CHAIN_COLOR, t);
+        uint expected = state_load(paths, stride, CHAIN_EXPECTED, t);
         state_store(splats, stride, SPLAT_PIXEL, t, NONE);
-        if (before != 0u && before != float_bits(f))
+        if (expected != 0u && expected != float_bits(f))
             diagnostic_count(diagnostics, DIAGNOSTIC_REPLAY);
         if (f > 0.0f)
             chain_take(frame, paths, t, f, color, 0.0f);

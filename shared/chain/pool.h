@@ -13,6 +13,7 @@
 #include "layout/item.h"
 #include "path/bd_random.h"
 #include "path/bd_start.h"
+#include "path/partition.h"
 
 /* BUFFER_PASS of a pool: what a sample is worth, and the path kept of it (chain_key); 0: none. */
 #define POOL_WEIGHT 0u /* sum of the luminances of all its paths, times their importance */
@@ -116,7 +117,7 @@ SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __globa
         state_store(paths, stride, BD_CANDIDATE, item, chain_key(s + t - 1u, s));
         state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, f);
     }
-    return vec3_scale(contribution, f > frame->clamp_threshold ? weight * (frame->clamp_threshold / f) : weight);
+    return vec3_scale(contribution, weight * partition_shown(f, partition_threshold(frame, PARTITION_POOL)));
 }
 
 #endif

@@ -126,7 +126,7 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint
         return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
-    uint flags = frame->pool != 0u ? SPLAT_FROM_LIGHT : 0u;
+    uint flags = frame->pool != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
     if (frame->split_depths != 0u) {
         flags |= splat_depth(frame->split_depths, state_load(paths, stride, BD_GATHERED, item));
         state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));

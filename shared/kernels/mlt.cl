@@ -55,7 +55,7 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     state_store(paths, stride, CHAIN_STEP, t, pass_load(frame, pass, CHAIN_PASS_STEP, t));
     state_store(paths, stride, CHAIN_MOVE, t, MUTATION_REPLAY << MOVE_MUTATION);
     state_store_float(paths, stride, CHAIN_LUMINANCE, t, 0.0f);
-    state_store(paths, stride, CHAIN_COLOR, t, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, t)); /* until it has one */
+    state_store(paths, stride, CHAIN_EXPECTED, t, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, t));
     state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
     state_store(paths, stride, CHAIN_BAD, t, NONE);
     state_store(paths, stride, CHAIN_RUN, t, run_begin(pass_load(frame, pass, CHAIN_PASS_RUN, t)));

@@ -14,6 +14,7 @@
 #include "layout/item.h"
 #include "light/light.h"
 #include "path/mis.h"
+#include "path/partition.h"
 #include "path/path_random.h"
 #include "path/path_state.h"
 
@@ -68,7 +69,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store(paths, stride, PATH_GATHERED, t, 0u);
     if (frame->split_direct != 0u) {
         state_store_float(paths, stride, PATH_LIMIT, t,
-                          RARE_OVER_CLAMP * frame->clamp_threshold / film_importance(frame, guide, film));
+                          partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
     }
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
@@ -99,7 +100,7 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
         return 1.0f;
     float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
     path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
-    return path_tracing > limit ? limit / path_tracing : 1.0f;
+    return partition_shown(path_tracing, limit);
 }
 
 /* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0:
@@ -343,7 +344,7 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_FROM_LIGHT : 0u;
+    uint t = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
     if (t >= frame->item_count)
         return;
     if (frame->split_depths != 0u)

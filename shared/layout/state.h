@@ -64,12 +64,15 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_V 4u
 #define HIT_WORDS 5u
 
-/* BUFFER_SPLATS: pixel index y * width + x (NONE: nothing), linear RGB. Every pixel has as many samples as splats
- * without SPLAT_FROM_LIGHT; those with it come from paths that could have met any pixel. Those with SPLAT_RARE also
- * count among what path tracing does not show (chain/mutation.h). */
-#define SPLAT_FROM_LIGHT 0x80000000u
+/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: nothing), linear RGB. A splat is in one of three layers: a
+ * sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a path over
+ * what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess has the sums of samples. It may
+ * be in a fourth layer besides: what path tracing leaves of a path. */
+#define SPLAT_SAMPLE 0u
+#define SPLAT_LIGHT 0x80000000u
+#define SPLAT_EXCESS SPLAT_SAMPLE
 #define SPLAT_RARE 0x40000000u
-#define SPLAT_FLAGS (SPLAT_FROM_LIGHT | SPLAT_RARE)
+#define SPLAT_LAYERS (SPLAT_LIGHT | SPLAT_RARE)
 
 /* With frame->split_depths, between flags and pixel: how many segments the path has, from this to that. */
 #define SPLAT_DEPTH_SHIFT 25u
@@ -81,8 +84,6 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
     return split_depths != 0u ? segments << SPLAT_DEPTH_SHIFT : 0u;
 }
 
-/* Path tracing shows so many times as much of a path as a pool. */
-#define RARE_OVER_CLAMP 4.0f
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
 #define SPLAT_WORDS 4u

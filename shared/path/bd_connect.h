@@ -184,7 +184,7 @@ SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint
     Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
     uint target = state_load(paths, stride, BD_TARGET, item);
     if (from_lens && visible && target != NONE)
-        splat_store(splats, diagnostics, stride, item, SPLAT_FROM_LIGHT | target,
+        splat_store(splats, diagnostics, stride, item, SPLAT_LIGHT | target,
                     vec3_scale(contribution, state_load_float(paths, stride, BD_TARGET_WEIGHT, item)));
     else if (from_lens)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);

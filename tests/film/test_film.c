@@ -181,8 +181,8 @@ START_TEST(test_rare)
     ck_assert(film_light_reserve(&film, &error) && film_rare_reserve(&film, &error));
     ck_assert(film_init_like(&other, &film, &error));
     ck_assert_ptr_null(other.rare_sums);
-    film_add_one(&film, 5 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
-    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_LIGHT, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_LIGHT | SPLAT_RARE, 2.0f, 3.0f, 4.0f);
     film_add_one(&film, 5 | SPLAT_RARE, 8.0f, 8.0f, 8.0f);
     film_add_one(&film, NONE, 8.0f, 8.0f, 8.0f);
     ck_assert_int_eq(film.light_sums[15], (int64_t)3 << 30);
@@ -217,11 +217,11 @@ START_TEST(test_depths)
     ck_assert_uint_eq(other.depth_kinds, 1);
     ck_assert_uint_eq(film_sum_words(&film), 117 + 3 * 3 * 36);
     ck_assert_uint_eq(film_sum_words(&other), 81 + 3 * 36);
-    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | four, 1.0f, 1.0f, 1.0f);
-    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | SPLAT_RARE | five, 2.0f, 3.0f, 4.0f);
+    film_add_one(&film, 5 | SPLAT_LIGHT | four, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 5 | SPLAT_LIGHT | SPLAT_RARE | five, 2.0f, 3.0f, 4.0f);
     film_add_one(&film, 5 | SPLAT_RARE | five, 8.0f, 8.0f, 8.0f);
     film_add_one(&film, 5, 16.0f, 16.0f, 16.0f);
-    film_add_one(&film, 5 | SPLAT_FROM_LIGHT | splat_depth(3, 6), 32.0f, 0.0f, 0.0f);
+    film_add_one(&film, 5 | SPLAT_LIGHT | splat_depth(3, 6), 32.0f, 0.0f, 0.0f);
     ck_assert_int_eq(film.light_sums[15], (int64_t)35 << 30);
     ck_assert_int_eq(film.sums[15], (int64_t)24 << 30);
     ck_assert_int_eq(film.rare_sums[15], (int64_t)10 << 30);
@@ -254,7 +254,7 @@ START_TEST(test_sums_of_a_device)
     ck_assert(film_rare_reserve(&film, &error));
     ck_assert_uint_eq(film_sum_words(&film), 117);
     film_add_one(&film, 2, 1.0f, 2.0f, 3.0f);
-    film_add_one(&film, 2 | SPLAT_FROM_LIGHT, 1.0f, 1.0f, 1.0f);
+    film_add_one(&film, 2 | SPLAT_LIGHT, 1.0f, 1.0f, 1.0f);
     words[3 * 2 + 1] = (ulong)-5;
     words[36] = 7;
     words[37] = 8;

@@ -140,10 +140,10 @@ START_TEST(test_flags)
         float f = LIMIT * octaves(&shown, 3.0);
         for (uint k = 0; k < N; ++k) {
             uint flags =
-                chain_splat_flags(shown.light.view.frame, chain_key(4, 2) | part << 16, f, ((float)k + 0.5f) / N);
-            light += (flags & SPLAT_FROM_LIGHT) != 0;
+                chain_splat_layers(shown.light.view.frame, chain_key(4, 2) | part << 16, f, ((float)k + 0.5f) / N);
+            light += (flags & SPLAT_LIGHT) != 0;
             rare += (flags & SPLAT_RARE) != 0;
-            TEST_TRUE((flags & ~SPLAT_FLAGS) == 0);
+            TEST_TRUE((flags & ~SPLAT_LAYERS) == 0);
         }
         TEST_NEAR((double)light / N, fmin((double)LIMIT / (double)f, 1.0), 1.0 / N);
         TEST_NEAR((double)rare / N, 1.0 - part / 65535.0, 1.0 / N);
@@ -173,7 +173,7 @@ START_TEST(test_splat)
                         visits, random);
             if (shown.splats[SPLAT_PIXEL] == NONE)
                 continue;
-            uint pixel = shown.splats[SPLAT_PIXEL] & ~SPLAT_FLAGS, x = pixel % WIDTH - X0, y = pixel / WIDTH - Y0;
+            uint pixel = shown.splats[SPLAT_PIXEL] & ~SPLAT_LAYERS, x = pixel % WIDTH - X0, y = pixel / WIDTH - Y0;
             TEST_TRUE(x < COLUMNS && y < ROWS);
             double value = luminance_of(state_load_vec3(shown.splats, 1, SPLAT_COLOR, 0));
             pixels[y][x] += value / (N * N);

@@ -48,7 +48,7 @@ static void paths_record(const FrameParams *frame, const SplatSink *sink)
         ItemPlace place = item_place(frame, item);
         Random4 random = random_four(place.pixel, place.sample, 1, 2, 3, 4);
         float value = random_float(random.x[0]) * (place.pixel / frame->width < frame->height / 2 ? 1.0f : 1e-3f);
-        words[SPLAT_PIXEL] = place.pixel | SPLAT_FROM_LIGHT;
+        words[SPLAT_PIXEL] = place.pixel | SPLAT_LIGHT;
         for (uint k = 0; k < 3; ++k)
             words[SPLAT_COLOR + k] = float_bits(value);
         sink->splats(sink->context, words, 1, 1);
