@@ -49,8 +49,7 @@ START_TEST(test_filters)
 }
 END_TEST
 
-/* ---- glass in both directions
- * ---------------------------------------------------------------------------------------- */
+/* ---- glass in both directions ------------------------------------------------------------------------------------ */
 
 /* A small light inside a glass ball over a floor: with 3 segments all light goes lens, floor, glass, light, and light
  * tracing makes all of it (no path of that length misses the floor, since the view holds nothing else). */
