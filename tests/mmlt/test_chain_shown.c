@@ -408,7 +408,7 @@ START_TEST(test_candidates)
     static const uint KINDS[PATHS][2] = {{0, 4}, {1, 2}, {1, 3}, {2, 1}, {2, 2}, {3, 1}, {3, 4}, {0, 6}};
     Shown shown;
     const FrameParams *frame = &shown.light.scene.frame;
-    double worths[PATHS], sum = 0.0;
+    double weights[PATHS], sum = 0.0;
     float survival[PATHS], cover[PATHS], importance[PATHS];
     uint counts[PATHS] = {0};
     Vec3 colors[PATHS];
@@ -420,9 +420,9 @@ START_TEST(test_candidates)
         cover[i] = 0.5f + 0.0625f * (float)i;
         importance[i] = octaves(&shown, 1.0);
         colors[i] = vec3_scale(color_draw(&shown), i % 2 == 0 ? 2.0f : 40.0f); /* below and above the threshold */
-        worths[i] = contribution_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
-                                    (double)cover[i], pixel);
-        sum += worths[i];
+        weights[i] = contribution_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
+                                     (double)cover[i], pixel);
+        sum += weights[i];
     }
     for (uint sample = 0; sample < SAMPLES; ++sample) {
         memset(shown.paths, 0, sizeof shown.paths);
@@ -448,7 +448,7 @@ START_TEST(test_candidates)
         ++counts[kept];
     }
     for (int i = 0; i < PATHS; ++i) {
-        double share = worths[i] / sum;
+        double share = weights[i] / sum;
         ck_assert_double_eq_tol((double)counts[i] / SAMPLES, share, 5.0 * sqrt(share * (1.0 - share) / SAMPLES));
     }
     fixture_destroy(&shown.light);

@@ -257,7 +257,7 @@ START_TEST(test_importance)
 {
     Estimators estimators;
     float importance[IMPORTANCE_CELLS];
-    double sum = 0.0, worth = 0.0, least = 0.05 * 0.505;
+    double sum = 0.0, weighted = 0.0, least = 0.05 * 0.505;
     estimators_init(&estimators);
     for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
         estimator_set(&estimators, s, 1.0, 0.0, 0.0);
@@ -280,9 +280,9 @@ START_TEST(test_importance)
     for (size_t i = 0; i < IMPORTANCE_CELLS; ++i) {
         double light = i % IMPORTANCE_SIDE < IMPORTANCE_SIDE / 2 ? 1.0 : 0.01;
         sum += light;
-        worth += light * (double)importance[i];
+        weighted += light * (double)importance[i];
     }
-    ck_assert_double_eq_tol(worth / sum, 1.0, 0.1);
+    ck_assert_double_eq_tol(weighted / sum, 1.0, 0.1);
     estimators_destroy(&estimators);
 }
 END_TEST

@@ -279,7 +279,7 @@ START_TEST(test_importance_known)
 {
     Known known;
     float importance[IMPORTANCE_CELLS];
-    double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
+    double light[IMPORTANCE_CELLS], sum = 0.0, weighted = 0.0;
     known_init(&known, 13);
     importance_learn(&known.combination, importance);
     for (int cell = 0; cell < (int)IMPORTANCE_CELLS; ++cell) {
@@ -294,9 +294,9 @@ START_TEST(test_importance_known)
         sum += light[cell] = all / pixels;
     }
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
-        worth += light[cell] / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS);
+        weighted += light[cell] / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS);
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
-        TEST_NEAR(importance[cell], sum / worth / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS), 1e-5);
+        TEST_NEAR(importance[cell], sum / weighted / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS), 1e-5);
     known_destroy(&known);
 }
 END_TEST

@@ -15,8 +15,8 @@
     "  " side " " y " -" side "  -" side " " y " " side "  " side " " y " " side " ]\n"
 
 /* One estimator alone plus what it leaves to chains, against path tracing. */
-static void stream_compare(const char *name, const BidirectionalScene *scene, int estimator, unsigned expected_samples,
-                           unsigned samples)
+static void estimator_compare(const char *name, const BidirectionalScene *scene, int estimator,
+                              unsigned expected_samples, unsigned samples)
 {
     PictureGroups expected, got;
     char line[128];
@@ -37,7 +37,7 @@ static void stream_compare(const char *name, const BidirectionalScene *scene, in
 }
 
 /* At effort 1 only path tracing's estimator; all of them in make check-long. */
-static bool stream_left_out(int estimator)
+static bool estimator_left_out(int estimator)
 {
     return test_effort() == 1 && estimator != ESTIMATOR_PATHS;
 }
@@ -50,7 +50,7 @@ START_TEST(test_shown_filters)
 {
     const int estimator = _i % ESTIMATOR_COUNT, filter = _i / ESTIMATOR_COUNT;
     char text[2048];
-    if (stream_left_out(estimator))
+    if (estimator_left_out(estimator))
         return;
     snprintf(text, sizeof text,
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
@@ -59,7 +59,7 @@ START_TEST(test_shown_filters)
              "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
              BIDIRECTIONAL_FILTERS[filter]);
     const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
-    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
+    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
 }
 END_TEST
 
@@ -81,8 +81,8 @@ START_TEST(test_shown_lights)
 {
     const int estimator = _i % ESTIMATOR_COUNT;
     const BidirectionalScene *scene = &SUNS[_i / ESTIMATOR_COUNT];
-    if (!stream_left_out(estimator))
-        stream_compare(scene->name, scene, estimator, 128, 512);
+    if (!estimator_left_out(estimator))
+        estimator_compare(scene->name, scene, estimator, 128, 512);
 }
 END_TEST
 
