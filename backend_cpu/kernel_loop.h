@@ -6,6 +6,9 @@
  * take it out of the loop. */
 #define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
     const SceneView *scene = ((void)(frame), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
+#define KERNEL_SCENE_GUIDED(frame, guided_by, geometry, tables, texels)                                                \
+    const SceneView *scene =                                                                                           \
+        ((void)(frame), (void)(guided_by), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
 
 /* Nor do they compute where a field of their state is: in the loops of a chunk that is known. Translation units whose
  * kernels are run on other buffers as well, by tests, define KERNEL_ANY_STRIDE. */
@@ -40,6 +43,7 @@ KERNEL_LIST(KERNEL_DECLARE)
 #define ARGUMENTS_8(a, b, c, d, e, f, g, h) ARGUMENTS_7(a, b, c, d, e, f, g), buffers[h]
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
+#define ARGUMENTS_11(a, b, c, d, e, f, g, h, i, j, k) ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j), buffers[k]
 
 /* A translation unit that is compiled in another way has other names. */
 #ifndef KERNEL_LOOP_NAME
@@ -53,6 +57,7 @@ KERNEL_LIST(KERNEL_DECLARE)
         assert(STRIDE_IS_KNOWN((const FrameParams *)buffers[BUFFER_FRAME]));                                           \
         kernel_scene = scene_view(buffers[BUFFER_FRAME], buffers[BUFFER_GEOMETRY], buffers[BUFFER_TABLES],             \
                                   buffers[BUFFER_TEXELS]);                                                             \
+        kernel_scene.guide = buffers[BUFFER_GUIDE];                                                                    \
         for (uint i = 0; i < count; ++i) {                                                                             \
             platform_item = items ? items[i] : i;                                                                      \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \

@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* They are copied for every chunk of items. */
+_Static_assert(sizeof(FrameParams) <= 512, "parameters that only some passes have belong into Guide");
+
 struct KernelScene {
     BackendScene view;
 };
@@ -37,6 +40,17 @@ void *kernel_frame(const KernelScene *scene, FrameParams *frame, void *storage)
     (void)scene;
     (void)storage;
     return frame;
+}
+
+size_t kernel_guide_bytes(void)
+{
+    return 0;
+}
+
+void *kernel_guide(const Guide *guide, void *storage)
+{
+    (void)storage;
+    return (void *)(uintptr_t)guide; /* the array of arguments cannot say const */
 }
 
 uint *kernel_state_create(size_t words)

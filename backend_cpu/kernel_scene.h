@@ -19,6 +19,10 @@ const BackendScene *kernel_scene_view(const KernelScene *scene);
 size_t kernel_frame_bytes(void);
 void *kernel_frame(const KernelScene *scene, FrameParams *frame, void *storage);
 
+/* The same of a pass's guide. NULL: there is none. */
+size_t kernel_guide_bytes(void);
+void *kernel_guide(const Guide *guide, void *storage);
+
 /* Zeroed words of state, to be freed with free(). NULL when there are too many. */
 uint *kernel_state_create(size_t words);
 

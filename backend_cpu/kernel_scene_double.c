@@ -243,6 +243,18 @@ void *kernel_frame(const KernelScene *scene, FrameParams *frame, void *storage)
     return out;
 }
 
+size_t kernel_guide_bytes(void)
+{
+    return sizeof(Guide);
+}
+
+void *kernel_guide(const Guide *guide, void *storage)
+{
+    if (guide)
+        struct_widen(STRUCT_Guide, (const uint *)(const void *)guide, storage);
+    return storage;
+}
+
 uint *kernel_state_create(size_t words)
 {
     /* Never touched pages of the block are never made, and those that are begin with zeros. */

@@ -20,7 +20,9 @@ bool worker_init(Worker *worker, KernelScene *scene, const RaysEmbree *rays, Err
     worker->scene = scene;
     worker->rays = rays;
     worker->kernel_frame = malloc(kernel_frame_bytes() + 1);
-    return worker->kernel_frame || error_memory(error, kernel_frame_bytes(), "threads");
+    worker->kernel_guide = malloc(kernel_guide_bytes() + 1);
+    return (worker->kernel_frame && worker->kernel_guide) ||
+           error_memory(error, kernel_frame_bytes() + kernel_guide_bytes(), "threads");
 }
 
 void worker_destroy(Worker *worker)
@@ -28,6 +30,7 @@ void worker_destroy(Worker *worker)
     for (int id = 0; id < BUFFER_COUNT; ++id)
         free(worker->buffers[id]);
     free(worker->kernel_frame);
+    free(worker->kernel_guide);
     *worker = (Worker){0};
 }
 
@@ -54,6 +57,7 @@ static void worker_arguments(Worker *worker, const StepList *list, void *argumen
     for (int id = 0; id < BUFFER_COUNT; ++id)
         arguments[id] = worker->buffers[id];
     arguments[BUFFER_FRAME] = kernel_frame(worker->scene, &worker->frame, worker->kernel_frame);
+    arguments[BUFFER_GUIDE] = kernel_guide(list->guide, worker->kernel_guide);
     arguments[BUFFER_PASS] = list->pass_words;
     /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
     arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;

@@ -21,7 +21,7 @@ typedef struct Worker {
     KernelScene *scene;
     const RaysEmbree *rays;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the chunk */
-    void *kernel_frame; /* kernel_frame's storage */
+    void *kernel_frame, *kernel_guide; /* storage of the functions of these names */
     uint *buffers[BUFFER_COUNT]; /* per-item buffers and counters */
     size_t buffer_words[BUFFER_COUNT];
     uint64_t diagnostics[DIAGNOSTIC_COUNT];

@@ -65,7 +65,7 @@ static void events_release(Batch *batch)
 #define KERNEL_ARGUMENTS(name, count, ...) {count, {__VA_ARGS__}},
 static const struct KernelArguments {
     uint count;
-    BufferId buffers[10];
+    BufferId buffers[11];
 } ARGUMENTS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ARGUMENTS)};
 #undef KERNEL_ARGUMENTS
 
@@ -79,6 +79,8 @@ static cl_mem argument(const Launch *launch, BufferId id)
         return launch->batch->memory->splats;
     case BUFFER_FILM:
         return memory->film;
+    case BUFFER_GUIDE:
+        return memory->guide;
     case BUFFER_GEOMETRY:
     case BUFFER_TABLES:
     case BUFFER_TEXELS:

@@ -65,6 +65,19 @@ static bool scene_check(DeviceMemory *memory, const size_t bytes[SCENE_BUFFER_CO
     return true;
 }
 
+static bool buffer_make(DeviceMemory *memory, cl_mem *buffer, cl_mem_flags flags, uint64_t bytes, Error *error)
+{
+    cl_int status;
+    *buffer = clCreateBuffer(memory->context, flags, (size_t)bytes, NULL, &status);
+    if (status == CL_SUCCESS) {
+        memory->bytes += (size_t)bytes;
+        return true;
+    }
+    char what[64], size[32];
+    snprintf(what, sizeof what, "allocating %s", size_text(bytes, size, sizeof size));
+    return ocl_fail(error, memory->device->info.name, what, status);
+}
+
 /* OpenCL has no empty buffers: one word stands for none. */
 static bool scene_copy(DeviceMemory *memory, int i, const uint *words, size_t bytes, Error *error)
 {
@@ -92,6 +105,9 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
     for (int i = 0; i < SCENE_BUFFER_COUNT; ++i)
         if (!scene_copy(memory, i, words[i], bytes[i], error))
             return false;
+    if (!buffer_make(memory, &memory->guide, CL_MEM_READ_ONLY, sizeof(Guide), error))
+        return false;
+    memory->scene_bytes += sizeof(Guide);
     memory->bytes = memory->scene_bytes;
     return true;
 }
@@ -155,19 +171,6 @@ static bool batch_choose(const DeviceMemory *memory, const uint *words_per_item,
             *batch = limit;
     }
     return *batch <= limit || state_too_large(memory, words_per_item, *batch, limit, error);
-}
-
-static bool buffer_make(DeviceMemory *memory, cl_mem *buffer, cl_mem_flags flags, uint64_t bytes, Error *error)
-{
-    cl_int status;
-    *buffer = clCreateBuffer(memory->context, flags, (size_t)bytes, NULL, &status);
-    if (status == CL_SUCCESS) {
-        memory->bytes += (size_t)bytes;
-        return true;
-    }
-    char what[64], size[32];
-    snprintf(what, sizeof what, "allocating %s", size_text(bytes, size, sizeof size));
-    return ocl_fail(error, memory->device->info.name, what, status);
 }
 
 static bool staging_map(DeviceMemory *memory, BatchMemory *batch, size_t bytes, Error *error)
@@ -293,6 +296,7 @@ void device_memory_destroy(DeviceMemory *memory)
 {
     state_release(memory);
     buffer_release(&memory->film);
+    buffer_release(&memory->guide);
     for (int id = 0; id <= BUFFER_BVH; ++id)
         buffer_release(&memory->scene[id]);
     memset(memory, 0, sizeof *memory);

@@ -34,6 +34,7 @@ typedef struct DeviceMemory {
     cl_mem scene[BUFFER_BVH + 1]; /* geometry, tables, texels, bvh */
     cl_mem state[BUFFER_COUNT]; /* per-item buffers but splats; diagnostics; counts */
     BatchMemory batches[BATCH_SLOTS];
+    cl_mem guide; /* of the pass under way */
     cl_mem film; /* its sums, when the device adds (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* that the state was made for */
     uint batch; /* items of a batch; 0 until state is made */

@@ -18,9 +18,12 @@ static Region region_of(const FrameParams *frame, const StepList *list)
 
 bool pass_data_begin(DeviceMemory *memory, const FrameParams *frame, const StepList *list, Error *error)
 {
-    if (!list->pass_words || frame->item_count == 0)
-        return true;
-    cl_int status;
+    cl_int status = CL_SUCCESS;
+    if (list->guide)
+        status = clEnqueueWriteBuffer(memory->queue, memory->guide, CL_TRUE, 0, sizeof *list->guide, list->guide, 0,
+                                      NULL, NULL);
+    if (status != CL_SUCCESS || !list->pass_words || frame->item_count == 0)
+        return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's guide", status);
     Region region = region_of(frame, list);
     cl_mem *buffer = &memory->state[BUFFER_PASS];
     *buffer = clCreateBuffer(memory->context, CL_MEM_READ_WRITE, region.size[0] * region.size[1], NULL, &status);

@@ -17,6 +17,7 @@
  * (StepList). */
 typedef enum BufferId {
     BUFFER_FRAME,
+    BUFFER_GUIDE, /* StepList.guide */
     BUFFER_GEOMETRY,
     BUFFER_TABLES,
     BUFFER_TEXELS,
@@ -73,6 +74,7 @@ typedef struct StepList {
     uint *pass_words;
     uint pass_fields;
     uint pass_stride;
+    const Guide *guide; /* BUFFER_GUIDE during a pass; NULL: none */
     const StateField *fields; /* of BUFFER_PATHS, which integrators lay out as they like; may be NULL */
     size_t field_count;
 } StepList;

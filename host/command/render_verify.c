@@ -59,7 +59,11 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
 {
     RenderOptions few = *options;
     Film film;
-    RenderRun run = {.interface = sides[0].interface, .backend = sides[0].backend, .options = &few, .film = &film};
+    RenderRun run = {.interface = sides[0].interface,
+                     .backend = sides[0].backend,
+                     .options = &few,
+                     .film = &film,
+                     .guide = &scene->guide};
     StepList list;
     few.chains.steps = STEPS_COMPARED;
     render_frame(integrator, scene, options, &run.frame);

@@ -153,9 +153,12 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     pool_frame.pool = 1;
     mmlt_frame_film(&pool_frame, &mmlt->pool_film);
     mmlt_frame_film(&mmlt->paths_frame, &mmlt->paths_film);
-    return integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
-           (frame->max_depth < CHAIN_DEPTH_MIN || (bdpt_list(&pool_frame, &mmlt->pool, error) &&
-                                                   chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
+    bool made = integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
+                (frame->max_depth < CHAIN_DEPTH_MIN || (bdpt_list(&pool_frame, &mmlt->pool, error) &&
+                                                        chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
+    mmlt->guide = *mmlt->run->guide;
+    mmlt->paths.guide = mmlt->pool.guide = mmlt->chains.guide = &mmlt->guide;
+    return made;
 }
 
 /* Of the films that are shown. */

@@ -45,6 +45,7 @@ typedef struct Mmlt {
     uint *begun; /* words of the chains as their pass began, where somebody wants to know */
     ChainPopulation populations[REPLICAS];
     float importance[REPLICAS][IMPORTANCE_CELLS];
+    Guide guide; /* what the passes under way go by */
     uint visits[REPLICAS][IMPORTANCE_CELLS + 1]; /* of pools: importance_visits */
     double visited[REPLICAS][IMPORTANCE_CELLS]; /* visits of a cell's pixels over those of all, summed over samples */
     double visited_all[REPLICAS]; /* samples of pools */
@@ -71,10 +72,10 @@ void mmlt_frame_film(FrameParams *frame, const Film *film);
 int mmlt_replica(const Mmlt *mmlt, uint generation);
 
 /* What all passes of a generation have in common: importance and limit. */
-void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame);
+void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame);
 
 /* What passes of the latest pool, of `count` samples, and of chains from it are given. */
-FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count);
+FrameParams mmlt_pool_frame(Mmlt *mmlt, uint count);
 FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
 /* A small pool before the first, of which only its brightness is kept: so the first generation has a limit as later

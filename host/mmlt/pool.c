@@ -111,20 +111,22 @@ static float clamp_threshold_of(const Mmlt *mmlt)
     return (float)(CLAMP_FACTOR * brightness_known(mmlt));
 }
 
-void mmlt_generation_frame(const Mmlt *mmlt, FrameParams *frame)
+void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame)
 {
-    memcpy(frame->importance, mmlt->importance[mmlt_replica(mmlt, mmlt->generation)], sizeof frame->importance);
+    memcpy(mmlt->guide.importance, mmlt->importance[mmlt_replica(mmlt, mmlt->generation)],
+           sizeof mmlt->guide.importance);
     frame->clamp_threshold = clamp_threshold_of(mmlt);
 }
 
 /* What a pool and the chains from it have in common. */
-static void seeds_frame(const Mmlt *mmlt, FrameParams *frame)
+static void seeds_frame(Mmlt *mmlt, FrameParams *frame)
 {
     mmlt_generation_frame(mmlt, frame);
     frame->sample_index = mmlt->pool_sample;
     frame->pixel_first = mmlt->pool_pixel;
     const uint *visits = mmlt->visits[mmlt_replica(mmlt, mmlt->generation)];
-    memcpy(frame->visits, visits, sizeof frame->visits);
+    memcpy(mmlt->guide.visits, visits, sizeof mmlt->guide.visits);
+    frame->pool_visits = visits[IMPORTANCE_CELLS];
     frame->pixel_stride = visits[IMPORTANCE_CELLS] > 0
                               ? pixel_order_stride_of(visits[IMPORTANCE_CELLS])
                               : pixel_order_stride(frame->crop_x1 - frame->crop_x0, frame->crop_y1 - frame->crop_y0);
@@ -136,7 +138,7 @@ void mmlt_frame_film(FrameParams *frame, const Film *film)
     frame->split_depths = film->depth_kinds;
 }
 
-FrameParams mmlt_pool_frame(const Mmlt *mmlt, uint count)
+FrameParams mmlt_pool_frame(Mmlt *mmlt, uint count)
 {
     FrameParams frame = mmlt->run->frame;
     frame.pool = 1;

@@ -83,6 +83,7 @@ bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Sc
     memset(pilot.mantissas, 0, sizeof pilot.mantissas);
     if (!shown->list(&frame, &list, error))
         return false;
+    list.guide = run->guide;
     pthread_mutex_init(&pilot.mutex, NULL);
     const SplatSink sink = {.splats = pilot_splats, .context = &pilot, .whole = true};
     bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);

@@ -136,8 +136,12 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
                  const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
                  RenderResult *result, Error *error)
 {
-    RenderRun run = {
-        .interface = interface, .backend = backend, .options = options, .callbacks = callbacks, .film = film};
+    RenderRun run = {.interface = interface,
+                     .backend = backend,
+                     .options = options,
+                     .callbacks = callbacks,
+                     .film = film,
+                     .guide = &scene->guide};
     run.crop_pixels = film_pixels(film);
     memset(result, 0, sizeof *result);
     render_frame(integrator, scene, options, &run.frame);

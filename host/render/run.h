@@ -12,6 +12,7 @@ typedef struct RenderRun {
     const RenderOptions *options;
     const RenderCallbacks *callbacks; /* may be NULL */
     FrameParams frame; /* render_frame */
+    const Guide *guide; /* the scene's */
     Film *film;
     uint64_t crop_pixels;
     uint64_t done; /* samples in the film */

@@ -9,27 +9,29 @@
 typedef struct LightGuide {
     double place[3];
     double near; /* 1 of a position, 0 of a direction */
-    double power; /* as FrameParams.guides_power */
+    double power; /* as Guide.lights_power */
 } LightGuide;
 
 /* Takes its place among the strongest, the strongest first. */
-static void guide_add(FrameParams *frame, const LightGuide *guide)
+static void guide_add(Scene *scene, const LightGuide *added)
 {
+    FrameParams *frame = &scene->frame;
+    Guide *guide = &scene->guide;
     uint place = frame->guide_count;
-    float power = (float)guide->power;
-    while (place > 0 && frame->guides_power[place - 1] < power)
+    float power = (float)added->power;
+    while (place > 0 && guide->lights_power[place - 1] < power)
         --place;
     if (!(power > 0.0f) || place == LIGHT_GUIDES_MAX)
         return;
     frame->guide_count += frame->guide_count < LIGHT_GUIDES_MAX;
     for (uint i = frame->guide_count - 1; i > place; --i) {
-        frame->guides[i] = frame->guides[i - 1];
-        frame->guides_near[i] = frame->guides_near[i - 1];
-        frame->guides_power[i] = frame->guides_power[i - 1];
+        guide->lights[i] = guide->lights[i - 1];
+        guide->lights_near[i] = guide->lights_near[i - 1];
+        guide->lights_power[i] = guide->lights_power[i - 1];
     }
-    frame->guides[place] = vec3((float)guide->place[0], (float)guide->place[1], (float)guide->place[2]);
-    frame->guides_near[place] = (float)guide->near;
-    frame->guides_power[place] = power;
+    guide->lights[place] = vec3((float)added->place[0], (float)added->place[1], (float)added->place[2]);
+    guide->lights_near[place] = (float)added->near;
+    guide->lights_power[place] = power;
 }
 
 /* The lights of the shape that light `first` is of. Returns the first light that is not. */
@@ -97,6 +99,6 @@ void light_guide_setup(Scene *scene)
             next = shape_guide(scene, &view, i, &guide);
         else if (light->kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)
             guide = environment_guide(&view, light, radius);
-        guide_add(&scene->frame, &guide);
+        guide_add(scene, &guide);
     }
 }

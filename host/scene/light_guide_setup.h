@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-/* Sets the light guides of scene->frame: the shapes and images of the environment that send most light. For
+/* Sets the light guides of scene->guide: the shapes and images of the environment that send most light. For
  * scene_finish, once light_setup is done and before the arrays are packed. */
 void light_guide_setup(Scene *scene);
 

@@ -87,6 +87,7 @@ typedef struct Scene {
     uint features;
     size_t primitive_count; /* the array itself is freed once packed */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
+    Guide guide; /* light guides; importance and visits are the integrator's */
     Array geometry_words; /* uint: the packed buffers */
     Array tables_words; /* uint */
 } Scene;

@@ -111,7 +111,7 @@ SHARED_FUNCTION uint importance_axis(float film, uint first, uint pixels)
     return (uint)float_clamp(place, 0.0f, (float)IMPORTANCE_SIDE - 1.0f);
 }
 
-/* The cell of frame->importance that a film position is in. */
+/* The cell of Guide.importance that a film position is in. */
 SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 film)
 {
     uint x = importance_axis(film.x, frame->crop_x0, frame->crop_x1 - frame->crop_x0);
@@ -119,9 +119,9 @@ SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 fil
     return y * IMPORTANCE_SIDE + x;
 }
 
-SHARED_FUNCTION float film_importance(__global const FrameParams *frame, Vec2 film)
+SHARED_FUNCTION float film_importance(__global const FrameParams *frame, __global const Guide *guide, Vec2 film)
 {
-    return frame->importance[importance_cell(frame, film)];
+    return guide->importance[importance_cell(frame, film)];
 }
 
 #endif

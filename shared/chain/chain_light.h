@@ -6,13 +6,13 @@
 #include "path/bd_weight.h"
 
 /* Where the film sees the proposal, and what path tracing shows of it. */
-SHARED_FUNCTION void chain_place(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec2 film,
-                                 Vec3 color, float path_tracing)
+SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint t, Vec2 film, Vec3 color,
+                                 float path_tracing)
 {
-    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(frame, key, film, color, path_tracing));
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(scene, key, film, color, path_tracing));
 }
 
 /* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing
@@ -78,7 +78,7 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
         return;
     Random4 film = chain_camera(frame, paths, t);
     state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
-    chain_place(frame, paths, t, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
+    chain_place(scene, paths, t, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
 }
 
 #endif

@@ -237,7 +237,7 @@ SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
-    ItemPlace place = item_place_of(frame, item);
+    ItemPlace place = pool_item_place(frame, scene->guide, item);
     state_store(paths, stride, BD_PIXEL, t, place.pixel);
     state_store(paths, stride, BD_SAMPLE, t, place.sample);
     float weight;

@@ -91,12 +91,12 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
  * were the path made by path tracing, it would contribute color / path_tracing. Here as in kernels/pt.cl (path_shown)
  * that, times its importance, is shown up to the limit. Walks from the camera begin with film_reach_factor, which paths
  * that the light's walk brings to the lens (t = 1) do not have, nor path tracing. */
-SHARED_FUNCTION uint chain_key_shown(__global const FrameParams *frame, uint key, Vec2 film, Vec3 color,
-                                     float path_tracing)
+SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film, Vec3 color, float path_tracing)
 {
+    __global const FrameParams *frame = scene->frame;
     uint d = chain_key_depth(key), s = chain_key_s(key), shown = KEY_SHOWN_ALL;
     float limit = RARE_OVER_CLAMP * frame->clamp_threshold * path_tracing;
-    float worth = rgb_luminance(color) * film_importance(frame, film);
+    float worth = rgb_luminance(color) * film_importance(frame, scene->guide, film);
     if (s < d)
         worth /= film_reach_factor(frame);
     if (frame->clamp_threshold < FLOAT_MAX && worth > limit)
@@ -172,7 +172,7 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
 {
     float f = rgb_luminance(color);
     if (f > 0.0f)
-        f *= film_splat_cover(scene, film) * film_importance(scene->frame, film);
+        f *= film_splat_cover(scene, film) * film_importance(scene->frame, scene->guide, film);
     return f;
 }
 

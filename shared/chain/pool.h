@@ -84,8 +84,8 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     Random4 random = pool_camera(scene, paths, t, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
     state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
-    state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, film));
-    float density_ratio = pool_density_ratio(frame, state_load(paths, stride, BD_PIXEL, t));
+    state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, scene->guide, film));
+    float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, t));
     state_store_float(paths, stride, BD_WEIGHT, t, density_ratio * (weight / film_reach_factor(frame)));
     walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
     pool_roulette_weigh(frame, paths, t, density_ratio);
@@ -94,8 +94,9 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
 /* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;
  * `cover`, `importance`: film_splat_cover and the importance where the film sees it. It becomes the candidate with the
  * probability of its share in all so far. Returns what the film is shown of it, the part below the limit. */
-SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                      uint s, uint t, float survival, float cover, float importance, Vec3 contribution)
+SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __global const Guide *guide,
+                                      __global uint *restrict paths, uint item, uint s, uint t, float survival,
+                                      float cover, float importance, Vec3 contribution)
 {
     uint stride = frame->stride;
     float luminance = rgb_luminance(contribution) * importance;
@@ -106,7 +107,8 @@ SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __globa
     /* Over the density of the numbers: those of a film position that the path does not have (t = 1) are uniform. */
     float worth = weight * luminance;
     worth *= t == 1u ? cover
-                     : pool_density_ratio(frame, state_load(paths, stride, BD_PIXEL, item)) / film_reach_factor(frame);
+                     : pool_density_ratio(frame, guide, state_load(paths, stride, BD_PIXEL, item)) /
+                           film_reach_factor(frame);
     float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + worth;
     state_store_float(paths, stride, BD_CANDIDATE_SUM, item, sum);
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CANDIDATES + s * 64u + t);

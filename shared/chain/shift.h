@@ -82,7 +82,7 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
         return false;
     Random4 origin = {{0u, 0u, 0u, 0u}};
     if (inverse.base && frame->guide_count > 0u)
-        origin = light_guide_numbers(frame, vertex->p, vertex->frame, origin);
+        origin = light_guide_numbers(scene, vertex->p, vertex->frame, origin);
     numbers->x[1] = light_guide_bits(inverse.u.x) - origin.x[1];
     numbers->x[2] = light_guide_bits(inverse.u.y) - origin.x[2];
     for (uint k = 0u; k < 2u; ++k)

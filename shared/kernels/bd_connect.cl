@@ -17,10 +17,11 @@ SHARED_FUNCTION float vertex_survival(__global const FrameParams *frame, __globa
 }
 
 /* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
-__kernel void bd_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                         __global const uint *restrict tables, __global const uint *restrict texels,
-                         __global uint *restrict paths, __global uint *restrict shadows,
-                         __global const uint *restrict vertices, __global const uint *restrict densities)
+__kernel void bd_connect(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                         __global const uint *restrict geometry, __global const uint *restrict tables,
+                         __global const uint *restrict texels, __global uint *restrict paths,
+                         __global uint *restrict shadows, __global const uint *restrict vertices,
+                         __global const uint *restrict densities)
 {
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
@@ -33,7 +34,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     if ((s > 1u && vertex_smooth(vertices, stride, base_y, item)) ||
         (t > 1u && vertex_smooth(vertices, stride, base_z, item)))
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Connection connection = {0};
     Vertex y = {0}, z = {0};
     if (s > 1u)
@@ -57,7 +58,8 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
                       vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
                           vertex_survival(frame, vertices, item, SIDE_CAMERA, t));
     if (t == 1u)
-        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item, film_importance(frame, connection.film));
+        state_store_float(paths, stride, BD_TARGET_IMPORTANCE, item,
+                          film_importance(frame, scene->guide, connection.film));
 }
 
 /* The pairs in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1
@@ -87,9 +89,9 @@ SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __g
 }
 
 /* From: traced shadow rays. To: visible connections gathered, or (t = 1) put out for the film; the next pair. */
-__kernel void bd_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                 __global uint *restrict shadows, __global uint *restrict splats,
-                                 __global uint *restrict diagnostics)
+__kernel void bd_add_connections(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                                 __global uint *restrict paths, __global uint *restrict shadows,
+                                 __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0), stride = frame->stride;
     if (item >= frame->item_count)
@@ -103,9 +105,9 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
                           : state_load_float(paths, stride, BD_COVER, item);
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
         float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
-        contribution =
-            reservoir_update(frame, paths, item, s, t, state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
-                             cover, importance, contribution);
+        contribution = reservoir_update(frame, guide, paths, item, s, t,
+                                        state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item), cover,
+                                        importance, contribution);
         state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
     }
     if (visible)

@@ -10,17 +10,18 @@
 #include "path/bd_weight.h"
 
 /* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
-__kernel void bd_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                             __global const uint *restrict tables, __global const uint *restrict texels,
-                             __global uint *restrict paths, __global uint *restrict rays,
-                             __global uint *restrict shadows, __global uint *restrict vertices,
-                             __global uint *restrict densities, __global uint *restrict diagnostics)
+__kernel void bd_start_light(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                             __global const uint *restrict geometry, __global const uint *restrict tables,
+                             __global const uint *restrict texels, __global uint *restrict paths,
+                             __global uint *restrict rays, __global uint *restrict shadows,
+                             __global uint *restrict vertices, __global uint *restrict densities,
+                             __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
-    bd_header_begin(frame, paths, rays, shadows, stride, t);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
+    bd_header_begin(frame, paths, rays, shadows, t, pool_item_place(frame, guide, frame->first_item + t));
     state_store(paths, stride, BD_LENGTHS, t, 0u);
     state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
@@ -40,15 +41,15 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
 }
 
 /* From: nothing more than the pixel. To: the camera's first ray. */
-__kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                              __global const uint *restrict tables, __global const uint *restrict texels,
-                              __global uint *restrict paths, __global uint *restrict rays,
-                              __global uint *restrict diagnostics)
+__kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                              __global const uint *restrict geometry, __global const uint *restrict tables,
+                              __global const uint *restrict texels, __global uint *restrict paths,
+                              __global uint *restrict rays, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     if (frame->pool != 0u)
         pool_start_camera(scene, paths, rays, diagnostics, t);
     else
@@ -56,15 +57,16 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
 }
 
 /* s = 0: what is sent by lights that the walk has met after `depth` segments. */
-SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
+SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 contribution)
 {
+    __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     if (frame->pool != 0u)
-        contribution =
-            reservoir_update(frame, paths, t, 0u, depth + 1u, state_load_float(paths, stride, BD_SURVIVAL, t),
-                             state_load_float(paths, stride, BD_COVER, t),
-                             state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
+        contribution = reservoir_update(frame, scene->guide, paths, t, 0u, depth + 1u,
+                                        state_load_float(paths, stride, BD_SURVIVAL, t),
+                                        state_load_float(paths, stride, BD_COVER, t),
+                                        state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
     if (frame->split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, t, depth);
     bd_add_radiance(paths, stride, t, contribution);
@@ -72,11 +74,11 @@ SHARED_FUNCTION void bd_add_met(__global const FrameParams *frame, __global uint
 
 /* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
  * or are full end. */
-__kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                            __global const uint *restrict tables, __global const uint *restrict texels,
-                            __global uint *restrict paths, __global uint *restrict rays,
-                            __global const uint *restrict hits, __global uint *restrict vertices,
-                            __global uint *restrict densities)
+__kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                            __global const uint *restrict geometry, __global const uint *restrict tables,
+                            __global const uint *restrict texels, __global uint *restrict paths,
+                            __global uint *restrict rays, __global const uint *restrict hits,
+                            __global uint *restrict vertices, __global uint *restrict densities)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -84,7 +86,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, BD_DEPTH, t);
     if (depth == 0u)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
     WalkHit walk_hit = {0};
     walk_hit_make(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &walk_hit);
@@ -94,7 +96,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
             Vec3 sum = walk_environment(scene, view, walk_hit.ray.d, walk_hit.from_ng, depth);
-            bd_add_met(frame, paths, t, depth, vec3_mul(beta, sum));
+            bd_add_met(scene, paths, t, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, t);
         return;
@@ -103,7 +105,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(scene, &walk_hit, &ends);
         if (!vec3_is_zero(radiance))
-            bd_add_met(frame, paths, t, depth,
+            bd_add_met(scene, paths, t, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
     if (!walk_vertex(scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
@@ -116,11 +118,11 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
 
 /* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
  * absorption or Russian roulette. Roulette leaves the weights alone: they need not know of it to sum to one. */
-__kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                              __global const uint *restrict tables, __global const uint *restrict texels,
-                              __global uint *restrict paths, __global uint *restrict rays,
-                              __global const uint *restrict vertices, __global uint *restrict densities,
-                              __global uint *restrict diagnostics)
+__kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                              __global const uint *restrict geometry, __global const uint *restrict tables,
+                              __global const uint *restrict texels, __global uint *restrict paths,
+                              __global uint *restrict rays, __global const uint *restrict vertices,
+                              __global uint *restrict densities, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -128,7 +130,7 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
     if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))

@@ -22,7 +22,7 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
-    bd_header_begin(frame, paths, rays, shadows, stride, t);
+    bd_header_begin(frame, paths, rays, shadows, t, item_place(frame, t));
     if (frame->max_depth >= 2u &&
         walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, 0u,
                          bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT), &own))

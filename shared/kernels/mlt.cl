@@ -41,10 +41,10 @@ __kernel void pool_end(__global const FrameParams *restrict frame, __global cons
 }
 
 /* From: where each chain begins. To: its coordinates. */
-__kernel void mlt_begin(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                        __global const uint *restrict tables, __global const uint *restrict texels,
-                        __global const uint *restrict pass, __global uint *restrict paths, __global uint *restrict rays,
-                        __global uint *restrict shadows)
+__kernel void mlt_begin(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                        __global const uint *restrict geometry, __global const uint *restrict tables,
+                        __global const uint *restrict texels, __global const uint *restrict pass,
+                        __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict shadows)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -64,7 +64,7 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
     state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
     walk_end(paths, rays, stride, t);
     if (item != NONE) {
-        KERNEL_SCENE(frame, geometry, tables, texels);
+        KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
         chain_numbers_of_pool(scene, paths, t, key, item);
         return;
     }
@@ -100,9 +100,10 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
 }
 
 /* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
-__kernel void mlt_propose(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                          __global const uint *restrict tables, __global const uint *restrict texels,
-                          __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict vertices,
+__kernel void mlt_propose(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                          __global const uint *restrict geometry, __global const uint *restrict tables,
+                          __global const uint *restrict texels, __global uint *restrict paths,
+                          __global uint *restrict rays, __global uint *restrict vertices,
                           __global uint *restrict densities, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
@@ -118,7 +119,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     walk_end(paths, rays, stride, t);
     if ((chain_move(paths, stride, t, MOVE_REACHED) & SUBPATH_LIGHT) != 0u)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
     float own;
     if (walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, chain_vertex_base(SIDE_LIGHT, bank),
@@ -127,10 +128,11 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
 }
 
 /* From: the light's walk done. To: the camera's first ray, where its subpath is new and the light's is there. */
-__kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                               __global const uint *restrict tables, __global const uint *restrict texels,
-                               __global uint *restrict paths, __global uint *restrict rays,
-                               __global uint *restrict vertices, __global uint *restrict diagnostics)
+__kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                               __global const uint *restrict geometry, __global const uint *restrict tables,
+                               __global const uint *restrict texels, __global uint *restrict paths,
+                               __global uint *restrict rays, __global uint *restrict vertices,
+                               __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -144,7 +146,7 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
         chain_move_set(paths, stride, t, MOVE_REACHED, SUBPATH_BOTH);
         return;
     }
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     walk_start_film(scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
 }
 
@@ -194,9 +196,10 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
 /* From: closest hits. To: the vertex with its density, the ratio of densities of the one before it, and the next ray;
  * s = 0: at the last one what the light sends. A walk ends with its last vertex, by absorption, or where nothing can be
  * made of it. */
-__kernel void mlt_walk(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                       __global const uint *restrict tables, __global const uint *restrict texels,
-                       __global uint *restrict paths, __global uint *restrict rays, __global const uint *restrict hits,
+__kernel void mlt_walk(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                       __global const uint *restrict geometry, __global const uint *restrict tables,
+                       __global const uint *restrict texels, __global uint *restrict paths,
+                       __global uint *restrict rays, __global const uint *restrict hits,
                        __global uint *restrict vertices, __global uint *restrict densities,
                        __global uint *restrict diagnostics)
 {
@@ -206,7 +209,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
     if (depth == 0u)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), d = chain_key_depth(key), s = chain_key_s(key);
     uint bank = chain_bank(paths, stride, t, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
@@ -270,10 +273,11 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
 }
 
 /* From: both subpaths. To: their connection, weighted, and its shadow ray. */
-__kernel void mlt_connect(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                          __global const uint *restrict tables, __global const uint *restrict texels,
-                          __global uint *restrict paths, __global uint *restrict shadows,
-                          __global const uint *restrict vertices, __global const uint *restrict densities)
+__kernel void mlt_connect(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                          __global const uint *restrict geometry, __global const uint *restrict tables,
+                          __global const uint *restrict texels, __global uint *restrict paths,
+                          __global uint *restrict shadows, __global const uint *restrict vertices,
+                          __global const uint *restrict densities)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -283,7 +287,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != SUBPATH_BOTH)
         return;
     Random4 film = chain_camera(frame, paths, t);
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Connection connection = {0};
     if (!chain_connect(scene, paths, vertices, t, s, camera, film, &connection))
         return;
@@ -291,15 +295,15 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
     connection_store(paths, shadows, stride, t, &connection, weights.own);
     Vec2 position = camera == 1u ? connection.film : film_position(frame, film.x[0], film.x[1]);
-    chain_place(frame, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
+    chain_place(scene, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
 }
 
 /* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
-__kernel void mlt_accept(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                         __global const uint *restrict tables, __global const uint *restrict texels,
-                         __global uint *restrict paths, __global uint *restrict shadows,
-                         __global const uint *restrict vertices, __global uint *restrict splats,
-                         __global uint *restrict diagnostics)
+__kernel void mlt_accept(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                         __global const uint *restrict geometry, __global const uint *restrict tables,
+                         __global const uint *restrict texels, __global uint *restrict paths,
+                         __global uint *restrict shadows, __global const uint *restrict vertices,
+                         __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
@@ -309,20 +313,20 @@ __kernel void mlt_accept(__global const FrameParams *restrict frame, __global co
     Vec3 color = state_load_vec3(paths, stride, BD_CONTRIBUTION, t);
     if (cast && !visible)
         color = vec3_splat(0.0f);
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     chain_decide(scene, paths, splats, diagnostics, t, color, shift_ratio(paths, vertices, stride, t));
 }
 
 /* From: the chains. To: what the film has not got of them, and where they ended. */
-__kernel void mlt_end(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                      __global const uint *restrict tables, __global const uint *restrict texels,
-                      __global uint *restrict paths, __global uint *restrict splats, __global uint *restrict pass,
-                      __global uint *restrict diagnostics)
+__kernel void mlt_end(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                      __global const uint *restrict geometry, __global const uint *restrict tables,
+                      __global const uint *restrict texels, __global uint *restrict paths,
+                      __global uint *restrict splats, __global uint *restrict pass, __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     chain_splat_current(scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
                         chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE));
     uint key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);

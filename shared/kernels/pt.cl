@@ -33,15 +33,16 @@ SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *rest
 }
 
 /* From: nothing. To: the path's first ray, throughput 1. */
-__kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                             __global const uint *restrict tables, __global const uint *restrict texels,
-                             __global uint *restrict paths, __global uint *restrict rays,
-                             __global uint *restrict shadows, __global uint *restrict diagnostics)
+__kernel void pt_start_paths(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
+                             __global const uint *restrict geometry, __global const uint *restrict tables,
+                             __global const uint *restrict texels, __global uint *restrict paths,
+                             __global uint *restrict rays, __global uint *restrict shadows,
+                             __global uint *restrict diagnostics)
 {
     uint t = (uint)get_global_id(0), stride = frame->stride;
     if (t >= frame->item_count)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     ItemPlace place = item_place(frame, t);
     uint pixel = place.pixel, sample = place.sample;
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
@@ -67,7 +68,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store(paths, stride, PATH_GATHERED, t, 0u);
     if (frame->split_direct != 0u) {
         state_store_float(paths, stride, PATH_LIMIT, t,
-                          RARE_OVER_CLAMP * frame->clamp_threshold / film_importance(frame, film));
+                          RARE_OVER_CLAMP * frame->clamp_threshold / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
     }
     state_store_vec3(paths, stride, PATH_POINT, t, ray.o);

@@ -8,8 +8,8 @@
 
 /* X(name, number of arguments, the BufferId of each in order) */
 #define KERNEL_LIST_PATHS(X)                                                                                           \
-    X(pt_start_paths, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
-      BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                              \
+    X(pt_start_paths, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,      \
+      BUFFER_RAYS, BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                 \
     X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
       BUFFER_HITS)                                                                                                     \
     X(pt_sample_lights, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS)  \
@@ -35,17 +35,18 @@
     X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
 
 #define KERNEL_LIST_BIDIRECTIONAL(X)                                                                                   \
-    X(bd_start_light, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
-      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                           \
-    X(bd_start_camera, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+    X(bd_start_light, 11, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,     \
+      BUFFER_RAYS, BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                              \
+    X(bd_start_camera, 8, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,     \
+      BUFFER_RAYS, BUFFER_DIAGNOSTICS)                                                                                 \
+    X(bd_shade_hits, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,      \
+      BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                     \
+    X(bd_extend_walks, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,    \
+      BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
+    X(bd_connect, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,          \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                               \
+    X(bd_add_connections, 6, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS,                  \
       BUFFER_DIAGNOSTICS)                                                                                              \
-    X(bd_shade_hits, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
-      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                                  \
-    X(bd_extend_walks, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
-      BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
-    X(bd_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
-      BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
-    X(bd_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
     X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
     X(ib_start_light, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
       BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                             \
@@ -59,20 +60,20 @@
 
 #define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
-    X(mlt_begin, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,            \
-      BUFFER_RAYS, BUFFER_SHADOWS)                                                                                     \
-    X(mlt_propose, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
-      BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                                           \
-    X(mlt_start_camera, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
-      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                             \
-    X(mlt_walk, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
-      BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
-    X(mlt_connect, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,       \
-      BUFFER_VERTICES, BUFFER_DENSITIES)                                                                               \
-    X(mlt_accept, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
-      BUFFER_VERTICES, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                                              \
-    X(mlt_end, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SPLATS,            \
-      BUFFER_PASS, BUFFER_DIAGNOSTICS)
+    X(mlt_begin, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS,            \
+      BUFFER_PATHS, BUFFER_RAYS, BUFFER_SHADOWS)                                                                       \
+    X(mlt_propose, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,        \
+      BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
+    X(mlt_start_camera, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,    \
+      BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                \
+    X(mlt_walk, 11, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,           \
+      BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                 \
+    X(mlt_connect, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,         \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                               \
+    X(mlt_accept, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,         \
+      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                              \
+    X(mlt_end, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,             \
+      BUFFER_SPLATS, BUFFER_PASS, BUFFER_DIAGNOSTICS)
 
 #define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
 

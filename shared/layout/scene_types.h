@@ -346,16 +346,11 @@ typedef struct FrameParams {
     float shifts; /* of the steps of the camera subpath so many are shifts (chain/shift.h) */
     uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
     float large_step; /* probability of a large step */
-    float clamp_threshold; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
+    float
+        clamp_threshold; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
     float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
     uint guide_count; /* of chains and their pools: lights that directions count from (light/light_guide.h) */
-    Vec3 guides[LIGHT_GUIDES_MAX]; /* positions, or directions */
-    float guides_near[LIGHT_GUIDES_MAX]; /* 1 of positions, 0 of directions */
-    float guides_power
-        [LIGHT_GUIDES_MAX]; /* over the square of the distance, of a direction's length: what they send somewhere */
-    float importance[IMPORTANCE_CELLS]; /* of cells of the crop window, row by row (host/mmlt/importance.h) */
-    uint visits[IMPORTANCE_CELLS +
-                1u]; /* of a pool: those of all pixels before each cell, and of all; last 0: one of each */
+    uint pool_visits; /* of a pool: visits of all pixels together (Guide.visits); 0: one of each */
     uint seed_low, seed_high;
     uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
     uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
@@ -369,5 +364,15 @@ typedef struct FrameParams {
     float world_radius;
     float ray_reach; /* no coordinate of the origin of a ray is larger: boxes are widened for it (geometry/box.h) */
 } FrameParams;
+
+/* Where chains and pools go. In a buffer of its own (BUFFER_GUIDE), for FrameParams are copied for every chunk of items. */
+typedef struct Guide {
+    Vec3 lights[LIGHT_GUIDES_MAX]; /* FrameParams.guide_count positions, or directions (light/light_guide.h) */
+    float lights_near[LIGHT_GUIDES_MAX]; /* 1 of positions, 0 of directions */
+    float lights_power
+        [LIGHT_GUIDES_MAX]; /* what they send to a place, times the square of the distance or of the length */
+    float importance[IMPORTANCE_CELLS]; /* target importance of the cells of the crop window, row by row */
+    uint visits[IMPORTANCE_CELLS + 1u]; /* of a pool: those of all pixels before each cell, and of all */
+} Guide;
 
 #endif

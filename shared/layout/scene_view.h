@@ -7,6 +7,7 @@
 
 typedef struct SceneView {
     __global const FrameParams *frame;
+    __global const Guide *guide; /* NULL in kernels that have none */
     uint features;
     /* geometry */
     __global const Vec3 *positions;
@@ -43,6 +44,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     __global const SceneLayout *layout = &frame->layout;
     SceneView view;
     view.frame = frame;
+    view.guide = 0;
     view.features = frame->features;
     view.positions = (__global const Vec3 *)(geometry + layout->positions);
     view.normals = (__global const Vec3 *)(geometry + layout->normals);
@@ -70,6 +72,10 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
 #ifndef KERNEL_SCENE
 #define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
     SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \
+    const SceneView *scene = &scene_made
+#define KERNEL_SCENE_GUIDED(frame, guided_by, geometry, tables, texels)                                                \
+    SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \
+    scene_made.guide = guided_by;                                                                                      \
     const SceneView *scene = &scene_made
 #endif
 

@@ -178,11 +178,7 @@
     MEMBER(FrameParams, clamp_threshold)                                                                               \
     MEMBER(FrameParams, brightness)                                                                                    \
     MEMBER(FrameParams, guide_count)                                                                                   \
-    MEMBER(FrameParams, guides)                                                                                        \
-    MEMBER(FrameParams, guides_near)                                                                                   \
-    MEMBER(FrameParams, guides_power)                                                                                  \
-    MEMBER(FrameParams, importance)                                                                                    \
-    MEMBER(FrameParams, visits)                                                                                        \
+    MEMBER(FrameParams, pool_visits)                                                                                   \
     MEMBER(FrameParams, seed_low)                                                                                      \
     MEMBER(FrameParams, seed_high)                                                                                     \
     MEMBER(FrameParams, stride)                                                                                        \
@@ -196,6 +192,12 @@
     MEMBER(FrameParams, film_exponent)                                                                                 \
     MEMBER(FrameParams, world_center)                                                                                  \
     MEMBER(FrameParams, world_radius)                                                                                  \
-    MEMBER(FrameParams, ray_reach)
+    MEMBER(FrameParams, ray_reach)                                                                                     \
+    STRUCT(Guide)                                                                                                      \
+    MEMBER(Guide, lights)                                                                                              \
+    MEMBER(Guide, lights_near)                                                                                         \
+    MEMBER(Guide, lights_power)                                                                                        \
+    MEMBER(Guide, importance)                                                                                          \
+    MEMBER(Guide, visits)
 
 #endif

@@ -16,13 +16,13 @@
 
 /* Towards the light guide that sends most to p, were nothing between: not a unit vector, zero at the light guide itself
  * and without any. */
-SHARED_FUNCTION Vec3 light_guide_from(__global const FrameParams *frame, Vec3 p)
+SHARED_FUNCTION Vec3 light_guide_from(uint count, __global const Guide *guide, Vec3 p)
 {
     Vec3 best = vec3_splat(0.0f);
     float most = 0.0f;
-    for (uint i = 0u; i < frame->guide_count; ++i) {
-        Vec3 d = vec3_sub(frame->guides[i], vec3_scale(p, frame->guides_near[i]));
-        float sent = frame->guides_power[i] / vec3_length_squared(d);
+    for (uint i = 0u; i < count; ++i) {
+        Vec3 d = vec3_sub(guide->lights[i], vec3_scale(p, guide->lights_near[i]));
+        float sent = guide->lights_power[i] / vec3_length_squared(d);
         if (!(sent > most)) /* not what is not a number */
             continue;
         most = sent;
@@ -39,9 +39,9 @@ SHARED_FUNCTION uint light_guide_bits(float x)
 
 /* random.x[1] and x[2], which draw a direction at p by warp_cosine_hemisphere in the frame `shading`, counted from the
  * light guide. A light behind the surface counts as the one that it mirrors, so that nothing jumps where it rises. */
-SHARED_FUNCTION Random4 light_guide_numbers(__global const FrameParams *frame, Vec3 p, Frame shading, Random4 random)
+SHARED_FUNCTION Random4 light_guide_numbers(const SceneView *scene, Vec3 p, Frame shading, Random4 random)
 {
-    Vec3 d = light_guide_from(frame, p);
+    Vec3 d = light_guide_from(scene->frame->guide_count, scene->guide, p);
     float square = vec3_length_squared(d);
     if (!(square > 0.0f))
         return random;

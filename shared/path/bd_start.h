@@ -7,11 +7,12 @@
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
 
-/* The header of a path that has not begun: no ray, no shadow ray, nothing gathered. */
+/* The header of a path that has not begun, of the sample `place`: no ray, no shadow ray, nothing gathered. */
 SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                     __global uint *restrict rays, __global uint *restrict shadows, uint stride, uint t)
+                                     __global uint *restrict rays, __global uint *restrict shadows, uint t,
+                                     ItemPlace place)
 {
-    ItemPlace place = item_place(frame, t);
+    uint stride = frame->stride;
     state_store(paths, stride, BD_PIXEL, t, place.pixel);
     state_store(paths, stride, BD_SAMPLE, t, place.sample);
     state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);

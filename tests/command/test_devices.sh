@@ -111,8 +111,7 @@ same instances.pbrt opencl --max-depth=65535 --samples=1
 # sed.
 plant() {
     plant_file=${3:-bsdf/diffuse.h}
-    mkdir "$1"
-    cp "$sources"/*.h "$sources"/*.cl "$1/"
+    cp -r "$sources" "$1"
     sed -i "$2" "$1/$plant_file"
     ! cmp -s "$1/$plant_file" "$sources/$plant_file"
     result 'no fault was planted' $?

@@ -19,11 +19,11 @@ static void guides_of(const char *text, Scene *scene)
 /* Light guide i is at `place`, to within 1e-4, with that `near`. */
 static void guide_require(const Scene *scene, uint i, Vec3 place, float near)
 {
-    Vec3 guide = scene->frame.guides[i];
+    Vec3 guide = scene->guide.lights[i];
     ck_assert_uint_lt(i, scene->frame.guide_count);
     ck_assert_msg(vec3_length(vec3_sub(guide, place)) < 1e-4f, "guide %u is at (%g, %g, %g)", i, (double)guide.x,
                   (double)guide.y, (double)guide.z);
-    ck_assert_float_eq(scene->frame.guides_near[i], near);
+    ck_assert_float_eq(scene->guide.lights_near[i], near);
 }
 
 /* ---- which lights ------------------------------------------------------------------------------------------------ */
@@ -42,7 +42,7 @@ START_TEST(test_shapes)
     guide_require(&scene, 0, vec3(5.0f, 6.0f, 7.0f), 1.0f);
     guide_require(&scene, 1, vec3(0.75f * 1.5f + 0.25f * 0.5f, 1.0f, 1.0f), 1.0f);
     double sphere = 100.0 * 4.0 * M_PI * 0.01, mesh = 4.0;
-    ck_assert_double_eq_tol((double)(scene.frame.guides_power[0] / scene.frame.guides_power[1]), sphere / mesh,
+    ck_assert_double_eq_tol((double)(scene.guide.lights_power[0] / scene.guide.lights_power[1]), sphere / mesh,
                             1e-4 * sphere / mesh);
     scene_destroy(&scene);
 }
@@ -56,8 +56,9 @@ START_TEST(test_none)
               &scene);
     ck_assert_uint_eq(scene.frame.guide_count, 0);
     const Random4 random = {{1, 2, 3, 4}};
+    const SceneView view = {.frame = &scene.frame, .guide = &scene.guide};
     Random4 same =
-        light_guide_numbers(&scene.frame, vec3(0.5f, 0.0f, 0.0f), frame_from_normal(vec3(0.0f, 1.0f, 0.0f)), random);
+        light_guide_numbers(&view, vec3(0.5f, 0.0f, 0.0f), frame_from_normal(vec3(0.0f, 1.0f, 0.0f)), random);
     ck_assert_mem_eq(&random, &same, sizeof same);
     scene_destroy(&scene);
 }
@@ -90,8 +91,8 @@ START_TEST(test_sun)
     snprintf(path, sizeof path, "%s/scenes/windows.pbrt", test_source_folder());
     fixture_scene(&(RenderSetup){.path = path}, &scene);
     ck_assert_uint_eq(scene.frame.guide_count, 1);
-    ck_assert_float_eq(scene.frame.guides_near[0], 0.0f);
-    Vec3 sun = scene.frame.guides[0];
+    ck_assert_float_eq(scene.guide.lights_near[0], 0.0f);
+    Vec3 sun = scene.guide.lights[0];
     ck_assert_float_eq_tol(vec3_length(sun), 1.0f, 1e-5f);
     ck_assert_float_eq_tol(sun.y, sinf(23.0f * (float)M_PI / 180.0f), 0.01f); /* 23 degrees high */
     ck_assert_float_lt(sun.x, -0.5f); /* behind the left wall */
@@ -102,41 +103,41 @@ END_TEST
 /* ---- directions -------------------------------------------------------------------------------------------------- */
 
 /* Two guides with a position and one with a direction. */
-static FrameParams three_guides(void)
+static const FrameParams THREE = {.guide_count = 3};
+static const Guide THREE_GUIDE = {.lights = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
+                                  .lights_near = {1.0f, 1.0f, 0.0f},
+                                  .lights_power = {1.0f, 4.0f, 0.01f}};
+
+static Vec3 three_from(Vec3 p)
 {
-    FrameParams frame = {.guide_count = 3,
-                         .guides = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
-                         .guides_near = {1.0f, 1.0f, 0.0f},
-                         .guides_power = {1.0f, 4.0f, 0.01f}};
-    return frame;
+    return light_guide_from(THREE.guide_count, &THREE_GUIDE, p);
 }
 
 /* Selects the guide that is strongest at the point, whatever their order. */
 START_TEST(test_nearest)
 {
-    const FrameParams frame = three_guides();
-    Vec3 d = light_guide_from(&frame, vec3(0.0f, 0.0f, 0.0f));
+    Vec3 d = three_from(vec3(0.0f, 0.0f, 0.0f));
     ck_assert_float_eq(d.y, 3.0f);
     ck_assert_float_eq(d.x, 0.0f);
-    d = light_guide_from(&frame, vec3(4.0f, 3.0f, 0.0f)); /* 1 / 16 < 4 / 36 */
+    d = three_from(vec3(4.0f, 3.0f, 0.0f)); /* 1 / 16 < 4 / 36 */
     ck_assert_float_eq(d.x, 6.0f);
-    d = light_guide_from(&frame, vec3(0.0f, -40.0f, 0.0f));
+    d = three_from(vec3(0.0f, -40.0f, 0.0f));
     ck_assert_float_eq(d.z, 1.0f);
-    d = light_guide_from(&frame, vec3(0.0f, 3.0f, 0.0f)); /* at the guide itself: any finite direction */
+    d = three_from(vec3(0.0f, 3.0f, 0.0f)); /* at the guide itself: any finite direction */
     ck_assert(vec3_finite(d));
 }
 END_TEST
 
 START_TEST(test_zero_is_the_light)
 {
-    const FrameParams frame = three_guides();
+    const SceneView view = {.frame = &THREE, .guide = &THREE_GUIDE};
     const Random4 zero = {{5, 0, 0, 6}};
     uint64_t state = 3;
     for (int i = 0; i < 100000; ++i) {
         Vec3 p = vec3(20.0f * test_uniform(&state) - 5.0f, 8.0f * test_uniform(&state) - 4.0f, test_uniform(&state));
         Frame shading = frame_from_normal(warp_sphere(vec2(test_uniform(&state), test_uniform(&state))));
-        Vec3 to = frame_to_local(shading, vec3_normalize(light_guide_from(&frame, p)));
-        Random4 random = light_guide_numbers(&frame, p, shading, zero);
+        Vec3 to = frame_to_local(shading, vec3_normalize(three_from(p)));
+        Random4 random = light_guide_numbers(&view, p, shading, zero);
         ck_assert(random.x[0] == 5 && random.x[3] == 6);
         Vec3 w = warp_cosine_hemisphere(vec2(random_float(random.x[1]), random_float(random.x[2])));
         /* A light behind the surface is mirrored. z is the root of a difference, so its square is compared. */
@@ -150,12 +151,12 @@ END_TEST
 /* Numbers are offset modulo 2^32 by amounts that depend on the position alone. */
 START_TEST(test_shift)
 {
-    const FrameParams frame = three_guides();
+    const SceneView view = {.frame = &THREE, .guide = &THREE_GUIDE};
     const Vec3 p = vec3(1.0f, -1.0f, 0.5f);
     const Frame shading = frame_from_normal(vec3_normalize(vec3(0.3f, 0.9f, -0.2f)));
-    const Random4 zero = light_guide_numbers(&frame, p, shading, (Random4){{0, 0, 0, 0}});
+    const Random4 zero = light_guide_numbers(&view, p, shading, (Random4){{0, 0, 0, 0}});
     for (uint i = 0; i < 10000; ++i) {
-        Random4 random = random_four(i, 0, 0, 0, 1, 2), shifted = light_guide_numbers(&frame, p, shading, random);
+        Random4 random = random_four(i, 0, 0, 0, 1, 2), shifted = light_guide_numbers(&view, p, shading, random);
         TEST_TRUE(shifted.x[1] - random.x[1] == zero.x[1] && shifted.x[2] - random.x[2] == zero.x[2]);
     }
 }

@@ -17,6 +17,7 @@
 
 typedef struct Toy {
     FrameParams frame;
+    Guide guide;
     SceneView scene;
     uint *paths, *splats, *vertices, diagnostics[DIAGNOSTIC_COUNT];
 } Toy;
@@ -37,8 +38,9 @@ static void toy_begin(Toy *toy, uint mutations, float large_step, bool grouped)
                                .seed_low = 99,
                                .stride = STRIDE,
                                .item_count = CHAINS};
-    importance_even(toy->frame.importance);
+    importance_even(toy->guide.importance);
     toy->scene.frame = &toy->frame;
+    toy->scene.guide = &toy->guide;
     toy->paths = calloc((size_t)WORDS * STRIDE, sizeof(uint));
     toy->splats = calloc((size_t)SPLAT_WORDS * STRIDE, sizeof(uint));
     toy->vertices = calloc((size_t)CHAIN_VERTEX_WORDS * STRIDE, sizeof(uint));

@@ -41,8 +41,9 @@ static void shown_init(Shown *shown, unsigned seed)
     frame->clamp_threshold = LIMIT;
     frame->brightness = 1.7f;
     frame->pool_lights_weight = LIGHTS_WEIGHT;
+    shown->light.view.guide = &shown->light.scene.guide;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
-        frame->importance[i] = (float)exp2(2.0 * test_random_unit(&shown->state) - 1.0);
+        shown->light.scene.guide.importance[i] = (float)exp2(2.0 * test_random_unit(&shown->state) - 1.0);
 }
 
 static float octaves(Shown *shown, double most)
@@ -73,7 +74,7 @@ static double importance_at(const Shown *shown, Vec2 film)
     const double side = IMPORTANCE_SIDE;
     int x = (int)fmin(fmax(((double)film.x - X0) * side / COLUMNS, 0.0), side - 1.0);
     int y = (int)fmin(fmax(((double)film.y - Y0) * side / ROWS, 0.0), side - 1.0);
-    return (double)shown->light.scene.frame.importance[y * (int)IMPORTANCE_SIDE + x];
+    return (double)shown->light.scene.guide.importance[y * (int)IMPORTANCE_SIDE + x];
 }
 
 /* The filter of pixel (x, y) at a film position, normalised to integral 1. */
@@ -115,16 +116,15 @@ START_TEST(test_key)
         Vec2 film = film_draw(&shown);
         double f = luminance_of(color) * importance_at(&shown, film) / (s < d ? reach_factor() : 1.0);
         double part = fmin(4.0 * (double)LIMIT * (double)path_tracing / f, 1.0);
-        uint key = chain_key_shown(shown.light.view.frame, chain_key(d, s) | 0x1234u << 16, film, color, path_tracing);
+        uint key = chain_key_shown(&shown.light.view, chain_key(d, s) | 0x1234u << 16, film, color, path_tracing);
         TEST_TRUE(chain_key_depth(key) == d && chain_key_s(key) == s);
         TEST_NEAR((key >> 16) / 65535.0, part, 1.0 / 65535.0);
         parts += part < 1.0;
     }
     ck_assert_uint_gt(parts, 2000);
     shown.light.scene.frame.clamp_threshold = FLOAT_MAX;
-    ck_assert_uint_eq(
-        chain_key_shown(shown.light.view.frame, chain_key(5, 2), vec2(3.0f, 3.0f), vec3_splat(1e30f), 0.0f),
-        chain_key(5, 2) | KEY_SHOWN_ALL << 16);
+    ck_assert_uint_eq(chain_key_shown(&shown.light.view, chain_key(5, 2), vec2(3.0f, 3.0f), vec3_splat(1e30f), 0.0f),
+                      chain_key(5, 2) | KEY_SHOWN_ALL << 16);
     fixture_destroy(&shown.light);
 }
 END_TEST
@@ -373,16 +373,16 @@ END_TEST
 /* ---- pools ------------------------------------------------------------------------------------------------------- */
 
 /* Pools visit every other column three times as often. */
-static void visits_set(FrameParams *frame)
+static void visits_set(Scene *scene)
 {
     uint all = 0;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
         uint column = i % IMPORTANCE_SIDE, row = i / IMPORTANCE_SIDE;
-        frame->visits[i] = all;
+        scene->guide.visits[i] = all;
         all += (cell_begin(column + 1, COLUMNS) - cell_begin(column, COLUMNS)) *
                (cell_begin(row + 1, ROWS) - cell_begin(row, ROWS)) * (cell_begin(column, COLUMNS) % 2 == 0 ? 1 : 3);
     }
-    frame->visits[IMPORTANCE_CELLS] = all;
+    scene->guide.visits[IMPORTANCE_CELLS] = scene->frame.pool_visits = all;
 }
 
 /* Half of the columns are visited once, the others three times: the mean is two. */
@@ -414,7 +414,7 @@ START_TEST(test_candidates)
     Vec3 colors[PATHS];
     const uint pixel = 3 * WIDTH + 4;
     shown_init(&shown, 6);
-    visits_set(&shown.light.scene.frame);
+    visits_set(&shown.light.scene);
     for (int i = 0; i < PATHS; ++i) {
         survival[i] = 0.25f + 0.125f * (float)(i % 4);
         cover[i] = 0.5f + 0.0625f * (float)i;
@@ -431,8 +431,8 @@ START_TEST(test_candidates)
         for (int i = 0; i < PATHS; ++i) {
             double f = luminance_of(colors[i]) * (double)(importance[i] * cover[i] * survival[i]);
             double counted = KINDS[i][0] > 1 ? (double)LIGHTS_WEIGHT : 1.0;
-            Vec3 got = reservoir_update(frame, shown.paths, 0, KINDS[i][0], KINDS[i][1], survival[i], cover[i],
-                                        importance[i], colors[i]);
+            Vec3 got = reservoir_update(frame, shown.light.view.guide, shown.paths, 0, KINDS[i][0], KINDS[i][1],
+                                        survival[i], cover[i], importance[i], colors[i]);
             TEST_TRUE((f > (double)LIMIT) == (i % 2 == 1));
             TEST_NEAR(luminance_of(got) / luminance_of(colors[i]), counted * fmin((double)LIMIT / f, 1.0), 1e-5);
         }
@@ -464,7 +464,7 @@ START_TEST(test_start)
     Shown shown;
     FrameParams *frame = &shown.light.scene.frame;
     shown_init(&shown, 7);
-    visits_set(frame);
+    visits_set(&shown.light.scene);
     frame->camera = (Camera){.kind = CAMERA_PERSPECTIVE, .screen = {-1.0f, 1.0f, -1.0f, 1.0f}};
     for (int k = 0; k < 3; ++k)
         frame->camera.world_from_camera.m[5 * k] = frame->camera.camera_from_world.m[5 * k] = 1.0f;

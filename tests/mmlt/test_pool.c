@@ -20,14 +20,14 @@ struct Backend {
 
 #define CHUNK 512u
 
-static void pool_record(Backend *backend, const FrameParams *frame)
+static void pool_record(Backend *backend, const FrameParams *frame, const Guide *guide)
 {
     uint walks = 0;
     for (uint first = 0; first < frame->item_count; first += CHUNK) {
         uint before = walks, end = first + CHUNK < frame->item_count ? first + CHUNK : frame->item_count;
         for (uint item = first; item < end; ++item) {
             bool walk = pool_has_light(frame, item);
-            uint pixel = item_place_of(frame, item).pixel;
+            uint pixel = pool_item_place(frame, guide, item).pixel;
             ++backend->samples[pixel];
             backend->walks[pixel] += walk;
             walks += walk;
@@ -44,7 +44,7 @@ static void paths_record(const FrameParams *frame, const SplatSink *sink)
 {
     uint words[SPLAT_WORDS];
     for (uint item = 0; item < frame->item_count; ++item) {
-        ItemPlace place = item_place_of(frame, frame->first_item + item);
+        ItemPlace place = item_place(frame, item);
         Random4 random = random_four(place.pixel, place.sample, 1, 2, 3, 4);
         float value = random_float(random.x[0]) * (place.pixel / frame->width < frame->height / 2 ? 1.0f : 1e-3f);
         words[SPLAT_PIXEL] = place.pixel | SPLAT_FROM_LIGHT;
@@ -61,7 +61,7 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
     if (frame->pool != 0) {
         memset(list->pass_words, 0, (size_t)POOL_WORDS * frame->item_count * sizeof(uint));
         if (!backend->pilot)
-            pool_record(backend, frame);
+            pool_record(backend, frame, list->guide);
         backend->pilot = false;
     } else if (backend->bright) {
         paths_record(frame, sink);
@@ -80,11 +80,13 @@ static void generations_record(Backend *backend, int width, int height, uint poo
     Mmlt mmlt;
     ck_assert(film_init(&film, width, height, (const int[4]){0, 0, width, height}, &error));
     ck_assert(film_light_reserve(&film, &error));
+    static const Guide guide;
     const RenderOptions options = {.samples = 1, .max_depth = 4, .seed = seed, .chains = {.chains = 16, .pool = pool}};
     RenderRun run = {.interface = &RECORD,
                      .backend = backend,
                      .options = &options,
                      .film = &film,
+                     .guide = &guide,
                      .crop_pixels = (uint64_t)width * (uint64_t)height,
                      .frame = {.max_depth = 4,
                                .width = (uint)width,

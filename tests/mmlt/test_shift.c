@@ -211,12 +211,12 @@ START_TEST(test_kept_numbers)
     unsigned state = 5;
     scene_init(&scene);
     scene.frame.guide_count = (uint)_i;
-    scene.frame.guides[0] = vec3(1.0f, 3.0f, -2.0f);
-    scene.frame.guides_near[0] = scene.frame.guides_power[0] = 1.0f;
+    scene.guide.lights[0] = vec3(1.0f, 3.0f, -2.0f);
+    scene.guide.lights_near[0] = scene.guide.lights_power[0] = 1.0f;
     scene.frame.stride = 1;
     scene.frame.max_depth = 5;
     scene.frame.roulette_depth = 100;
-    SceneView view = {.frame = &scene.frame, .features = ~0u};
+    SceneView view = {.frame = &scene.frame, .guide = &scene.guide, .features = ~0u};
     Vertex vertex = {.p = vec3(0.5f, -0.25f, 1.0f), .beta = vec3_splat(1.0f), .back = 1.0f};
     vertex.ng = vec3_normalize(vec3(1.0f, 2.0f, 0.5f));
     vertex.frame = frame_from_normal(vertex.ng);

@@ -343,8 +343,8 @@ static void connections_check(Walks *walks, const char *name, Tally *tally)
                     state_store(paths, ITEMS, BD_S, item, s);
                     state_store(paths, ITEMS, BD_T, item, t);
                     state_store_float(shadows, ITEMS, RAY_T_MAX, item, 0.0f);
-                    bd_connect(&walks->frame, walks->packed.geometry, walks->packed.tables, walks->packed.texels, paths,
-                               shadows, walks->words[BUFFER_VERTICES], walks->words[BUFFER_DENSITIES]);
+                    bd_connect(&walks->frame, NULL, walks->packed.geometry, walks->packed.tables, walks->packed.texels,
+                               paths, shadows, walks->words[BUFFER_VERTICES], walks->words[BUFFER_DENSITIES]);
                     if (state_load_float(shadows, ITEMS, RAY_T_MAX, item) > 0.0f)
                         contribution[i] = state_load_vec3(paths, ITEMS, BD_CONTRIBUTION, item);
                 }

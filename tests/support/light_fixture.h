@@ -35,6 +35,7 @@ static inline void fixture_finish(LightFixture *f)
     s->frame.light_count = (uint)s->lights.count;
     s->frame.infinite_light_count = (uint)s->infinite_lights.count;
     f->view = (SceneView){.frame = &s->frame,
+                          .guide = &s->guide,
                           .features = ~0u & ~FEATURE_ALPHA,
                           .positions = s->positions.data,
                           .normals = s->normals.data,
