@@ -86,7 +86,7 @@ START_TEST(test_numbers)
 }
 END_TEST
 
-/* Compares what a function writes to a stream. */
+/* Closes the memory stream and checks the text written to it. */
 static void stream_is(const char *expected, FILE *stream, char **text)
 {
     fclose(stream);
