@@ -274,7 +274,7 @@ static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, cons
     return done && pass_data_end(&backend->memory, frame, list, error);
 }
 
-/* ---- what happened ----------------------------------------------------------------------------------------------- */
+/* ---- diagnostics and statistics ---------------------------------------------------------------------------------- */
 
 static void backend_ocl_diagnostics(Backend *backend, uint64_t *counters)
 {

@@ -90,7 +90,7 @@ static void device_describe(cl_platform_id platform, OclDevice *device)
     device_promises(id, device);
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------------- */
+/* ---- enumeration ------------------------------------------------------------------------------------------------- */
 
 size_t ocl_devices_find(OclDevice *devices, size_t capacity)
 {

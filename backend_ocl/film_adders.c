@@ -144,7 +144,7 @@ static void *adder_main(void *argument)
     return NULL;
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------------- */
+/* ---- interface --------------------------------------------------------------------------------------------------- */
 
 FilmAdders *adders_create(int threads, Timeline *timeline, Error *error)
 {

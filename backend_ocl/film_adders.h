@@ -29,6 +29,7 @@ void adders_wait(FilmAdders *adders, int slot);
 /* Hands over a launched batch, which belongs to the adders until its slot is free again. */
 void adders_push(FilmAdders *adders, int slot, Batch *batch);
 
+/* Copies the totals. Thread-safe. */
 void adders_total(FilmAdders *adders, AddersTotal *total);
 
 #endif

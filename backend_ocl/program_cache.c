@@ -45,7 +45,7 @@ static uint64_t header_check(CacheKey key, const unsigned char *binary, size_t s
     return hash_bytes(key.hash[0] ^ key.hash[1], binary, size);
 }
 
-/* ---- places ------------------------------------------------------------------------------------------------------ */
+/* ---- paths ------------------------------------------------------------------------------------------------------- */
 
 /* The cache's folder. A relative XDG_CACHE_HOME is ignored (XDG Base Directory Specification). */
 static bool cache_folder(char *folder, size_t size)

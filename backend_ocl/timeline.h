@@ -20,6 +20,7 @@ typedef struct Timeline {
 /* Maximum number of spans (48 bytes each); later ones are only counted. */
 #define TIMELINE_SPANS_MAX ((size_t)1 << 20)
 
+/* Allocates the spans if `records`; fails when out of memory. */
 bool timeline_init(Timeline *timeline, bool records, Error *error);
 void timeline_destroy(Timeline *timeline);
 

@@ -263,7 +263,7 @@ static bool object_build(Builder *builder, size_t index, Error *error)
     return built;
 }
 
-/* ---- all of it --------------------------------------------------------------------------------------------------- */
+/* ---- building ---------------------------------------------------------------------------------------------------- */
 
 static void embree_error_callback(void *context, enum RTCError code, const char *text)
 {

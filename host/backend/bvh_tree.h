@@ -31,6 +31,7 @@ typedef struct BvhBoxes {
     size_t count;
 } BvhBoxes;
 
+/* Allocates room for `capacity` boxes; fails when out of memory. */
 bool bvh_boxes_create(BvhBoxes *boxes, size_t capacity, Error *error);
 void bvh_boxes_add(BvhBoxes *boxes, Box box, BvhItem item);
 void bvh_boxes_destroy(BvhBoxes *boxes);

@@ -140,7 +140,7 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
     return done;
 }
 
-/* ---- what happened ----------------------------------------------------------------------------------------------- */
+/* ---- diagnostics and statistics ---------------------------------------------------------------------------------- */
 
 static void group_diagnostics(Backend *backend, uint64_t *counters)
 {

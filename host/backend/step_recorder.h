@@ -12,6 +12,7 @@ typedef struct Recorder {
 /* `capacity`: maximum number of steps. */
 bool recorder_init(Recorder *recorder, size_t capacity, Error *error);
 
+/* Append a step without arguments, a kernel step, or a STEP_SKIP_IF_IDLE to step `target`. */
 void recorder_step(Recorder *recorder, StepKind kind);
 void recorder_kernel(Recorder *recorder, unsigned kernel, bool live_only);
 void recorder_skip(Recorder *recorder, size_t target);
@@ -24,6 +25,7 @@ void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned e
  * splats. An integrator adds further buffers to words_per_item. */
 StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count);
 
+/* Frees the steps. Safe on {0} and twice. */
 void step_list_destroy(StepList *list);
 
 #endif

@@ -43,6 +43,7 @@ bool error_fix(Error *error, const char *format, ...) __attribute__((format(prin
 /* Prints the message and, on a second line, the fix. */
 void error_print(const Error *error, FILE *stream);
 
+/* Whether error_memory set this error. */
 bool error_is_memory(const Error *error);
 
 /* "error: out of memory: N bytes for WHAT". Returns false. */

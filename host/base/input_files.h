@@ -8,6 +8,7 @@
 /* Must be called for every file that is part of the scene, textures included. */
 void input_file_note(int descriptor);
 
+/* Whether a file of this device and inode has been recorded. */
 bool input_file_noted(const struct stat *status);
 
 #endif

@@ -20,7 +20,7 @@
 /* Room for the suffix ".PROCESS-NUMBER~". */
 #define SUFFIX_MAX 32
 
-/* ---- what a signal unlinks --------------------------------------------------------------------------------------- */
+/* ---- files to unlink on a signal --------------------------------------------------------------------------------- */
 
 /* Files that may be open at a time: image or PNG, and a list of bad chains. A signal does not unlink further ones; they
  * become strays. */

@@ -97,7 +97,7 @@ static double color_distance(const double a[3], const double b[3])
     return pow(fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]), COLOR_EXPONENT);
 }
 
-/* ---- one image -------------------------------------------------------------------------------------------------- */
+/* ---- one image --------------------------------------------------------------------------------------------------- */
 
 /* Filters a channel by the contrast sensitivity at this viewing distance, normalised over the taps within the
  * radius. */
@@ -189,7 +189,7 @@ static void colors_fill(FlipImage *image, const float *rgb, double pixels_per_de
     }
 }
 
-/* ---- two images ------------------------------------------------------------------------------------------------- */
+/* ---- two images -------------------------------------------------------------------------------------------------- */
 
 /* Largest possible distance of two display colours: green to blue. */
 static double color_distance_max(void)

@@ -134,11 +134,11 @@ static FilmView film_view(const Film *film)
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 {
     const FilmView view = film_view(film);
-    for (uint t = 0; t < count; ++t)
-        film_splat_add(&view, splats, stride, t);
+    for (uint item = 0; item < count; ++item)
+        film_splat_add(&view, splats, stride, item);
 }
 
-/* ---- sums from elsewhere ----------------------------------------------------------------------------------------- */
+/* ---- adding films ------------------------------------------------------------------------------------------------ */
 
 /* Most sums of a short pass are zero, and testing is cheaper than adding. */
 static void word_add(ulong *sum, ulong units)
@@ -242,7 +242,7 @@ void film_clear(Film *film)
     film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
 }
 
-/* ---- what is read ------------------------------------------------------------------------------------------------ */
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 int64_t film_sum_shown(int64_t sum)
 {

@@ -17,6 +17,7 @@ typedef struct PixelSeries {
     unsigned short *pictures; /* number of images in which the pixel had a weight; saturates at 65535 */
 } PixelSeries;
 
+/* An empty series; fails when out of memory. */
 bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error);
 void pixel_series_destroy(PixelSeries *series);
 

@@ -12,6 +12,7 @@ typedef struct ContactSheet {
     float *rgb;
 } ContactSheet;
 
+/* Allocates an empty sheet; fails if a side would exceed 65535 pixels or when out of memory. */
 bool contact_sheet_init(ContactSheet *sheet, int cell_width, int cell_height, int columns, int rows, Error *error);
 void contact_sheet_destroy(ContactSheet *sheet);
 

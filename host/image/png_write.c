@@ -113,7 +113,7 @@ static bool png_encode(PngWriter *writer, const PngPicture *picture)
     return good;
 }
 
-/* ---- whole pictures ---------------------------------------------------------------------------------------------- */
+/* ---- images in memory -------------------------------------------------------------------------------------------- */
 
 typedef struct WholePicture {
     const float *rgb;

@@ -91,6 +91,7 @@ typedef struct Scene {
     Array tables_words; /* uint */
 } Scene;
 
+/* An empty scene with default settings. */
 void scene_init(Scene *scene);
 void scene_destroy(Scene *scene);
 

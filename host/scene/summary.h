@@ -22,6 +22,7 @@ typedef struct SceneSummary {
 
 void scene_summary(const Scene *scene, SceneSummary *summary);
 
+/* Print the summary; `path` is the scene's name. */
 void scene_summary_text(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 void scene_summary_json(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 
