@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Depth limit of the first attempt. Embree gives up the surface area heuristic eight levels above the limit. */
+/* Depth limit of the first attempt, which leaves the surface area heuristic a free choice. Embree reserves eight levels
+ * of it. */
 #define DEPTH_FREE 64u
 
 /* Stack entries besides waiting siblings: BVH_EMPTY at the bottom; inside an instance, the rest of the leaf and

@@ -18,7 +18,7 @@ typedef struct BackendChoices {
 
 /* `backend`: name of a backend, or "all" for every device expected to give the same image; NULL: the table's first.
  * `devices`: comma-separated device numbers or parts of names; NULL: the backend's first device or, with "all", all
- * devices. Fails, naming the option, for unknown names, duplicates, or more than BACKEND_GROUP_MAX. */
+ * devices. Fails for an unknown backend, a device given twice, or more than BACKEND_GROUP_MAX devices. */
 bool backend_choices_make(BackendChoices *choices, const BackendTable *table, const char *backend, const char *devices,
                           Error *error);
 

@@ -13,8 +13,8 @@
  *
  *     E (7.5 (|B| + |o'|) + 2 (|M| |o| + |b|) + 1.5 |M| t |d|)
  *
- * of the object's box B: the terms are box_admits_hit with o', the four roundings of o', and the three of d'. With |o'|
- * <= |M| |o| + |b| and t |d| <= |P| + |o| this is at most
+ * of the object's box B: the terms are box_admits_hit with o', the four roundings of o', and the three of d'. With
+ * |o'| <= |M| |o| + |b| and t |d| <= |P| + |o| this is at most
  *
  *     E (7.5 |B| + 9.5 |b| + 1.5 |M| |P|)  +  E 11 |M| |o|.
  *

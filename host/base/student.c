@@ -7,8 +7,8 @@
 #define PRECISION 1e-15
 #define BISECTIONS 64 /* more than the 53 bits of a double's significand */
 
-/* Continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated by the modified Lentz method, for x < (a
- * + 1) / (a + b + 2), where it converges fast. */
+/* Continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated by the modified Lentz method, for
+ * x < (a + 1) / (a + b + 2), where it converges fast. */
 static double beta_fraction(double a, double b, double x)
 {
     double c = 1.0, d = 0.0, value = 1.0;

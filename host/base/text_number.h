@@ -1,4 +1,5 @@
-/* Parsing of numbers: correctly rounded, fast, and independent of the locale. */
+/* Parsing of numbers: correctly rounded and fast. Needs the C locale, which is in force because nothing calls
+ * setlocale. */
 #ifndef TWINLIGHT_BASE_TEXT_NUMBER_H
 #define TWINLIGHT_BASE_TEXT_NUMBER_H
 
@@ -10,7 +11,7 @@ typedef enum NumberStatus {
     NUMBER_OVERFLOW /* well-formed and finite, but beyond the type's range */
 } NumberStatus;
 
-/* Converts all of text[0 .. length) to a float, correctly rounded. */
+/* Converts all of text[0 .. length) to a float, correctly rounded. NUMBER_MALFORMED also when out of memory. */
 NumberStatus number_float(const char *text, size_t length, float *value);
 
 /* Converts all of text[0 .. length) to a 32-bit integer. */

@@ -41,8 +41,8 @@ bool flip_compute(const float *image, const float *reference, int width, int hei
                   float *map, double *mean, Error *error);
 
 /* *mean = mean structural similarity (Wang, Bovik, Sheikh and Simoncelli, "Image Quality Assessment: From Error
- * Visibility to Structural Similarity", 2004), 1 for equal images: window 11 x 11, Gaussian of sigma 1.5, K1 = 0.01, K2
- * = 0.03, L = 1, on the luma 0.2126 R' + 0.7152 G' + 0.0722 B' of the sRGB-encoded values, over all positions of the
+ * Visibility to Structural Similarity", 2004), 1 for equal images: window 11 x 11, Gaussian of sigma 1.5, K1 = 0.01,
+ * K2 = 0.03, L = 1, on the luma 0.2126 R' + 0.7152 G' + 0.0722 B' of the sRGB-encoded values, over all positions of the
  * window inside the image; NaN if the image is smaller than the window. Fails when out of memory. */
 bool ssim_compute(const float *image, const float *reference, int width, int height, double *mean, Error *error);
 

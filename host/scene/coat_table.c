@@ -13,8 +13,8 @@
 /* Cosine used for the table's entry at c = 0: T has a limit there. */
 #define GRAZING_COSINE 1e-4f
 
-/* Fraction of light from direction o (o.z > 0) that the rough interface transmits: the mean over visible normals of (1
- * - F) G2 / G1, the weight of dielectric_rough_sample times the probability of refraction. */
+/* Fraction of light from direction o (o.z > 0) that the rough interface transmits: the mean over visible normals of
+ * (1 - F) G2 / G1, the weight of dielectric_rough_sample times the probability of refraction. */
 static float rough_transmission(float alpha_x, float alpha_y, float eta, Vec3 o)
 {
     float root_o = ggx_root(o, alpha_x, alpha_y);
