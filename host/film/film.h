@@ -16,7 +16,7 @@ typedef struct Film {
     int quantum_exponent; /* the quantum, one unit of a sum, is 2^quantum_exponent of radiance */
     /* Added to by many threads concurrently (camera/film_sum.h); read only when these are idle. */
     int64_t *sums; /* 3 per pixel of the crop, row by row */
-    int64_t *light_sums; /* the same for splats with SPLAT_FROM_LIGHT; NULL before film_light_reserve */
+    int64_t *light_sums; /* the same for splats with SPLAT_LIGHT; NULL before film_light_reserve */
     int64_t *rare_sums; /* for SPLAT_RARE, also in one of the other sums; NULL before film_rare_reserve */
     /* Sums per depth SPLAT_DEPTH_MIN ... depth_last, laid out by film_depth_place in camera/film_sum.h; NULL before
      * film_depths_reserve. */
