@@ -23,7 +23,7 @@ static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",       "bili
 void scene_summary(const Scene *scene, SceneSummary *summary)
 {
     memset(summary, 0, sizeof *summary);
-    /* The importer's array is gone by now; the packed buffer holds the same primitives. */
+    /* The importer's array is already freed; the packed buffer holds the same primitives. */
     const uint *words = scene->geometry_words.data;
     const Primitive *primitives = (const Primitive *)(words + scene->frame.layout.primitives);
     for (size_t i = 0; i < scene->primitive_count; ++i)
