@@ -2,7 +2,7 @@
  * lobes, each times the probability of its choice, are that of the direction. */
 #include "support/bsdf_cases.h"
 
-#include "bsdf/invert.h"
+#include "bsdf/bsdf.h"
 
 #define DRAWS 20000
 
