@@ -45,7 +45,9 @@ endif
 
 # The statistical tests with EFFORT times the samples, and cases that `make check` leaves out.
 EFFORT = 8
-LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+# Builds a copy with a BSDF and an integrator more: minutes.
+dist_check_SCRIPTS += tests/test_recipes.sh
+LONG_TESTS = tests/test_recipes.sh tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl

@@ -208,13 +208,11 @@ static const struct {
     uint kind;
     void (*read)(MaterialReader *r);
     bool relief; /* takes normalmap and displacement */
-} KINDS[] = {{"diffuse", MATERIAL_DIFFUSE, diffuse_read, true},
-             {"conductor", MATERIAL_CONDUCTOR, conductor_read, true},
-             {"dielectric", MATERIAL_DIELECTRIC, dielectric_read, true},
-             {"thindielectric", MATERIAL_THIN_DIELECTRIC, thin_dielectric_read, true},
-             {"coateddiffuse", MATERIAL_COATED_DIFFUSE, coated_diffuse_read, true},
-             {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_read, true},
-             {"mix", MATERIAL_MIX, mix_read, false}};
+} KINDS[] = {
+#define KIND(NAME, name, text, traits) {text, MATERIAL_##NAME, name##_read, MATERIAL_##NAME != MATERIAL_MIX},
+    MATERIAL_LIST(KIND)
+#undef KIND
+};
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
 /* Substitutes for unsupported materials with --lenient. */

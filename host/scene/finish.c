@@ -185,15 +185,9 @@ static float light_reach(const FrameParams *frame, const Light *light)
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
 
-static const uint FEATURE_OF_MATERIAL[] = {
-    [MATERIAL_DIFFUSE] = FEATURE_DIFFUSE,
-    [MATERIAL_CONDUCTOR] = FEATURE_CONDUCTOR,
-    [MATERIAL_DIELECTRIC] = FEATURE_DIELECTRIC,
-    [MATERIAL_THIN_DIELECTRIC] = FEATURE_THIN_DIELECTRIC,
-    [MATERIAL_COATED_DIFFUSE] = FEATURE_COATED_DIFFUSE,
-    [MATERIAL_DIFFUSE_TRANSMISSION] = FEATURE_DIFFUSE_TRANSMISSION,
-    [MATERIAL_MIX] = FEATURE_MIX,
-};
+#define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_##NAME,
+static const uint FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
+#undef FEATURE_OF
 
 /* The alpha that the kernels use for a constant roughness. */
 static float material_alpha(const Material *m, const FloatParam *roughness)
@@ -208,7 +202,7 @@ static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
 
 bool scene_material_is_rough(const Material *m)
 {
-    return (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_COATED_DIFFUSE) &&
+    return m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_MICROFACET) != 0u &&
            (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
 }
 
@@ -242,12 +236,9 @@ static uint geometry_features(const Scene *scene)
     return features;
 }
 
-static uint light_features(const Light *light)
-{
-    if (light->kind == LIGHT_AREA)
-        return FEATURE_AREA_LIGHT;
-    return light->kind >= LIGHT_INFINITE ? FEATURE_INFINITE_LIGHT : FEATURE_DELTA_LIGHT;
-}
+#define FEATURE_OF(NAME, text, feature) [LIGHT_##NAME] = feature,
+static const uint FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
+#undef FEATURE_OF
 
 static uint scene_features(const Scene *scene)
 {
@@ -255,7 +246,7 @@ static uint scene_features(const Scene *scene)
     for (size_t i = 0; i < scene->materials.count; ++i)
         features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
     for (size_t i = 0; i < scene->lights.count; ++i)
-        features |= light_features(&ARRAY_AT(&scene->lights, Light, i));
+        features |= FEATURE_OF_LIGHT[ARRAY_AT(&scene->lights, Light, i).kind];
     if (scene->camera_settings.lens_radius > 0.0f)
         features |= FEATURE_LENS;
     return features;

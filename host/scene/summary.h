@@ -7,8 +7,6 @@
 #include <stdio.h>
 
 #define PRIMITIVE_KINDS 4
-#define MATERIAL_KINDS 7
-#define LIGHT_KINDS 6
 
 typedef struct SceneSummary {
     size_t primitives[PRIMITIVE_KINDS]; /* by PRIMITIVE_*; those of an object count once, not per instance */

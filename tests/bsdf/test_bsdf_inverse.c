@@ -2,7 +2,7 @@
  * densities of all lobes, each times its selection probability, add up to the direction's density. */
 #include "support/bsdf_cases.h"
 
-#include "bsdf/invert.h"
+#include "bsdf/bsdf.h"
 
 #define DRAWS 20000
 

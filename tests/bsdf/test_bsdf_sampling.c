@@ -135,6 +135,18 @@ static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral
 
 #define TOTAL_CASES ((3 + 4 * (TEST_ALPHA_COUNT - 1)) * TEST_WO_COUNT)
 
+/* A kind of BSDF_LIST with a lobe that is no delta is among the cases of these tests. */
+START_TEST(test_every_kind_has_a_case)
+{
+    for (uint kind = 0; kind < MATERIAL_MIX; ++kind) {
+        bool found = (bsdf_traits(kind) & (TRAIT_COSINE | TRAIT_MICROFACET)) == 0u;
+        for (int i = 0; i < TEST_MATERIAL_COUNT; ++i)
+            found |= TEST_MATERIALS[i].kind == kind;
+        ck_assert_msg(found, "support/bsdf_cases.h has no case of material %u", kind);
+    }
+}
+END_TEST
+
 /* Samples follow pdf_w for every BSDF, roughness and direction: p > 1e-3 for all cases together (Sidak). The density
  * integrates to the fraction of samples that succeed, within 5 standard deviations plus the quadrature error. */
 START_TEST(test_samples_follow_density)
@@ -203,6 +215,7 @@ TCase *bsdf_sampling_tests(void)
 {
     TCase *tcase = tcase_create("sampling");
     tcase_set_timeout(tcase, 120);
+    tcase_add_test(tcase, test_every_kind_has_a_case);
     tcase_add_loop_test(tcase, test_samples_follow_density, 0, TEST_MATERIAL_COUNT);
     tcase_add_test(tcase, test_delta_lobes_follow_probability);
     return tcase;

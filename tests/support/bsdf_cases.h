@@ -136,6 +136,6 @@ static const struct TestMaterial {
                       {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
                       {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
                       {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
-#define TEST_MATERIAL_COUNT 7
+#define TEST_MATERIAL_COUNT ((int)(sizeof TEST_MATERIALS / sizeof TEST_MATERIALS[0]))
 
 #endif

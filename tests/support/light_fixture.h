@@ -36,7 +36,7 @@ static inline void fixture_finish(LightFixture *f)
     s->frame.infinite_light_count = (uint)s->infinite_lights.count;
     f->view = (SceneView){.frame = &s->frame,
                           .guide = &s->guide,
-                          .features = ~0u & ~FEATURE_ALPHA,
+                          .features = ~(uint)FEATURE_ALPHA,
                           .positions = s->positions.data,
                           .normals = s->normals.data,
                           .uvs = s->uvs.data,

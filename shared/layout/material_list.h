@@ -1,0 +1,31 @@
+/* Every kind of material, once: what is made of this list are the kinds (MATERIAL_*), their bits of the feature mask
+ * (FEATURE_*), the dispatch of bsdf/bsdf.h, the readers of pbrt's materials, and the names in `twinlight info`. */
+#ifndef TWINLIGHT_LAYOUT_MATERIAL_LIST_H
+#define TWINLIGHT_LAYOUT_MATERIAL_LIST_H
+
+/* What the lobes of a BSDF are. */
+#define TRAIT_COSINE 0x1u /* a cosine lobe, drawn by bsdf_sample_base's u_base */
+#define TRAIT_MICROFACET 0x2u /* a microfacet lobe, a delta where the roughness is that of a mirror */
+#define TRAIT_INTERFACE 0x4u /* ... of an interface, which is smooth where its relative index is 1 */
+#define TRAIT_DELTA 0x8u /* nothing but deltas where it is not rough */
+
+/* X(NAME, name, text, traits): MATERIAL_NAME; functions bsdf_name_eval, _sample and _invert (bsdf/bsdf.h) and
+ * name_read (host/pbrt/materials.c); what pbrt calls it. */
+#define BSDF_LIST(X)                                                                                                   \
+    X(DIFFUSE, diffuse, "diffuse", TRAIT_COSINE)                                                                       \
+    X(CONDUCTOR, conductor, "conductor", TRAIT_MICROFACET | TRAIT_DELTA)                                               \
+    X(DIELECTRIC, dielectric, "dielectric", TRAIT_MICROFACET | TRAIT_INTERFACE | TRAIT_DELTA)                          \
+    X(THIN_DIELECTRIC, thin_dielectric, "thindielectric", TRAIT_DELTA)                                                 \
+    X(COATED_DIFFUSE, coated_diffuse, "coateddiffuse", TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE)              \
+    X(DIFFUSE_TRANSMISSION, diffuse_transmission, "diffusetransmission", TRAIT_COSINE)
+
+/* With what is not a BSDF by itself. */
+#define MATERIAL_LIST(X)                                                                                               \
+    BSDF_LIST(X)                                                                                                       \
+    X(MIX, mix, "mix", 0u)
+
+#define MATERIAL_ENUMERATE(NAME, name, text, traits) MATERIAL_##NAME,
+enum { MATERIAL_LIST(MATERIAL_ENUMERATE) MATERIAL_KINDS };
+#undef MATERIAL_ENUMERATE
+
+#endif
