@@ -55,7 +55,8 @@ static float luminance_of(const int64_t *sums, double scale)
 }
 
 /* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */
-static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture, float *tiles)
+static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture,
+                     float *tiles)
 {
     size_t pixels = film_pixels(film);
     double unit = ldexp((double)pixels / (double)film->light_samples, film->quantum_exponent);

@@ -192,7 +192,7 @@ likely() {
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/chain/mutation.h) echo test_chain:shown test_chain test_shift test_layers ;;
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
-    shared/bsdf/lobe.h) echo test_bsdf:inverse test_shift ;;
+    shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_chain test_layers test_pool ;;
     shared/chain/pool.h) echo test_chain:shown test_chain_population test_pool test_layers ;;
     shared/chain/chain_light.h) echo test_chain:shown test_layers test_shift ;;
