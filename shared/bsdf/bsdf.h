@@ -1,5 +1,5 @@
-/* Scattering at a surface: evaluation and sampling of whatever Bsdf it has. A branch for a kind or a rough lobe that
- * the scene lacks is compiled out on devices and costs one test in C. */
+/* Scattering at a surface: evaluates and samples whatever Bsdf it has. A branch for a kind or a rough lobe that the
+ * scene lacks is compiled out on devices and costs one test in C. */
 #ifndef TWINLIGHT_BSDF_BSDF_H
 #define TWINLIGHT_BSDF_BSDF_H
 
@@ -11,12 +11,12 @@
 #include "bsdf/thin_dielectric.h"
 #include "layout/scene_view.h"
 
-/* A rough interface whose index is this close to 1 is taken as smooth: it bends light by less than 1e-3 alpha radians,
- * and float32 half vectors no longer resolve that. */
+/* A rough interface whose relative index is this close to 1 is treated as smooth: it bends light by less than 1e-3
+ * alpha radians, which float32 half vectors no longer resolve. */
 #define ETA_MATCHED 1e-3f
 
-/* Must be called once kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and bounds the
- * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Other flags are kept. */
+/* To be called after kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and clamps the
+ * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
     uint kind = bsdf->kind;
@@ -34,7 +34,8 @@ SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
     }
 }
 
-/* Both directions are unit, in the shading frame, pointing away from the surface. Delta lobes are zero. */
+/* f(wo, wi) |cos wi| and both densities; delta lobes count as zero. wo and wi: unit, in the shading frame, pointing
+ * away from the surface. */
 SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
@@ -54,7 +55,7 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
     return bsdf_value_zero();
 }
 
-/* Whether bsdf_sample_base asks for u_base. */
+/* Whether bsdf_sample_base reads u_base. */
 SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
 {
     return (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE) ||
@@ -62,9 +63,9 @@ SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
            (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION);
 }
 
-/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills
- * every member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it
- * contributes nothing. */
+/* Draws wi. u_lobe chooses the lobe; u_base draws the direction in a cosine lobe, u in any other; all in [0,1). Fills
+ * every member of *sample. False: no contribution, since the light is absorbed or the direction lies on the wrong side
+ * of the surface. */
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                       Vec2 u_base, uint transport, BsdfSample *sample)
 {
@@ -87,7 +88,7 @@ SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, 
     return false;
 }
 
-/* The same with one point for all lobes. */
+/* bsdf_sample_base with the same point for all lobes. */
 SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                  uint transport, BsdfSample *sample)
 {

@@ -5,7 +5,7 @@
 #include "layout/scene_view.h"
 #include "layout/state.h"
 
-/* Fields of a stored Bsdf, from its base on. */
+/* Fields of a stored Bsdf, relative to its base. */
 #define STORED_BSDF_KIND 0u
 #define STORED_BSDF_FLAGS 1u
 #define STORED_BSDF_COLOR0 2u /* 3 */
@@ -16,14 +16,14 @@
 #define STORED_BSDF_COAT 11u
 #define STORED_BSDF_WORDS 12u
 
-/* Of a stored frame: normal, tangent. */
+/* Words of a stored frame: normal and tangent. */
 #define STORED_FRAME_WORDS 6u
 
 /* Materials whose Bsdf has a second colour, and those with an index of refraction. */
 #define FEATURES_COLOR1 (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_DIFFUSE_TRANSMISSION)
 #define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE)
 
-/* Only what some material of the scene uses is stored. */
+/* Stores only the members that some material of the scene uses. */
 SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint t,
                                 const Bsdf *bsdf)
 {

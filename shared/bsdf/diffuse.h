@@ -1,7 +1,7 @@
-/* Lambertian reflection on whichever side the light comes from, and the cut-off that all BSDFs share.
+/* Lambertian reflection on the side that light comes from, and what all BSDFs share.
  *
- * Conventions of every bsdf_*.h: directions are unit, in the shading frame, and point away from the surface. `eval` and
- * `sample` treat directions whose |z| is at most BSDF_COSINE_MIN alike: they carry nothing. */
+ * Conventions of every file of bsdf/: directions are unit, in the shading frame, and point away from the surface.
+ * `eval` and `sample` return nothing for directions with |z| <= BSDF_COSINE_MIN. */
 #ifndef TWINLIGHT_BSDF_DIFFUSE_H
 #define TWINLIGHT_BSDF_DIFFUSE_H
 
@@ -19,13 +19,13 @@ SHARED_FUNCTION BsdfValue bsdf_value_zero(void)
     return value;
 }
 
-/* The same direction seen from the other side of the surface when `flip`. */
+/* w, mirrored to the other side of the surface if `flip`. */
 SHARED_FUNCTION Vec3 direction_flip(Vec3 w, bool flip)
 {
     return vec3(w.x, w.y, flip ? -w.z : w.z);
 }
 
-/* A sample that stays on wo's side and is no delta, with everything but wi and weight taken from `value`. */
+/* A non-delta sample on wo's side; everything but wi and weight comes from `value`. */
 SHARED_FUNCTION void bsdf_sample_set(BsdfSample *sample, Vec3 wi, Vec3 weight, BsdfValue value)
 {
     sample->wi = wi;
@@ -37,7 +37,7 @@ SHARED_FUNCTION void bsdf_sample_set(BsdfSample *sample, Vec3 wi, Vec3 weight, B
     sample->eta = 1.0f;
 }
 
-/* A delta lobe that is chosen with probability `probability` from either of its directions. */
+/* A sample of a delta lobe that is chosen with probability `probability` in either direction. */
 SHARED_FUNCTION void bsdf_sample_set_delta(BsdfSample *sample, Vec3 wi, Vec3 weight, float probability)
 {
     sample->wi = wi;

@@ -1,13 +1,13 @@
-/* The inverse of bsdf_sample_base: the point that draws a direction. */
+/* The inverse of bsdf_sample_base: which numbers draw a given direction. */
 #ifndef TWINLIGHT_BSDF_INVERT_H
 #define TWINLIGHT_BSDF_INVERT_H
 
 #include "bsdf/bsdf.h"
 
-/* By which numbers a lobe draws a direction, and how densely, once the number that chooses the lobe is given: pdf_w is
- * of that lobe alone, without the probability of its choice. */
+/* The numbers with which a lobe draws a direction, once the lobe is chosen, and their density: pdf_w is that of the
+ * lobe alone, without the probability of choosing it. */
 typedef struct BsdfInverse {
-    Vec2 u; /* or u_base, where `base` */
+    Vec2 u; /* u of bsdf_sample_base, or its u_base if `base` */
     float pdf_w;
     bool base;
 } BsdfInverse;
@@ -20,7 +20,7 @@ SHARED_FUNCTION bool cosine_invert(Vec3 wi, BsdfInverse *inverse)
     return true;
 }
 
-/* The lobe of wo, wo.z > 0, that reflects about microfacets, towards wi, wi.z > 0. */
+/* Microfacet reflection from wo to wi, both with z > 0. */
 SHARED_FUNCTION bool reflection_invert(const Bsdf *bsdf, Vec3 wo, Vec3 wi, BsdfInverse *inverse)
 {
     Vec3 h = vec3_add(wo, wi);
@@ -40,8 +40,8 @@ SHARED_FUNCTION bool coated_invert(const SceneView *scene, const Bsdf *bsdf, Vec
     return coated_is_rough(scene, bsdf) && reflection_invert(bsdf, wo, wi, inverse);
 }
 
-/* Which microfacets reflect is a matter of u_lobe and of their reflectance, so all densities lack the factor of the
- * choice. */
+/* Given u_lobe, exactly the microfacets whose reflectance exceeds u_lobe reflect, so no density contains the
+ * probability of the choice. */
 SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec3 wi, float u_lobe,
                                        BsdfInverse *inverse)
 {
@@ -64,8 +64,8 @@ SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec
     return true;
 }
 
-/* The point by which bsdf_sample_base would draw wi, with the lobe that u_lobe chooses. False: that lobe is a delta, or
- * does not reach wi. Where it is one of several lobes that do, the same direction has other points, too. */
+/* The point with which bsdf_sample_base draws wi in the lobe that u_lobe chooses. False: that lobe is a delta or cannot
+ * draw wi. If several lobes can draw wi, it has other points as well. */
 SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
                                  BsdfInverse *inverse)
 {

@@ -1,11 +1,11 @@
-/* The light that a chain's walk from the camera meets (s = 0), and where the film sees what a chain proposes. */
+/* The light that a chain's camera walk hits (s = 0), and the film position of a proposal. */
 #ifndef TWINLIGHT_CHAIN_CHAIN_LIGHT_H
 #define TWINLIGHT_CHAIN_CHAIN_LIGHT_H
 
 #include "chain/mutation.h"
 #include "path/bd_weight.h"
 
-/* Where the film sees the proposal, and what path tracing shows of it. */
+/* Stores the proposal's film position and, in its key, the part that path tracing shows. */
 SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint t, Vec2 film, Vec3 color,
                                  float path_tracing)
 {
@@ -15,11 +15,11 @@ SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict
     state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(scene, key, film, color, path_tracing));
 }
 
-/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing
- * shows of it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what
- * they send. It has the luminance of all, so that the chain goes after all of them, and their color on average.
- * *path_tracing: StrategyWeights.path_tracing, as much larger, so that color / *path_tracing is what path tracing would
- * contribute of the light drawn. */
+/* s = 0 at infinity, as walk_environment, times beta. Path tracing clamps the contribution of each light by itself, so
+ * the part that it shows depends on which light the path has hit. Of several lights one stands for all, drawn with u in
+ * proportion to the luminance of its weighted contribution. It is scaled to the luminance of all, so that the chain
+ * targets their sum; its expected colour is theirs. *path_tracing: StrategyWeights.path_tracing, scaled alike, so that
+ * color / *path_tracing is what path tracing would contribute from the light drawn. */
 SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
                                        float u, float *path_tracing)
 {
@@ -51,7 +51,8 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
     return vec3_scale(one, scale);
 }
 
-/* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
+/* s = 0: the camera walk of d segments has ended; it contributes only if it hit a light or left the scene towards
+ * one. */
 SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *restrict paths,
                                      __global const uint *restrict densities, uint t, uint d, const WalkHit *walk_hit)
 {

@@ -1,9 +1,9 @@
-/* The coordinates of a chain (chain/chain.h), and how a mutation moves them.
+/* The coordinates of a chain (chain/chain.h), and how mutations change them.
  *
  * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
- * balance holds exactly and a coordinate that is left alone keeps its bits. A large step adds one that is any with the
- * same probability, so that the sum is, too. What is added is a function of (seed, chain, step): a proposal stands
- * where the current coordinates stood, and one that is refused is taken away again. */
+ * balance holds exactly, and a coordinate that is left alone keeps its bits. A large step adds a uniform integer, which
+ * makes the sum uniform. What is added is a function of (seed, chain, step), so a proposal replaces the current
+ * coordinates in place, and a refused one is subtracted again. */
 #ifndef TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 #define TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 
@@ -18,21 +18,22 @@
 #define NUMBER_CAMERA 0u /* film, lens: 4 */
 #define NUMBER_EMIT 4u /* point and direction on the light: 4 */
 #define NUMBER_SELECT 8u /* which light: 2 */
-#define NUMBER_VERTICES 10u /* then those of every vertex between the ends */
+#define NUMBER_VERTICES 10u /* then those of every vertex between the ends of the path */
 
-/* Lobe and direction; where the scene mixes materials, also which. */
+/* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them. */
 SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
 {
     return (frame->features & FEATURE_MIX) != 0u ? 4u : 3u;
 }
 
-/* d - 1 vertices lie between the ends of a path: y_1, y_2 ... and then, from the light to the camera, ... z_2, z_1. */
+/* The slot of a vertex's coordinates. A path has d - 1 vertices between its ends, in this order: y_1, y_2 ..., from the
+ * light to the camera, ... z_2, z_1. */
 SHARED_FUNCTION uint chain_slot(uint side, uint d, uint i)
 {
     return side == SIDE_LIGHT ? i - 1u : d - 1u - i;
 }
 
-/* Whether the subpath owns the coordinate slot: of a path with s vertices from the light. */
+/* The subpath (SUBPATH_*) that owns a slot of coordinates, in a path with s vertices from the light. */
 SHARED_FUNCTION uint chain_slot_subpath(uint s, uint slot)
 {
     return slot + 1u < s ? SUBPATH_LIGHT : SUBPATH_CAMERA;
@@ -43,19 +44,19 @@ SHARED_FUNCTION uint chain_slot_subpath(uint s, uint slot)
 #define MUTATION_ALL 0u /* small steps of all coordinates */
 #define MUTATION_LIGHT 1u /* of the light subpath */
 #define MUTATION_CAMERA 2u /* of the camera subpath */
-#define MUTATION_LARGE 3u /* everything new, s too */
+#define MUTATION_LARGE 3u /* everything is new, s too */
 #define MUTATION_COUNT 4u
-#define MUTATION_REPLAY 4u /* no mutation: the current path is made again */
+#define MUTATION_REPLAY 4u /* no mutation: the current path is replayed */
 
-/* Of eight small steps so many are of each kind. A step of the light subpath alone leaves the path where it is on the
- * film, so the film has little of it; steps of the camera subpath are also the cheapest. */
+/* Relative frequencies of the kinds of small steps, in eighths. A step of the light subpath alone does not move the
+ * path on the film, so the film gains little from it; steps of the camera subpath are also the cheapest. */
 #define MUTATION_CHANCE(kind) ((kind) == MUTATION_CAMERA ? 6u : 1u)
 
-/* Blocks of random numbers of one step, 256 of them. */
-#define CHAIN_BLOCK_DECIDE 0u /* whether to accept; pixel of the splat */
+/* Blocks of random numbers of a step, of which there are 256. */
+#define CHAIN_BLOCK_DECIDE 0u /* whether to accept; pixel and layer of the splat */
 #define CHAIN_BLOCK_S 1u /* the new s of a large step */
-#define CHAIN_BLOCK_SMALL 2u /* offsets, eight to a block */
-#define CHAIN_BLOCK_LARGE 64u /* four to a block */
+#define CHAIN_BLOCK_SMALL 2u /* offsets of small steps, eight to a block */
+#define CHAIN_BLOCK_LARGE 64u /* offsets of a large step, four to a block */
 
 SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, uint step, uint block)
 {
@@ -63,33 +64,32 @@ SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, 
                        frame->seed_low, frame->seed_high);
 }
 
-/* Steps on the film and the lens are up to 2^-4 of the whole range long, all others, which bend the whole rest of the
- * path, half as long. A proposal has one scale for all of its coordinates: it is short in all of them or long in all of
- * them. With a scale for each coordinate the longest decides, as there are many; and the more there are, the shorter
- * all must be. For the same work, a door ajar and a glossy hall have 1.15 times the square error where all depths have
- * the same steps and none are as short as the fourth scale, a relief 1.2 times; a lamp in glass and a pool's caustics
- * the same or a little less. */
+/* Small steps of film and lens coordinates are up to 2^-4 of the range, those of all others, which bend the whole rest
+ * of the path, up to half of that. A proposal has one scale for all of its coordinates: with a scale for each, the
+ * longest of the many would decide, so all would have to be shorter. docs/TUNING.md */
 #define STEP_SHIFT_CAMERA 3u
 #define STEP_SHIFT_OTHERS 4u
 #define STEP_SCALES 4u
 
-/* How long the steps of a path of d segments are, in units of 2^-16 of those of one of three. */
+/* Length of the steps of a path of d segments, in units of 2^-16 of those of a path of three. */
 SHARED_FUNCTION uint mutation_length(uint d)
 {
     return ((CHAIN_DEPTH_MIN + 1u) << 16) / (d + 1u);
 }
 
-/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the whole range, times length
- * (mutation_length), either sign alike. (Kelemen et al., 2002, have exponential sizes from 2^-10 to 2^-6.) */
+/* A small step from the random word `bits`: uniform up to 2^-(shift + 1) of the range, times `length`
+ * (mutation_length), of either sign with equal probability. (Kelemen et al., 2002, have exponential sizes from 2^-10 to
+ * 2^-6.) */
 SHARED_FUNCTION uint mutation_offset(uint bits, uint shift, uint length)
 {
     uint size = (uint)((ulong)(bits >> 1 >> shift) * length >> 16);
     return (bits & 1u) != 0u ? size : 0u - size;
 }
 
-/* One random word serves two small steps: its bits 0 and 16 are their signs, the 15 bits above each what counts most in
- * the size of one, and what is below those in one is in the other's upper half. Both have all their sizes, and the word
- * with both signs turned has both steps turned, so detailed balance is exact. place: 0 or 1, which of the two. */
+/* One random word serves two small steps. Bits 0 and 16 are their signs, the 15 bits above each are the leading bits of
+ * that step's size, and the trailing bits of one size are the leading bits of the other. Both steps take all their
+ * sizes, and flipping both signs of the word negates both steps, so detailed balance is exact. place: which of the two,
+ * 0 or 1. */
 #define MUTATION_SIGNS 0x00010001u
 
 SHARED_FUNCTION uint mutation_subpath_bits(uint word, uint place)
@@ -98,7 +98,7 @@ SHARED_FUNCTION uint mutation_subpath_bits(uint word, uint place)
     return (turned & ~MUTATION_SIGNS) | (turned >> 16 & 1u);
 }
 
-/* The coordinates that a mutation changes: four from `first` on and the others from `second` on. */
+/* The coordinates that a mutation changes: four from `first` on, the others from `second` on; `count` in all. */
 typedef struct ChangedNumbers {
     uint first, second, count;
 } ChangedNumbers;
@@ -114,7 +114,7 @@ SHARED_FUNCTION ChangedNumbers chain_changed(__global const FrameParams *frame, 
     return numbers;
 }
 
-/* Adds `offset` to the changed coordinate i. */
+/* Adds `offset` to the i-th of the changed coordinates, if there are as many. */
 SHARED_FUNCTION void chain_number_add(__global uint *paths, uint stride, uint t, ChangedNumbers numbers, uint i,
                                       uint offset)
 {
@@ -148,20 +148,20 @@ SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global
     }
 }
 
-/* Whether a shift draws the direction at z_i, of a path of d segments and s vertices from the light: those to z_2 and
- * z_3. */
+/* Whether a shift chooses the direction at z_i, in a path of d segments with s vertices from the light: the directions
+ * to z_2 and z_3. */
 SHARED_FUNCTION bool shift_draws(uint i, uint d, uint s)
 {
     return i <= SHIFT_VERTICES && i + s < d;
 }
 
-/* The coordinate k (0 or 1) of those that draw the direction at z_i. */
+/* The field of coordinate k (0 or 1) of the direction at z_i. */
 SHARED_FUNCTION uint shift_number(__global const FrameParams *frame, uint d, uint i, uint k)
 {
     return CHAIN_NUMBERS + NUMBER_VERTICES + chain_slot(SIDE_CAMERA, d, i) * chain_vertex_numbers(frame) + 1u + k;
 }
 
-/* Puts aside those that the walk of a shift will change; back: restores them. */
+/* Saves the coordinates that the walk of a shift will overwrite; back: restores them. */
 SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __global uint *paths, uint t, uint d, uint s,
                                         bool back)
 {
@@ -173,7 +173,7 @@ SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __glo
         }
 }
 
-/* The current coordinates become the proposal's; back: the other way. */
+/* Turns the current coordinates into the proposal's; back: the reverse. */
 SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint t, bool back)
 {
     uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, t);
@@ -230,9 +230,9 @@ SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint
         state_store(paths, stride, CHAIN_NUMBERS + first + i, t, numbers.x[i]);
 }
 
-/* ---- how a chain begins ------------------------------------------------------------------------------------------ */
+/* ---- how a chain starts ------------------------------------------------------------------------------------------ */
 
-/* The coordinates that the pool's sample had for the path it kept. */
+/* Sets the coordinates of the path that the pool kept of one of its samples. */
 SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint t, uint key, uint item)
 {
     __global const FrameParams *frame = scene->frame;

@@ -1,5 +1,5 @@
-/* What a chain proposes, and whether it takes it: Metropolis's rule with expected values, every proposal and every
- * current path weighted by how probable it is to be visited (Veach 1997, section 11.3.2). */
+/* What a chain proposes and whether it accepts: Metropolis's rule with expected values, where each proposal and each
+ * current path is splatted with the probability of its visit (Veach 1997, section 11.3.2). */
 #ifndef TWINLIGHT_CHAIN_MUTATION_H
 #define TWINLIGHT_CHAIN_MUTATION_H
 
@@ -7,8 +7,8 @@
 #include "chain/shift.h"
 #include "path/bd_connect.h"
 
-/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a
- * half that does not change have nothing to do. */
+/* The numbers that choose the mutation at `step`. If chains are grouped all get the same, so that the kernels of a
+ * subpath that does not change have nothing to do. */
 SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
 {
     uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
@@ -33,13 +33,13 @@ SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, Random4 
     return MUTATION_ALL; /* the set is empty */
 }
 
-/* The scale of its small steps. */
+/* The scale of the mutation's small steps. */
 SHARED_FUNCTION uint mutation_scale(Random4 random)
 {
     return (uint)((ulong)random.x[2] * STEP_SCALES >> 32);
 }
 
-/* Which subpaths the mutation changes. a subpath without coordinates cannot change: then all do. */
+/* The subpaths (SUBPATH_*) that the mutation changes: both, if one of them has no coordinates. */
 SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
 {
     bool light = s > 0u, camera = s < d;
@@ -50,7 +50,7 @@ SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
     return SUBPATH_BOTH;
 }
 
-/* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
+/* Chooses the next mutation and makes the proposal's coordinates. The first proposal of a pass is the current path. */
 SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
                                    __global const uint *restrict vertices, uint t)
 {
@@ -83,14 +83,14 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-/* What path tracing shows of a path, from 0 to this, in the upper half of a chain's key: rounded, which leaves out or
- * doubles less than 2^-16 of a path. */
+/* The part of a path that path tracing shows is stored in the upper half of a chain's key, as a number from 0 to this.
+ * Rounding omits or doubles less than 2^-16 of a path. */
 #define KEY_SHOWN_ALL 0xffffu
 
-/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `path_tracing`:
- * were the path made by path tracing, it would contribute color / path_tracing. Here as in kernels/pt.cl (path_shown)
- * that, times its importance, is shown up to the limit. Walks from the camera begin with film_reach_factor, which paths
- * that the light's walk brings to the lens (t = 1) do not have, nor path tracing. */
+/* The key of a proposal at `film` with contribution `color`; path_tracing: weight of path tracing's strategies. Path
+ * tracing would contribute color / path_tracing, of which, times importance, it shows what is below its clamping
+ * threshold, as in path_shown (kernels/pt.cl). Camera walks start with throughput film_reach_factor, which is divided
+ * out here, since path tracing does not have it; nor do paths that the light walk connects to the lens (t = 1). */
 SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film, Vec3 color, float path_tracing)
 {
     __global const FrameParams *frame = scene->frame;
@@ -104,8 +104,8 @@ SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film
     return chain_key(d, s) | shown << 16;
 }
 
-/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by
- * chance. */
+/* Layers (SPLAT_*) of a splat, all or nothing of it at random: in expectation what the pool shows of the path has
+ * SPLAT_LIGHT and its excess SPLAT_EXCESS; what path tracing does not show of it also has SPLAT_RARE. */
 SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint key, float f, float u)
 {
     bool by_pool = partition_draw(u, f, partition_threshold(frame, PARTITION_POOL));
@@ -113,8 +113,9 @@ SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint 
     return (by_pool ? SPLAT_LIGHT : SPLAT_EXCESS) | (by_paths ? 0u : SPLAT_RARE);
 }
 
-/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What
- * a path has above the limit is kept apart (mmlt/combination.h): all of a visit or nothing of it, by chance. */
+/* Splats a path at `film` whose contribution is f times `color`, for `visits` expected visits. random: block
+ * CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
+ * splat or nothing of it, at random. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
                                  __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
                                  float visits, Random4 random)
@@ -150,8 +151,8 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
 
-/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin
- * with. */
+/* Makes the proposal the current path. Its target is f and its contribution `color` = f * (color / f); it starts with
+ * `visits` expected visits. */
 SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
                                 Vec3 color, float visits)
 {
@@ -167,8 +168,8 @@ SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint
     state_store_float(paths, stride, CHAIN_PENDING, t, visits);
 }
 
-/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film,
- * times the importance there. */
+/* The target function f of chains: luminance of a contribution, times how far the pixels' filters cover its film
+ * position, times the target importance there. */
 SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color)
 {
     float f = rgb_luminance(color);
@@ -177,10 +178,10 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
     return f;
 }
 
-/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is
- * that of volumes of a mutation that is no step (shift_ratio). What the film gets is expected: a of the proposal, 1 - a
- * of the current path, the latter kept until the chain leaves it. So there is one splat a step: of what the chain
- * leaves, or of what it does not take. */
+/* Decides on the proposal, whose contribution is `color`. Accepts with probability a = min(1, f' / f * change), where
+ * `change` is the change of volume by a mutation that is no step (shift_ratio). The film gets expected values: a of the
+ * proposal and 1 - a of the current path, which is summed up until the chain leaves it. So each step makes one splat:
+ * of the path that the chain leaves, or of the proposal that it refuses. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
                                   __global uint *restrict diagnostics, uint t, Vec3 color, float change)
 {

@@ -1,17 +1,21 @@
-/* Shifts: steps across the film that keep the rest of the path where it is.
+/* Shifts: mutations that move a path across the film and reconnect it to the rest of the path, which stays where it is.
  *
- * With a step of the numbers that draw directions, a path that has met the lobes of several glossy or curved surfaces
- * at their peaks loses them: what turns the ray at z_1 turns it more and more at every vertex behind, so that such a
- * chain, which carries the more the rarer it is, stays where it is, a single dot. A shift moves film and lens, by which
- * z_1 moves, and takes those numbers at z_1 that draw the direction to z_2, and those at z_2 that draw the one to z_3,
- * where both stay. From z_3 on everything is as it was.
+ * A step of the numbers that draw directions moves a path off the peaks of the lobes of several glossy or curved
+ * surfaces: a turn of the ray at z_1 is magnified at every vertex behind. Such proposals are refused, and a chain at
+ * such a path, which carries the more the rarer it is, stays where it is and shows as a single bright dot. A shift
+ * moves film and lens, and with them z_1. It takes those numbers at z_1 that draw the direction to the same z_2, and
+ * those at z_2 that draw the direction to the same z_3. From z_3 on the path is unchanged.
  *
- * The map from one path's numbers to the other's changes volumes: those that draw z_2 by the density of z_2 per area,
- * and so with z_3. The ratio of the densities of both paths goes into the rule of acceptance (Green, "Reversible jump
- * Markov chain Monte Carlo computation and Bayesian model determination", 1995). Such maps that connect again with the
- * vertices of another path are known from gradients: Kettunen et al., "Gradient-domain path tracing", 2015. A path can
- * be shifted where z_2 exists and z_1, and where z_3 exists z_2, have lobes that draw any direction near theirs. A path
- * that cannot makes a usual step of the camera subpath instead, but none to a path that can, which never comes back. */
+ * The map from one path's numbers to the other's changes volumes: by the area density with which they draw z_2, and
+ * likewise z_3. The ratio of both paths' densities enters the acceptance probability (Green, "Reversible jump Markov
+ * chain Monte Carlo computation and Bayesian model determination", 1995). Reconnection to another path's vertices comes
+ * from gradient-domain rendering: Kettunen et al., "Gradient-domain path tracing", 2015. Mutations that invert the
+ * sampling of directions: Otsu et al., "Fusing state spaces for Markov chain Monte Carlo rendering", 2017; Bitterli et
+ * al., "Reversible jump Metropolis light transport using inverse mappings", 2018.
+ *
+ * A path can be shifted if it has z_2, and if z_1 and, where z_3 exists, z_2 have lobes that draw all directions near
+ * theirs. Other paths take an ordinary step of the camera subpath instead; it is refused if it leads to a path that can
+ * be shifted, which would never step back. */
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
 #define TWINLIGHT_CHAIN_SHIFT_H
 
@@ -19,15 +23,14 @@
 #include "chain/chain_numbers.h"
 #include "path/bd_walk.h"
 
-/* Both ways of a shift have to find the same vertices, or chains gather at those that only one way leads to. So a
- * vertex that stays has to be of the primitive that it was of, not of a neighbour that hides it, and no further from
- * where it was than rounding can leave it. That is so many times what floats resolve of coordinates, by which rays
- * begin beside it, and of directions, whose numbers are 2^-23 apart: the less densely they draw it, the further apart
- * they are. In a glossy hall, a door ajar and beside beaten metal 99.5 of 100 vertices that are found are off by less
- * than a quarter of this. */
+/* Tolerance for the position of a kept vertex, in ulps. Both directions of a shift must find the same vertices, or
+ * chains gather at those that only one direction leads to. So a kept vertex must be found on its old primitive, not on
+ * a neighbour that hides it, and no further from its old position than rounding explains. The ulps are those of
+ * coordinates, by which rays start beside their vertex, and of directions, whose numbers are 2^-23 apart: the lower
+ * their density, the larger the steps of the direction. docs/TUNING.md */
 #define SHIFT_ULPS 32.0f
 
-/* And no more than so much of the last segment: beyond, floats do not resolve the lobe. */
+/* Upper bound of that distance relative to the last segment: beyond, floats do not resolve the lobe. */
 #define SHIFT_MOST 1e-3f
 
 SHARED_FUNCTION uint shift_base(uint bank)
@@ -41,7 +44,7 @@ SHARED_FUNCTION uint shift_bank(__global const uint *paths, uint stride, uint t)
     return chain_move(paths, stride, t, MOVE_BANKS) >> SIDE_CAMERA & 1u;
 }
 
-/* Field of z_i, 2 <= i <= 3, in a bank. */
+/* First field of z_i, 2 <= i <= 3, in a bank. */
 SHARED_FUNCTION uint shift_point(uint bank, uint i)
 {
     return shift_base(bank) + SHIFT_POINTS + SHIFT_POINT_WORDS * (i - 2u);
@@ -64,8 +67,8 @@ SHARED_FUNCTION uint shift_kind(__global const uint *paths, __global const uint 
                                                                                    : SHIFT_STEP;
 }
 
-/* numbers: the coordinates of z_i, of a path of d segments. They become those that draw the direction to where the next
- * vertex is. */
+/* Replaces the coordinates of the direction at z_i, in `numbers` and in state, by those that draw the direction to the
+ * kept vertex z_{i+1}. d: segments of the path. False if no coordinates do. */
 SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict paths,
                                  __global const uint *restrict vertices, uint t, uint d, uint i, const Vertex *vertex,
                                  Random4 *numbers)
@@ -90,7 +93,7 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
     return true;
 }
 
-/* Notes how densely a vertex draws the world direction d. */
+/* Stores the density with which a vertex draws the world direction d. */
 SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict paths, uint t, const Vertex *vertex,
                                  Random4 numbers, Vec3 d)
 {
@@ -100,7 +103,7 @@ SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict
     state_store_float(paths, scene->frame->stride, BD_SHIFT_DENSITY, t, found ? inverse.pdf_w : 0.0f);
 }
 
-/* Whether the walk that draws directions so densely has met the vertex at `point` again. */
+/* Whether the walk has hit the kept vertex at field `point` again. pdf_w: density of the direction that led there. */
 SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uint t, uint point, float pdf_w,
                                  const WalkHit *walk_hit)
 {
@@ -116,8 +119,8 @@ SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uin
     return vec3_length_squared(away) <= most * most;
 }
 
-/* The camera's walk has met `walk_hit` as z_depth, depth > 1, which a shift keeps: notes what it is and its density.
- * False: it is not what it has to be. */
+/* The camera walk has hit z_depth, depth > 1, which a shift keeps: stores it and its density. False if it is not the
+ * vertex that it should be. */
 SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const uint *restrict paths,
                                __global uint *restrict vertices, uint t, uint depth, const WalkHit *walk_hit)
 {
@@ -138,7 +141,7 @@ SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const
            shift_found(vertices, stride, t, shift_point(shift_bank(paths, stride, t), depth), pdf_w, walk_hit);
 }
 
-/* What the ratio of f is to be multiplied with; 0: refuse the proposal. */
+/* Factor of the acceptance ratio; 0: refuse the proposal. */
 SHARED_FUNCTION float shift_ratio(__global const uint *restrict paths, __global const uint *restrict vertices,
                                   uint stride, uint t)
 {

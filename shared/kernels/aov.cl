@@ -1,5 +1,5 @@
-/* What a pixel shows besides light (arbitrary output variables): the albedo, normal and distance of the surface seen
- * first, which denoisers and compositors ask for. A pass: pt_start_paths, (rays traced) aov_splat. */
+/* Auxiliary variables (AOVs) of a pixel, for denoisers and compositors: albedo, normal and distance of the first
+ * visible surface. A pass: pt_start_paths, (rays traced) aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 
@@ -11,8 +11,8 @@
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* The part of light arriving from everywhere that the surface sends along `back`, toward the viewer: the mean weight of
- * directions that its Bsdf draws. */
+/* An estimate of the directional albedo: the fraction of uniform incident light that the surface scatters along `back`,
+ * towards the viewer. It is the weight of one direction drawn from the Bsdf. */
 SHARED_FUNCTION Vec3 aov_albedo(const SceneView *scene, Random4 random, const Bsdf *bsdf, Frame shading, Vec3 back)
 {
     BsdfSample sample;
@@ -30,7 +30,7 @@ SHARED_FUNCTION bool aov_lamp(const SceneView *scene, const Surface *surface, ui
     return !vec3_is_zero(light_emitted(scene, light, surface->ng, back));
 }
 
-/* The albedo, 1 for a lamp; or the shading normal on the viewer's side; or the distance. */
+/* The albedo (1 for a lamp), the shading normal on the viewer's side, or the distance. */
 SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit hit)
 {
     __global const FrameParams *frame = scene->frame;
@@ -50,8 +50,8 @@ SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, 
                       back);
 }
 
-/* From: closest hits. To: one sample of the variable. Where nothing was hit albedo and normal are zero, and there is no
- * sample of the depth. */
+/* From: closest hits. To: one sample of the variable. Rays that miss give zero albedo and normal, and no sample of the
+ * distance. */
 __kernel void aov_splat(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                         __global const uint *restrict tables, __global const uint *restrict texels,
                         __global const uint *restrict paths, __global const uint *restrict rays,

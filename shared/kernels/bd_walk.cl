@@ -40,7 +40,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
     state_store(paths, stride, BD_LENGTHS, t, 1u);
 }
 
-/* From: nothing more than the pixel. To: the camera's first ray. */
+/* From: the pixel. To: the camera's first ray. */
 __kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                               __global const uint *restrict geometry, __global const uint *restrict tables,
                               __global const uint *restrict texels, __global uint *restrict paths,
@@ -56,7 +56,7 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
         walk_start_camera(scene, paths, rays, diagnostics, stride, t);
 }
 
-/* s = 0: what is sent by lights that the walk has met after `depth` segments. */
+/* s = 0: adds what the lights send that the camera walk has hit after `depth` segments. */
 SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 contribution)
 {
@@ -72,8 +72,8 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
     bd_add_radiance(paths, stride, t, contribution);
 }
 
-/* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
- * or are full end. */
+/* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex with its densities. Walks that
+ * miss or have max_depth segments end. */
 __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                             __global const uint *restrict geometry, __global const uint *restrict tables,
                             __global const uint *restrict texels, __global uint *restrict paths,
@@ -116,8 +116,8 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     state_store(paths, stride, BD_LENGTHS, t, lengths);
 }
 
-/* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
- * absorption or Russian roulette. Roulette leaves the weights alone: they need not know of it to sum to one. */
+/* From: the vertex. To: the density of the vertex before by the other side; the next ray, or the walk's end by
+ * absorption or Russian roulette. MIS weights ignore roulette: they sum to one without it. */
 __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                               __global const uint *restrict geometry, __global const uint *restrict tables,
                               __global const uint *restrict texels, __global uint *restrict paths,

@@ -1,4 +1,4 @@
-/* Instant bidirectional path tracing: of all strategies the three that need no stored vertices, so that the state of a
+/* Instant bidirectional path tracing: only the three strategies that need no stored vertices, so that the state of a
  * path does not depend on its length (Frolov 2018, section 1; Bogolepov, Ulyanov, Sopin and Turlapov, "GPU-optimized
  * bi-directional path tracing", WSCG 2013). Per segment: (rays traced) ib_shade_hits, ib_connect, (shadow rays traced)
  * ib_add_connections, ib_extend_walks; around them ib_start_light, bd_start_camera, bd_splat. */
@@ -29,7 +29,7 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
         state_store_float(paths, stride, IB_OWN_BEFORE, t, own);
 }
 
-/* s = 0: adds what a light met sends. */
+/* s = 0: adds what a light sends that was hit. */
 SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
                                 Vec3 radiance, const StrategyEnds *ends)
 {
@@ -51,7 +51,8 @@ SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *r
     }
 }
 
-/* From: closest hits. To: emission met by the camera's walk gathered; the vertex. Walks that miss or are full end. */
+/* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex. Walks that miss or have
+ * max_depth segments end. */
 __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                             __global const uint *restrict tables, __global const uint *restrict texels,
                             __global uint *restrict paths, __global uint *restrict rays,
@@ -65,7 +66,7 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, t);
-    /* The vertex takes the place of the one before it. */
+    /* The vertex overwrites the one before it. */
     WalkHit walk_hit = {0};
     walk_hit_make(scene, paths, rays, hits, vertices, t, 0u, &walk_hit);
     state_store_float(paths, stride, IB_OWN, t, walk_hit.own);
@@ -116,7 +117,7 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     connection_store(paths, shadows, stride, item, &connection, weight);
 }
 
-/* From: traced shadow rays. To: visible connections gathered (the camera's walk), or put out for the film. */
+/* From: traced shadow rays. To: visible connections gathered (the camera walk) or splatted (the light walk). */
 __kernel void ib_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                  __global uint *restrict shadows, __global uint *restrict splats,
                                  __global uint *restrict diagnostics)

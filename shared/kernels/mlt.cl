@@ -1,8 +1,8 @@
-/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and,
- * between large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
- * mlt_begin; then per proposal mlt_propose, the light's walk, mlt_start_camera, the camera's walk, mlt_connect, (shadow
- * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk. The first proposal of a
- * pass is the current path itself, so that its vertices are there. */
+/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths with a fixed depth d
+ * and, between large steps, a fixed number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section
+ * 2). A pass: mlt_begin; then per proposal mlt_propose, the light walk, mlt_start_camera, the camera walk, mlt_connect,
+ * (shadow rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk. The first
+ * proposal of a pass is the current path, so that its vertices exist. */
 #ifndef TWINLIGHT_MLT_CL
 #define TWINLIGHT_MLT_CL
 
@@ -12,7 +12,7 @@
 #include "path/bd_start.h"
 #include "path/bd_weight.h"
 
-/* Field of item t in BUFFER_PASS, which has a stride of its own. */
+/* Index of a field of an item in BUFFER_PASS, which has its own stride. */
 SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint t)
 {
     return (size_t)field * frame->pass_stride + (frame->first_item + t - frame->pass_first);
@@ -28,7 +28,7 @@ SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint
     pass[pass_place(frame, field, t)] = value;
 }
 
-/* From: a pool's gathered candidates. To: what the sample is worth, and the path kept. */
+/* From: the candidates of a pool. To: the contribution weight of each sample, and the path kept of it. */
 __kernel void pool_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
                        __global uint *restrict pass)
 {
@@ -40,7 +40,7 @@ __kernel void pool_end(__global const FrameParams *restrict frame, __global cons
     pass_store(frame, pass, POOL_LUMINANCE, t, state_load(paths, stride, BD_CANDIDATE_LUMINANCE, t));
 }
 
-/* From: where each chain begins. To: its coordinates. */
+/* From: where each chain starts. To: its coordinates. */
 __kernel void mlt_begin(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                         __global const uint *restrict geometry, __global const uint *restrict tables,
                         __global const uint *restrict texels, __global const uint *restrict pass,
@@ -72,9 +72,9 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
         state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
 }
 
-/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the
- * current path's subpaths in different banks, the proposal's would lie over them: the camera subpath moves to where the
- * light's is. */
+/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. If the
+ * current path's subpaths are in different banks, the proposal's would overwrite them, so the camera subpath moves to
+ * the bank of the light subpath. */
 SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                       __global uint *restrict vertices, __global uint *restrict densities, uint t)
 {
@@ -99,7 +99,7 @@ SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame
     chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? SUBPATH_BOTH : 0u);
 }
 
-/* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
+/* From: the current path. To: a proposal, and the first ray of its light walk if that is new. */
 __kernel void mlt_propose(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                           __global const uint *restrict geometry, __global const uint *restrict tables,
                           __global const uint *restrict texels, __global uint *restrict paths,
@@ -127,7 +127,8 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), t, own);
 }
 
-/* From: the light's walk done. To: the camera's first ray, where its subpath is new and the light's is there. */
+/* From: the finished light walk. To: the camera's first ray, if the camera subpath is new and the light subpath is
+ * there. */
 __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                                __global const uint *restrict geometry, __global const uint *restrict tables,
                                __global const uint *restrict texels, __global uint *restrict paths,
@@ -142,7 +143,7 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     if (reached != SUBPATH_LIGHT)
         return;
     shift_density_set(vertices, stride, chain_bank(paths, stride, t, SIDE_CAMERA), t, 0.0f);
-    if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
+    if (chain_key_s(key) == chain_key_depth(key)) { /* the camera subpath is the lens alone */
         chain_move_set(paths, stride, t, MOVE_REACHED, SUBPATH_BOTH);
         return;
     }
@@ -150,7 +151,7 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     walk_start_film(scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
 }
 
-/* The last vertex of a side is there: what the connection needs of the walk. */
+/* The walk has made the last vertex of its side: stores what the connection needs to know of it. */
 SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint stride, uint t, uint side, uint bank)
 {
     uint part = chain_subpath(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
@@ -164,7 +165,7 @@ SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint str
     chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
 }
 
-/* Where the walk goes on from a vertex that is not its last. Nobody asks for that vertex any more but for its place. */
+/* Continues the walk from a vertex that is not its last; only its position and geometric normal are read later. */
 SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
                                    __global uint *restrict vertices, __global uint *restrict densities,
                                    __global uint *restrict diagnostics, uint t, uint side, uint depth, uint d, uint s,
@@ -175,7 +176,7 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
     bool shifts = frame->shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
     WalkStep step = {0};
     vertex_place_store(vertices, stride, chain_vertex_base(side, bank), t, vertex);
-    vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as the pool, which has stored it */
+    vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as frame_load makes it of the pool's vertex */
     if (shifts && (chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
         !shift_guide(scene, paths, vertices, t, d, depth, vertex, &numbers)) {
         walk_end(paths, rays, stride, t);
@@ -193,9 +194,9 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
     walk_step_store(paths, rays, stride, t, depth, &step);
 }
 
-/* From: closest hits. To: the vertex with its density, the ratio of densities of the one before it, and the next ray;
- * s = 0: at the last one what the light sends. A walk ends with its last vertex, by absorption, or where nothing can be
- * made of it. */
+/* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s
+ * = 0, at the last vertex, what the light sends. A walk ends at its last vertex, by absorption, or where it can make no
+ * path. */
 __kernel void mlt_walk(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                        __global const uint *restrict geometry, __global const uint *restrict tables,
                        __global const uint *restrict texels, __global uint *restrict paths,
@@ -244,7 +245,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     walk_end(paths, rays, stride, t);
 }
 
-/* The connection of the two last vertices. film: chain_camera. */
+/* Connects the two last vertices. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
                                    __global const uint *restrict vertices, uint t, uint s, uint camera, Random4 film,
                                    Connection *connection)
@@ -298,7 +299,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     chain_place(scene, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
 }
 
-/* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
+/* From: the proposal's contribution and visibility. To: the next current path, and one splat. */
 __kernel void mlt_accept(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                          __global const uint *restrict geometry, __global const uint *restrict tables,
                          __global const uint *restrict texels, __global uint *restrict paths,
@@ -317,7 +318,7 @@ __kernel void mlt_accept(__global const FrameParams *restrict frame, __global co
     chain_decide(scene, paths, splats, diagnostics, t, color, shift_ratio(paths, vertices, stride, t));
 }
 
-/* From: the chains. To: what the film has not got of them, and where they ended. */
+/* From: the chains. To: splats of the visits that are still pending, and where the chains have ended. */
 __kernel void mlt_end(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                       __global const uint *restrict geometry, __global const uint *restrict tables,
                       __global const uint *restrict texels, __global uint *restrict paths,

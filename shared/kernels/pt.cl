@@ -1,6 +1,6 @@
-/* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
+/* Path tracing, one kernel per stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
  * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
- * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+ * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9); Russian roulette by throughput. */
 #ifndef TWINLIGHT_PT_CL
 #define TWINLIGHT_PT_CL
 
@@ -18,13 +18,13 @@
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* The first vertices always survive. */
+/* Vertices before this one always survive Russian roulette. */
 #define ROULETTE_FIRST_DEPTH 2u
 
-/* Path tracing beside chains (frame->split_direct) shows light of longer paths than these up to the frame's limit. */
+/* With frame->split_direct, path tracing clamps the light of paths that are deeper than this. */
 #define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
 
-/* And roulette leaves at least so many of them alive: what it takes from some others carry, above the limit. */
+/* Minimum probability of such a path to survive roulette; below it, reweighted survivors would exceed the clamp. */
 #define SURVIVED_LEAST 0.125f
 
 SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
@@ -79,7 +79,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     }
 }
 
-/* Light of a path of so many segments. */
+/* Adds light of a path of `segments` segments. */
 SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint t,
                                        uint segments, Vec3 radiance)
 {
@@ -90,20 +90,20 @@ SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __glob
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
 }
 
-/* The part that a path of so many segments shows of its contribution. path_tracing: the luminance of f over the sum of
- * the densities of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of
- * that is shown as the limit, and they show the rest (chain/mutation.h). */
+/* The part of its contribution that a path of `segments` segments shows. path_tracing: the luminance of f over the sum
+ * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->split_direct what is below the
+ * clamping threshold is shown; chains show the rest (chain/mutation.h). */
 SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint t,
                                  uint segments, float path_tracing)
 {
     if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
         return 1.0f;
     float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
-    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
+    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains have no roulette */
     return partition_shown(path_tracing, limit);
 }
 
-/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0:
+/* s = 0: the camera's path hits `radiance`, which light sampling would have found with density `pdf_other` (0:
  * never). */
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t,
                                   Vec3 radiance, float pdf_other)
@@ -121,7 +121,8 @@ SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global ui
     path_add_radiance(frame, paths, t, segments, vec3_scale(light, weight));
 }
 
-/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
+/* Adds what the environment sends along d (unit) to a path that was scattered in that direction, weighted against light
+ * sampling. */
 SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, Vec3 d)
 {
     uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, t);
@@ -149,7 +150,8 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
     path_add_met(scene->frame, paths, t, radiance, pdf_light);
 }
 
-/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
+/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or have max_depth segments
+ * end. */
 __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                             __global const uint *restrict tables, __global const uint *restrict texels,
                             __global uint *restrict paths, __global uint *restrict rays,
@@ -200,7 +202,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     bsdf_store(scene, paths, stride, PATH_BSDF, t, &bsdf);
 }
 
-/* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
+/* From: the vertex. To: one light sample, its shadow ray, and its contribution if visible. */
 __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                                __global const uint *restrict tables, __global const uint *restrict texels,
                                __global uint *restrict paths, __global uint *restrict shadows)
@@ -239,7 +241,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     ray_store(shadows, stride, t, shadow);
 }
 
-/* From: traced shadow rays. To: visible light samples gathered, no shadow ray left. */
+/* From: traced shadow rays. To: visible light samples gathered, shadow rays cleared. */
 __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
                             __global uint *restrict shadows)
 {
@@ -254,7 +256,7 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
                           state_load_vec3(paths, stride, PATH_LIGHT, t));
 }
 
-/* The probability with which Russian roulette lets the path live: its throughput, 1 or more for certainly. */
+/* The probability with which Russian roulette lets the path live: its throughput; 1 or more: certainly. */
 SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec3 beta,
                                     float eta_scale)
 {
@@ -315,7 +317,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store(paths, stride, PATH_DEPTH, t, depth + 1u);
 }
 
-/* What the path has gathered goes to its pixel, and is gone. A sum that is not finite counts as zero and is counted. */
+/* Splats what the path has gathered to its pixel, and clears it. A sum that is not finite is counted, and splatted as
+ * zero. */
 SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *restrict splats,
                                 __global uint *restrict diagnostics, uint stride, uint t, uint flags)
 {
@@ -330,7 +333,7 @@ SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *re
     state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
 }
 
-/* From: paths of two segments. To: their light, as a sample of the pixel; frame->split_direct. */
+/* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->split_direct. */
 __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
                               __global uint *restrict splats, __global uint *restrict diagnostics)
 {
@@ -339,8 +342,8 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
         path_splat(paths, splats, diagnostics, frame->stride, t, 0u);
 }
 
-/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what
- * is no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
+/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's
+ * sample before. With frame->split_depths also in the course of a path: what its latest segment has brought. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

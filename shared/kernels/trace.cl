@@ -1,5 +1,5 @@
-/* Ray queries by the hierarchy in BUFFER_BVH, for backends that have none of their own. A ray with t_max <= 0 is not
- * traced, and its hit or visibility stays what it was. */
+/* Ray queries with the hierarchy in BUFFER_BVH, for backends that have none of their own. Rays with t_max <= 0 are not
+ * traced, and their hits or visibility stay unchanged. */
 #ifndef TWINLIGHT_TRACE_CL
 #define TWINLIGHT_TRACE_CL
 

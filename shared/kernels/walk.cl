@@ -1,6 +1,6 @@
-/* Random walks that ask for rays and nothing else: what the tests of the backends run, so that the bits
- * of hits can be compared across threads, backends and devices without a light or material in play. The walk
- * leaves each hit in a uniform direction on a random side, and draws a segment to an earlier point of itself. */
+/* Random walks that need ray queries and nothing else, for the tests of backends: the bits of hits can be compared
+ * across threads, backends and devices without a light or material in play. A walk leaves each hit in a uniform
+ * direction, on either side, and casts a shadow ray to its previous point. */
 #ifndef TWINLIGHT_WALK_CL
 #define TWINLIGHT_WALK_CL
 
@@ -44,7 +44,7 @@ __kernel void walk_start(__global const FrameParams *frame, __global uint *paths
     ray_store(rays, stride, t, ray_spawn(frame->world_center, vec3_splat(0.0f), d));
 }
 
-/* From: a hit. To: the next ray, and a shadow ray to the point before. A walk that misses starts again. */
+/* From: a hit. To: the next ray, and a shadow ray to the previous point. A walk that misses starts again. */
 __kernel void walk_extend(__global const FrameParams *frame, __global const uint *geometry, __global const uint *tables,
                           __global const uint *texels, __global uint *paths, __global uint *rays,
                           __global const uint *hits, __global uint *shadows)
@@ -76,7 +76,7 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
     state_store(paths, stride, WALK_HASH, t, h);
 }
 
-/* To: the hash as a colour, the last shadow ray's answer beside it. */
+/* To: the hash as a colour, and the last shadow ray's answer. */
 __kernel void walk_splat(__global const FrameParams *frame, __global const uint *paths, __global const uint *shadows,
                          __global uint *splats, __global uint *diagnostics)
 {

@@ -1,11 +1,12 @@
-/* Access to structure-of-arrays state: field f of item t lives at f * stride + t, so that
- * neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
+/* Access to structure-of-arrays state: field f of an item is at f * stride + item, so that neighbouring items touch
+ * neighbouring words. Every buffer is an array of 32-bit words. */
 #ifndef TWINLIGHT_LAYOUT_STATE_H
 #define TWINLIGHT_LAYOUT_STATE_H
 
 #include "layout/path_types.h"
 
-/* A backend whose buffers all have one stride may name it before: then every field has a constant address but for t. */
+/* A backend whose buffers all have the same stride may define STATE_STRIDE beforehand: then the address of a field is a
+ * constant plus the item. */
 #ifdef STATE_STRIDE
 #define STATE_PLACE(stride, field, t) ((void)(stride), (size_t)(field)*STATE_STRIDE + (t))
 #else
@@ -52,7 +53,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define RAY_T_MAX 6u
 #define RAY_WORDS 7u
 
-/* BUFFER_SHADOWS: after the ray, 1 when something lies between. */
+/* BUFFER_SHADOWS: after the ray, 1 if it is occluded. */
 #define SHADOW_OCCLUDED 7u
 #define SHADOW_WORDS 8u
 
@@ -64,17 +65,18 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_V 4u
 #define HIT_WORDS 5u
 
-/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: nothing), linear RGB. A splat is in one of three layers: a
- * sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a path over
- * what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess has the sums of samples. It may
- * be in a fourth layer besides: what path tracing leaves of a path. */
+/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), and linear RGB. A splat is in one of three
+ * layers: a sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a
+ * path over what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess uses the sums of
+ * samples. A splat may be in a fourth layer as well: what path tracing does not show of the path. */
 #define SPLAT_SAMPLE 0u
 #define SPLAT_LIGHT 0x80000000u
 #define SPLAT_EXCESS SPLAT_SAMPLE
 #define SPLAT_RARE 0x40000000u
 #define SPLAT_LAYERS (SPLAT_LIGHT | SPLAT_RARE)
 
-/* With frame->split_depths, between flags and pixel: how many segments the path has, from this to that. */
+/* With frame->split_depths the bits between layers and pixel hold the path's depth, from SPLAT_DEPTH_MIN to
+ * SPLAT_DEPTH_MAX. */
 #define SPLAT_DEPTH_SHIFT 25u
 #define SPLAT_DEPTH_MIN 3u
 #define SPLAT_DEPTH_MAX 31u
@@ -93,8 +95,8 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
 #define COUNT_SHADOW 1u
 #define COUNT_WORDS 2u
 
-/* Rays that one item of a counting launch looks at: few enough for the device to be busy, many enough for the sums to
- * meet seldom. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
+/* Rays that one item of a counting launch looks at: few enough to keep the device busy, many enough for its atomic
+ * additions to be rare. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
 #define COUNT_RAYS 64u
 
 SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint t, Ray ray)

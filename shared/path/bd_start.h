@@ -1,4 +1,4 @@
-/* How both walks of a bidirectional path begin. */
+/* How both walks of a bidirectional path start. */
 #ifndef TWINLIGHT_PATH_BD_START_H
 #define TWINLIGHT_PATH_BD_START_H
 
@@ -7,7 +7,7 @@
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
 
-/* The header of a path that has not begun, of the sample `place`: no ray, no shadow ray, nothing gathered. */
+/* The header of a path that has not started, for the sample `place`: no ray, no shadow ray, nothing gathered. */
 SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict shadows, uint t,
                                      ItemPlace place)
@@ -24,8 +24,8 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     walk_end(paths, rays, stride, t);
 }
 
-/* Draws y_0, stored at `base`, and the light's first ray. choice: which light (x, y); random: point, direction. *own:
- * density of y_0, of a point or of a direction where the light is at infinity. False when the light sends nothing. */
+/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: which light (x, y); random: point,
+ * direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global uint *restrict vertices,
                                       __global uint *restrict diagnostics, uint stride, uint t, uint base,
@@ -53,7 +53,7 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *res
     return true;
 }
 
-/* The camera's first ray of a sample of its pixel. */
+/* The first ray of the camera walk, for a sample of the item's pixel. */
 SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
                                        uint t)
@@ -72,7 +72,7 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *re
     walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
 }
 
-/* The film positions that a pixel filter of the crop window covers are width x height pixels from (x, y) on. */
+/* The reach: film positions that the pixel filter of the crop window covers, width x height pixels from (x, y) on. */
 typedef struct FilmReach {
     float x, y, width, height;
 } FilmReach;
@@ -88,7 +88,7 @@ SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
     return reach;
 }
 
-/* How much larger the reach is than the crop window: a path from anywhere in it stands for so much of a pixel. */
+/* Area of the reach over that of the crop window: a path from anywhere in the reach counts for that much of a pixel. */
 SHARED_FUNCTION float film_reach_factor(__global const FrameParams *frame)
 {
     FilmReach reach = film_reach(frame);
@@ -103,16 +103,16 @@ SHARED_FUNCTION Vec2 film_position(__global const FrameParams *frame, uint x, ui
     return vec2(reach.x + reach.width * random_float(x), reach.y + reach.height * random_float(y));
 }
 
-/* The random number of a place, 0 <= place < extent, in the reach: film_position finds it again within 2^-24 of the
- * extent. rest: gives the bits that say no more about the place. */
+/* The random number for which film_position gives `place`, 0 <= place < extent, to within 2^-24 of the extent. rest:
+ * supplies the bits that have no influence on the place. */
 SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
 {
     float cell = float_clamp(place / extent, 0.0f, 0.99999988079071045f) * 8388608.0f;
     return (uint)cell << 9 | (rest & 0x1ffu);
 }
 
-/* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that
- * of splats that are divided by samples per pixel, as those of the light's paths are. */
+/* The first ray of a camera walk from any film position. random: film, lens. Its throughput is that of splats that are
+ * divided by samples per pixel, like those of light paths. */
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
                                      uint t, Random4 random)

@@ -1,6 +1,6 @@
-/* Weights of the three strategies of instant bidirectional path tracing - a light met, a light drawn, the light's path
- * seen from the lens - from running products: a path keeps as much whatever its length. Equal to path/strategy.h with
- * STRATEGIES_IBPT, which needs every vertex's densities. */
+/* MIS weights of the three strategies of instant bidirectional path tracing - a light hit, a light drawn, the light's
+ * path seen from the lens - from running products, so that a path's state does not grow with its length. Equal to
+ * path/strategy.h with STRATEGIES_IBPT, which needs the densities of every vertex. */
 #ifndef TWINLIGHT_PATH_IB_WEIGHT_H
 #define TWINLIGHT_PATH_IB_WEIGHT_H
 
@@ -8,12 +8,12 @@
 #include "path/mis.h"
 #include "path/strategy.h"
 
-/* Fields behind those of path/bd_state.h. With v_1, v_2 ... v_j the walk's vertices and r_i the density of v_i as the
- * other side makes it over that as its own side does: r_i is known when the walk has left v_{i+1}. */
+/* Fields after those of path/bd_state.h. v_1, v_2 ... v_j are the walk's vertices, and r_i is the density of v_i by the
+ * other side over that by its own: known once the walk has left v_{i+1}. */
 #define IB_PRODUCT BD_HEADER_WORDS /* r_1 r_2 ... r_{j-2}: value, exponent */
-#define IB_OWN (BD_HEADER_WORDS + 2u) /* of v_j, as its own side makes it */
-#define IB_OWN_BEFORE (BD_HEADER_WORDS + 3u) /* of v_{j-1} */
-#define IB_FIRST_RATIO (BD_HEADER_WORDS + 4u) /* of y_0 on the light's side, once the walk has left y_1 */
+#define IB_OWN (BD_HEADER_WORDS + 2u) /* density of v_j, by its own side */
+#define IB_OWN_BEFORE (BD_HEADER_WORDS + 3u) /* that of v_{j-1} */
+#define IB_FIRST_RATIO (BD_HEADER_WORDS + 4u) /* r_0, that of y_0, on the light's side, once the walk has left y_1 */
 #define IB_FIRST_DELTA (BD_HEADER_WORDS + 5u) /* 1: v_1 scattered by a delta lobe */
 #define IB_HEADER_WORDS (BD_HEADER_WORDS + 6u)
 
@@ -36,7 +36,7 @@ SHARED_FUNCTION Scaled scaled_ratio(float numerator, float denominator)
     return scaled_divide(scaled_from(numerator), scaled_from(denominator));
 }
 
-/* r_1 ... r_j, the last two by the densities that the other side gives v_j and v_{j-1}. */
+/* r_1 ... r_j. last, before: the densities of v_j and v_{j-1} by the other side. */
 SHARED_FUNCTION Scaled ib_product_to(__global const uint *paths, uint stride, uint t, uint j, float last, float before)
 {
     Scaled product = scaled_ratio(last, state_load_float(paths, stride, IB_OWN, t));
@@ -45,7 +45,7 @@ SHARED_FUNCTION Scaled ib_product_to(__global const uint *paths, uint stride, ui
     return j >= 3u ? scaled_multiply(product, ib_product_load(paths, stride, t)) : product;
 }
 
-/* Another strategy of density `density` beside the one that made the path. */
+/* Adds another strategy; density: its path density over that of the strategy that made the path. */
 SHARED_FUNCTION void ib_take(MisSum *sum, uint set, uint s, uint k, bool possible, Scaled density)
 {
     if (!possible || !strategy_taken(set, s, k))
@@ -54,7 +54,7 @@ SHARED_FUNCTION void ib_take(MisSum *sum, uint set, uint s, uint k, bool possibl
     mis_sum_take(sum, density);
 }
 
-/* s = 0: z_k has met a light. last_delta: z_{k-1} scattered by a delta lobe. */
+/* s = 0: z_k has hit a light. last_delta: z_{k-1} scattered by a delta lobe. */
 SHARED_FUNCTION float ib_weight_met(__global const FrameParams *frame, __global const uint *paths, uint t, uint k,
                                     bool last_delta, const StrategyEnds *ends)
 {
@@ -69,7 +69,7 @@ SHARED_FUNCTION float ib_weight_met(__global const FrameParams *frame, __global 
     return mis_sum_weight(&sum, scaled_from(1.0f));
 }
 
-/* s = 1: a light drawn for z_{k-1}. */
+/* s = 1: a light was drawn for z_{k-1}. */
 SHARED_FUNCTION float ib_weight_drawn(__global const FrameParams *frame, __global const uint *paths, uint t, uint k,
                                       const StrategyEnds *ends)
 {
@@ -97,7 +97,7 @@ SHARED_FUNCTION float ib_weight_seen(__global const FrameParams *frame, __global
     return mis_sum_weight(&sum, scaled_from(1.0f));
 }
 
-/* The walk leaves v_j, j >= 1: the density of v_{j-1} as the other side makes it is `other`. */
+/* Updates the products when the walk leaves v_j, j >= 1. other: the density of v_{j-1} by the other side. */
 SHARED_FUNCTION void ib_leave(__global uint *paths, uint stride, uint t, uint side, uint j, float other, bool delta)
 {
     float before = state_load_float(paths, stride, IB_OWN_BEFORE, t);
