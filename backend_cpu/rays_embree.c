@@ -478,11 +478,11 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
 {
     uint traced = 0;
     for (uint i = 0; i < count; ++i) {
-        uint t = items ? items[i] : i;
-        Ray ray = ray_load(ray_words, stride, t);
+        uint item = items ? items[i] : i;
+        Ray ray = ray_load(ray_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        hit_store(hit_words, stride, t, rays_embree_closest(rays, &ray));
+        hit_store(hit_words, stride, item, rays_embree_closest(rays, &ray));
         ++traced;
     }
     return traced;
@@ -491,11 +491,11 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride)
 {
     uint traced = 0;
-    for (uint t = 0; t < count; ++t) {
-        Ray ray = ray_load(shadow_words, stride, t);
+    for (uint item = 0; item < count; ++item) {
+        Ray ray = ray_load(shadow_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        state_store(shadow_words, stride, SHADOW_OCCLUDED, t, rays_embree_occluded(rays, &ray) ? 1u : 0u);
+        state_store(shadow_words, stride, SHADOW_OCCLUDED, item, rays_embree_occluded(rays, &ray) ? 1u : 0u);
         ++traced;
     }
     return traced;

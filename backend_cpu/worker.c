@@ -82,9 +82,9 @@ static void worker_find_live(Worker *worker, uint count)
     if (worker->live_list == LIVE_SAME)
         return;
     for (uint i = 0; i < before; ++i) {
-        uint t = worker->live_list == LIVE_ANY ? i : worker->live[i];
-        worker->live[live] = t;
-        live += bits_float(t_max[t]) > 0.0f;
+        uint item = worker->live_list == LIVE_ANY ? i : worker->live[i];
+        worker->live[live] = item;
+        live += bits_float(t_max[item]) > 0.0f;
     }
     worker->live_count = live;
     worker->live_list = LIVE_SAME;

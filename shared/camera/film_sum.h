@@ -191,15 +191,15 @@ SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, 
 
 /* Adds a splat of a buffer, and one sample to its pixel unless the splat comes from the light. Any number of threads or
  * work-items may do so concurrently. */
-SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint t)
+SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint item)
 {
-    uint name = state_load(splats, stride, SPLAT_PIXEL, t);
+    uint name = state_load(splats, stride, SPLAT_PIXEL, item);
     bool from_light = (name & SPLAT_LIGHT) != 0u;
     uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
     uint slot = name != NONE ? film_slot(film, pixel) : NONE;
     if (slot == NONE)
         return;
-    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
+    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, item);
     if (!from_light)
         atomic_count_add(film->counts + slot, 1u);
     if (!vec3_finite(color)) {

@@ -38,15 +38,15 @@
 #define MOVE_SCALE 16u /* of the proposal's small steps: they are 2^-scale times the longest */
 #define MOVE_SHIFT 20u /* SHIFT_STEP, SHIFT_KEEPS if the proposal is a shift (chain/shift.h) */
 
-SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint t, uint place)
+SHARED_FUNCTION uint chain_move(__global const uint *paths, uint stride, uint item, uint place)
 {
-    return state_load(paths, stride, CHAIN_MOVE, t) >> place & 0xfu;
+    return state_load(paths, stride, CHAIN_MOVE, item) >> place & 0xfu;
 }
 
-SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint t, uint place, uint value)
+SHARED_FUNCTION void chain_move_set(__global uint *paths, uint stride, uint item, uint place, uint value)
 {
-    uint word = state_load(paths, stride, CHAIN_MOVE, t);
-    state_store(paths, stride, CHAIN_MOVE, t, (word & ~(0xfu << place)) | value << place);
+    uint word = state_load(paths, stride, CHAIN_MOVE, item);
+    state_store(paths, stride, CHAIN_MOVE, item, (word & ~(0xfu << place)) | value << place);
 }
 
 #define CHAIN_SUBPATH_DELTA 0u /* bit i: vertex i scattered by a delta lobe */
@@ -80,9 +80,9 @@ SHARED_FUNCTION uint chain_subpath(uint side, uint bank)
 }
 
 /* The bank of the proposal's subpath: the current path's if they share it, else the other. */
-SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint t, uint side)
+SHARED_FUNCTION uint chain_bank(__global const uint *paths, uint stride, uint item, uint side)
 {
-    uint banks = chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED);
+    uint banks = chain_move(paths, stride, item, MOVE_BANKS) ^ chain_move(paths, stride, item, MOVE_CHANGED);
     return banks >> side & 1u;
 }
 
@@ -103,17 +103,18 @@ SHARED_FUNCTION uint chain_density(__global const FrameParams *frame, uint side,
 }
 
 SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame, __global const uint *paths,
-                                               __global const uint *densities, uint t, uint s, uint camera)
+                                               __global const uint *densities, uint item, uint s, uint camera)
 {
     uint stride = frame->stride;
-    uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
+         camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     DensityView view;
     view.light = densities + (size_t)chain_density(frame, SIDE_LIGHT, light_bank, s, 0u) * stride;
     view.camera = densities + (size_t)chain_density(frame, SIDE_CAMERA, camera_bank, s, 1u) * stride;
     view.stride = stride;
-    view.t = t;
-    view.light_delta = state_load(paths, stride, chain_subpath(SIDE_LIGHT, light_bank) + CHAIN_SUBPATH_DELTA, t);
-    view.camera_delta = state_load(paths, stride, chain_subpath(SIDE_CAMERA, camera_bank) + CHAIN_SUBPATH_DELTA, t);
+    view.item = item;
+    view.light_delta = state_load(paths, stride, chain_subpath(SIDE_LIGHT, light_bank) + CHAIN_SUBPATH_DELTA, item);
+    view.camera_delta = state_load(paths, stride, chain_subpath(SIDE_CAMERA, camera_bank) + CHAIN_SUBPATH_DELTA, item);
     view.compact = true;
     view.light_end = s >= 2u ? s - 2u : 0u;
     view.camera_end = camera >= 3u ? camera - 2u : 1u;

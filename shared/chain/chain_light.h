@@ -6,13 +6,13 @@
 #include "path/bd_weight.h"
 
 /* Stores the proposal's film position and, in its key, the part that path tracing shows. */
-SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint t, Vec2 film, Vec3 color,
-                                 float path_tracing)
+SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint item, Vec2 film,
+                                 Vec3 color, float path_tracing)
 {
-    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(scene, key, film, color, path_tracing));
+    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, item, film.x);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, item, film.y);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, item, chain_key_shown(scene, key, film, color, path_tracing));
 }
 
 /* s = 0 at infinity, as walk_environment, times beta. Path tracing clamps the contribution of each light by itself, so
@@ -54,17 +54,18 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
 /* s = 0: the camera walk of d segments has ended; it contributes only if it hit a light or left the scene towards
  * one. */
 SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *restrict paths,
-                                     __global const uint *restrict densities, uint t, uint d, const WalkHit *walk_hit)
+                                     __global const uint *restrict densities, uint item, uint d,
+                                     const WalkHit *walk_hit)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, t,
-                state_load(paths, stride, BD_CAMERA_DELTA, t));
-    DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
-    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
+    uint stride = frame->stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA);
+    state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, item,
+                state_load(paths, stride, BD_CAMERA_DELTA, item));
+    DensityView view = chain_density_view(frame, paths, densities, item, 0u, d + 1u);
+    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, item);
     float path_tracing = 0.0f;
     if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-        float u = random_float(chain_select(frame, paths, t).x[0]);
+        float u = random_float(chain_select(frame, paths, item).x[0]);
         color = chain_environment(scene, beta, view, walk_hit->ray.d, walk_hit->from_ng, d, u, &path_tracing);
     } else if (!walk_hit->missed && walk_hit->light != NONE) {
         StrategyEnds ends = {0};
@@ -77,9 +78,9 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
     }
     if (vec3_is_zero(color))
         return;
-    Random4 film = chain_camera(frame, paths, t);
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
-    chain_place(scene, paths, t, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
+    Random4 film = chain_camera(frame, paths, item);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, color);
+    chain_place(scene, paths, item, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
 }
 
 #endif

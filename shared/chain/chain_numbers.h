@@ -58,9 +58,9 @@ SHARED_FUNCTION uint chain_slot_subpath(uint s, uint slot)
 #define CHAIN_BLOCK_SMALL 2u /* offsets of small steps, eight to a block */
 #define CHAIN_BLOCK_LARGE 64u /* offsets of a large step, four to a block */
 
-SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint t, uint step, uint block)
+SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint item, uint step, uint block)
 {
-    return random_four(frame->first_item + t, step << 8 | block, frame->sample_index, PATH_STREAM_CHAIN,
+    return random_four(frame->first_item + item, step << 8 | block, frame->sample_index, PATH_STREAM_CHAIN,
                        frame->seed_low, frame->seed_high);
 }
 
@@ -115,35 +115,35 @@ SHARED_FUNCTION ChangedNumbers chain_changed(__global const FrameParams *frame, 
 }
 
 /* Adds `offset` to the i-th of the changed coordinates, if there are as many. */
-SHARED_FUNCTION void chain_number_add(__global uint *paths, uint stride, uint t, ChangedNumbers numbers, uint i,
+SHARED_FUNCTION void chain_number_add(__global uint *paths, uint stride, uint item, ChangedNumbers numbers, uint i,
                                       uint offset)
 {
     uint field = CHAIN_NUMBERS + (i < 4u ? numbers.first + i : numbers.second + i - 4u);
     if (i < numbers.count)
-        state_store(paths, stride, field, t, state_load(paths, stride, field, t) + offset);
+        state_store(paths, stride, field, item, state_load(paths, stride, field, item) + offset);
 }
 
-SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global uint *paths, uint item, uint step,
                                      ChangedNumbers numbers, bool back)
 {
     for (uint first = 0u; first < numbers.count; first += 4u) {
-        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_LARGE + first / 4u);
+        Random4 random = chain_random(frame, item, step, CHAIN_BLOCK_LARGE + first / 4u);
         for (uint i = 0u; i < 4u; ++i)
-            chain_number_add(paths, frame->stride, t, numbers, first + i, back ? 0u - random.x[i] : random.x[i]);
+            chain_number_add(paths, frame->stride, item, numbers, first + i, back ? 0u - random.x[i] : random.x[i]);
     }
 }
 
-SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global uint *paths, uint t, uint step,
+SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global uint *paths, uint item, uint step,
                                      ChangedNumbers numbers, uint scale, uint length, bool back)
 {
     uint film = scale + (numbers.first == NUMBER_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
     uint turn = back ? 1u : 0u;
     for (uint first = 0u; first < numbers.count; first += 8u) {
-        Random4 random = chain_random(frame, t, step, CHAIN_BLOCK_SMALL + first / 8u);
+        Random4 random = chain_random(frame, item, step, CHAIN_BLOCK_SMALL + first / 8u);
         for (uint i = 0u; i < 8u; ++i) {
             uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
             uint bits = mutation_subpath_bits(random.x[i / 2u], i % 2u) ^ turn;
-            chain_number_add(paths, frame->stride, t, numbers, first + i, mutation_offset(bits, shift, length));
+            chain_number_add(paths, frame->stride, item, numbers, first + i, mutation_offset(bits, shift, length));
         }
     }
 }
@@ -162,101 +162,103 @@ SHARED_FUNCTION uint shift_number(__global const FrameParams *frame, uint d, uin
 }
 
 /* Saves the coordinates that the walk of a shift will overwrite; back: restores them. */
-SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __global uint *paths, uint t, uint d, uint s,
-                                        bool back)
+SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __global uint *paths, uint item, uint d,
+                                        uint s, bool back)
 {
     uint stride = frame->stride;
     for (uint i = 1u; shift_draws(i, d, s); ++i)
         for (uint k = 0u; k < 2u; ++k) {
             uint kept = BD_SHIFT_NUMBERS + 2u * (i - 1u) + k, number = shift_number(frame, d, i, k);
-            state_store(paths, stride, back ? number : kept, t, state_load(paths, stride, back ? kept : number, t));
+            state_store(paths, stride, back ? number : kept, item,
+                        state_load(paths, stride, back ? kept : number, item));
         }
 }
 
 /* Turns the current coordinates into the proposal's; back: the reverse. */
-SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint t, bool back)
+SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint item, bool back)
 {
-    uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, t);
-    uint step = state_load(paths, stride, CHAIN_STEP, t), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
+    uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, item);
+    uint step = state_load(paths, stride, CHAIN_STEP, item), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
     uint d = chain_key_depth(key), s = chain_key_s(key);
     ChangedNumbers numbers = chain_changed(frame, move >> MOVE_CHANGED & 0xfu, d, s);
     if ((move >> MOVE_SHIFT & SHIFT_KEEPS) != 0u) {
         numbers.first = NUMBER_CAMERA;
         numbers.count = 4u;
-        shift_numbers_keep(frame, paths, t, d, s, back);
+        shift_numbers_keep(frame, paths, item, d, s, back);
     }
     if ((move >> MOVE_MUTATION & 0xfu) == MUTATION_LARGE)
-        chain_add_large(frame, paths, t, step, numbers, back);
+        chain_add_large(frame, paths, item, step, numbers, back);
     else
-        chain_add_small(frame, paths, t, step, numbers, move >> MOVE_SCALE & 0xfu, mutation_length(d), back);
+        chain_add_small(frame, paths, item, step, numbers, move >> MOVE_SCALE & 0xfu, mutation_length(d), back);
 }
 
-SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __global const uint *paths, uint t, uint first,
-                                      uint count)
+SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                      uint first, uint count)
 {
     Random4 numbers;
     for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = i < count ? state_load(paths, frame->stride, CHAIN_NUMBERS + first + i, t) : 0u;
+        numbers.x[i] = i < count ? state_load(paths, frame->stride, CHAIN_NUMBERS + first + i, item) : 0u;
     return numbers;
 }
 
-SHARED_FUNCTION Random4 chain_camera(__global const FrameParams *frame, __global const uint *paths, uint t)
+SHARED_FUNCTION Random4 chain_camera(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return chain_numbers(frame, paths, t, NUMBER_CAMERA, 4u);
+    return chain_numbers(frame, paths, item, NUMBER_CAMERA, 4u);
 }
 
-SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global const uint *paths, uint t)
+SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return chain_numbers(frame, paths, t, NUMBER_EMIT, 4u);
+    return chain_numbers(frame, paths, item, NUMBER_EMIT, 4u);
 }
 
-SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint t)
+SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return chain_numbers(frame, paths, t, NUMBER_SELECT, 2u);
+    return chain_numbers(frame, paths, item, NUMBER_SELECT, 2u);
 }
 
 /* x: lobe, direction, direction, mix. */
-SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global const uint *paths, uint t, uint side,
-                                     uint d, uint i)
+SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                     uint side, uint d, uint i)
 {
     uint count = chain_vertex_numbers(frame);
-    return chain_numbers(frame, paths, t, NUMBER_VERTICES + chain_slot(side, d, i) * count, count);
+    return chain_numbers(frame, paths, item, NUMBER_VERTICES + chain_slot(side, d, i) * count, count);
 }
 
-SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint t, uint first, uint count,
+SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint item, uint first, uint count,
                                          Random4 numbers)
 {
     for (uint i = 0u; i < count; ++i)
-        state_store(paths, stride, CHAIN_NUMBERS + first + i, t, numbers.x[i]);
+        state_store(paths, stride, CHAIN_NUMBERS + first + i, item, numbers.x[i]);
 }
 
 /* ---- how a chain starts ------------------------------------------------------------------------------------------ */
 
 /* Sets the coordinates of the path that the pool kept of one of its samples. */
-SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint t, uint key, uint item)
+SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint item, uint key,
+                                           uint pool_item)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
-    ItemPlace place = pool_item_place(frame, scene->guide, item);
-    state_store(paths, stride, BD_PIXEL, t, place.pixel);
-    state_store(paths, stride, BD_SAMPLE, t, place.sample);
+    ItemPlace place = pool_item_place(frame, scene->guide, pool_item);
+    state_store(paths, stride, BD_PIXEL, item, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, item, place.sample);
     float weight;
-    Random4 camera = pool_camera(scene, paths, t, &weight);
+    Random4 camera = pool_camera(scene, paths, item, &weight);
     if (s == d) {
-        Random4 film = pool_random(frame, paths, t, BD_RANDOM_PIXEL);
+        Random4 film = pool_random(frame, paths, item, BD_RANDOM_PIXEL);
         camera.x[0] = film.x[0];
         camera.x[1] = film.x[1];
     }
-    chain_store_numbers(paths, stride, t, NUMBER_CAMERA, 4u, camera);
-    chain_store_numbers(paths, stride, t, NUMBER_EMIT, 4u, pool_random(frame, paths, t, BD_RANDOM_EMIT));
-    chain_store_numbers(paths, stride, t, NUMBER_SELECT, 2u, pool_random(frame, paths, t, BD_RANDOM_LIGHT));
+    chain_store_numbers(paths, stride, item, NUMBER_CAMERA, 4u, camera);
+    chain_store_numbers(paths, stride, item, NUMBER_EMIT, 4u, pool_random(frame, paths, item, BD_RANDOM_EMIT));
+    chain_store_numbers(paths, stride, item, NUMBER_SELECT, 2u, pool_random(frame, paths, item, BD_RANDOM_LIGHT));
     for (uint slot = 0u; slot + 1u < d; ++slot) {
         uint side = slot + 1u < s ? SIDE_LIGHT : SIDE_CAMERA;
         uint i = side == SIDE_LIGHT ? slot + 1u : d - 1u - slot;
-        Random4 numbers = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_SCATTER));
+        Random4 numbers = pool_random(frame, paths, item, bd_random_vertex(side, i, BD_RANDOM_SCATTER));
         if (count > 3u)
-            numbers.x[3] = pool_random(frame, paths, t, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[0];
-        chain_store_numbers(paths, stride, t, NUMBER_VERTICES + slot * count, count, numbers);
+            numbers.x[3] = pool_random(frame, paths, item, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[0];
+        chain_store_numbers(paths, stride, item, NUMBER_VERTICES + slot * count, count, numbers);
     }
 }
 

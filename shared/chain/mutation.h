@@ -9,9 +9,9 @@
 
 /* The numbers that choose the mutation at `step`. If chains are grouped all get the same, so that the kernels of a
  * subpath that does not change have nothing to do. */
-SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
+SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint item, uint step)
 {
-    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
+    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + item;
     return random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
 }
 
@@ -52,33 +52,33 @@ SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
 
 /* Chooses the next mutation and makes the proposal's coordinates. The first proposal of a pass is the current path. */
 SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
-                                   __global const uint *restrict vertices, uint t)
+                                   __global const uint *restrict vertices, uint item)
 {
-    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
-    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, item), d = chain_key_depth(key);
+    uint step = state_load(paths, stride, CHAIN_STEP, item), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
          scale = 0u;
     uint shift = 0u;
-    if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
-        state_store(paths, stride, CHAIN_STEP, t, ++step);
-        Random4 random = mutation_random(frame, t, step);
+    if (state_load_float(paths, stride, CHAIN_LUMINANCE, item) != 0.0f) {
+        state_store(paths, stride, CHAIN_STEP, item, ++step);
+        Random4 random = mutation_random(frame, item, step);
         mutation = mutation_choose(frame, random);
         scale = mutation_scale(random);
         changed = mutation_subpaths(mutation, d, chain_key_s(key));
         if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
-            shift = shift_kind(paths, vertices, stride, t);
+            shift = shift_kind(paths, vertices, stride, item);
     }
     if (mutation == MUTATION_LARGE) {
-        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
+        uint bits = chain_random(frame, item, step, CHAIN_BLOCK_S).x[0];
         key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
     }
     uint kept = SUBPATH_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | SUBPATH_LIGHT : kept;
-    uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
-    state_store(paths, stride, CHAIN_MOVE, t,
+    uint banks = state_load(paths, stride, CHAIN_MOVE, item) & 0xfu << MOVE_BANKS;
+    state_store(paths, stride, CHAIN_MOVE, item,
                 banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
                     scale << MOVE_SCALE | shift << MOVE_SHIFT);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, item, key);
     if (mutation != MUTATION_REPLAY)
-        chain_move_numbers(frame, paths, t, false);
+        chain_move_numbers(frame, paths, item, false);
 }
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
@@ -117,8 +117,8 @@ SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint 
  * CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
  * splat or nothing of it, at random. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
-                                 __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
-                                 float visits, Random4 random)
+                                 __global uint *restrict diagnostics, uint item, uint key, Vec2 film, float f,
+                                 Vec3 color, float visits, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, pixel = NONE;
@@ -126,46 +126,47 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
     if (visits > 0.0f)
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
     if (pixel == NONE)
-        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else
-        splat_store(splats, diagnostics, stride, t,
+        splat_store(splats, diagnostics, stride, item,
                     chain_splat_layers(frame, key, f, random_float(random.x[3])) | pixel |
                         splat_depth(frame->split_depths, chain_key_depth(key)),
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
 
-SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint t)
+SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint item)
 {
-    return vec2(state_load_float(paths, stride, field, t), state_load_float(paths, stride, field + 1u, t));
+    return vec2(state_load_float(paths, stride, field, item), state_load_float(paths, stride, field + 1u, item));
 }
 
 SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const uint *restrict paths,
-                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint t,
+                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
                                          float visits, Random4 random)
 {
     uint stride = scene->frame->stride;
-    chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_KEY, t),
-                chain_film_load(paths, stride, CHAIN_FILM, t), state_load_float(paths, stride, CHAIN_LUMINANCE, t),
-                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits, random);
+    chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_KEY, item),
+                chain_film_load(paths, stride, CHAIN_FILM, item),
+                state_load_float(paths, stride, CHAIN_LUMINANCE, item),
+                state_load_vec3(paths, stride, CHAIN_COLOR, item), visits, random);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
 
 /* Makes the proposal the current path. Its target is f and its contribution `color` = f * (color / f); it starts with
  * `visits` expected visits. */
-SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
+SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint item, float f,
                                 Vec3 color, float visits)
 {
     uint stride = frame->stride;
-    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
-    state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
-    chain_move_set(paths, stride, t, MOVE_BANKS,
-                   chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED));
-    state_store_float(paths, stride, CHAIN_LUMINANCE, t, f);
-    state_store_vec3(paths, stride, CHAIN_COLOR, t, vec3_scale(color, 1.0f / f));
-    state_store_float(paths, stride, CHAIN_FILM, t, film.x);
-    state_store_float(paths, stride, CHAIN_FILM + 1u, t, film.y);
-    state_store_float(paths, stride, CHAIN_PENDING, t, visits);
+    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item);
+    state_store(paths, stride, CHAIN_KEY, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item));
+    chain_move_set(paths, stride, item, MOVE_BANKS,
+                   chain_move(paths, stride, item, MOVE_BANKS) ^ chain_move(paths, stride, item, MOVE_CHANGED));
+    state_store_float(paths, stride, CHAIN_LUMINANCE, item, f);
+    state_store_vec3(paths, stride, CHAIN_COLOR, item, vec3_scale(color, 1.0f / f));
+    state_store_float(paths, stride, CHAIN_FILM, item, film.x);
+    state_store_float(paths, stride, CHAIN_FILM + 1u, item, film.y);
+    state_store_float(paths, stride, CHAIN_PENDING, item, visits);
 }
 
 /* The target function f of chains: luminance of a contribution, times how far the pixels' filters cover its film
@@ -183,47 +184,47 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
  * proposal and 1 - a of the current path, which is summed up until the chain leaves it. So each step makes one splat:
  * of the path that the chain leaves, or of the proposal that it refuses. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
-                                  __global uint *restrict diagnostics, uint t, Vec3 color, float change)
+                                  __global uint *restrict diagnostics, uint item, Vec3 color, float change)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
-    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color);
-    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
+    uint stride = frame->stride, mutation = chain_move(paths, stride, item, MOVE_MUTATION);
+    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), color);
+    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, item);
     if (!float_finite(f)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
-        if (state_load(paths, stride, CHAIN_BAD, t) == NONE)
-            state_store(paths, stride, CHAIN_BAD, t, state_load(paths, stride, CHAIN_STEP, t));
+        if (state_load(paths, stride, CHAIN_BAD, item) == NONE)
+            state_store(paths, stride, CHAIN_BAD, item, state_load(paths, stride, CHAIN_STEP, item));
         f = 0.0f;
     }
     f = float_max(f, 0.0f);
     if (mutation == MUTATION_REPLAY) {
-        uint expected = state_load(paths, stride, CHAIN_EXPECTED, t);
-        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        uint expected = state_load(paths, stride, CHAIN_EXPECTED, item);
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
         if (expected != 0u && expected != float_bits(f))
             diagnostic_count(diagnostics, DIAGNOSTIC_REPLAY);
         if (f > 0.0f)
-            chain_take(frame, paths, t, f, color, 0.0f);
+            chain_take(frame, paths, item, f, color, 0.0f);
         else
             diagnostic_count(diagnostics, DIAGNOSTIC_LOST_CHAIN);
         return;
     }
     float ratio = f > 0.0f ? f / current * change : 0.0f, accept = float_min(ratio, 1.0f),
-          pending = state_load_float(paths, stride, CHAIN_PENDING, t);
-    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
+          pending = state_load_float(paths, stride, CHAIN_PENDING, item);
+    Random4 random = chain_random(frame, item, state_load(paths, stride, CHAIN_STEP, item), CHAIN_BLOCK_DECIDE);
     bool taken = f > 0.0f && random_float(random.x[0]) < accept;
-    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, t);
-    state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
-    state_store(paths, stride, CHAIN_RUN, t, run_after(state_load(paths, stride, CHAIN_RUN, t), taken));
+    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, item);
+    state_store(paths, stride, CHAIN_TALLY + mutation, item, tally + 1u + (taken ? 0x10000u : 0u));
+    state_store(paths, stride, CHAIN_RUN, item, run_after(state_load(paths, stride, CHAIN_RUN, item), taken));
     if (taken) {
-        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept), random);
-        chain_take(frame, paths, t, f, color, accept);
+        chain_splat_current(scene, paths, splats, diagnostics, item, pending + (1.0f - accept), random);
+        chain_take(frame, paths, item, f, color, accept);
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t),
-                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color, accept, random);
-        state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
-        chain_move_numbers(frame, paths, t, true);
+        chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
+                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), f, color, accept, random);
+        state_store_float(paths, stride, CHAIN_PENDING, item, pending + (1.0f - accept));
+        chain_move_numbers(frame, paths, item, true);
     }
 }
 

@@ -41,11 +41,11 @@ SHARED_FUNCTION uint chain_key_s(uint key)
 /* The camera's numbers of a pool's sample. Its pixel is given, and the film position is drawn from that pixel's filter,
  * as in every sample of an image; positions drawn uniformly over the film would not sample all pixels alike. The
  * density of a position is film_splat_cover / film_reach_factor. *weight: of the pixel filter. */
-SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint *paths, uint t, float *weight)
+SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint *paths, uint item, float *weight)
 {
     __global const FrameParams *frame = scene->frame;
-    Random4 random = pool_random(frame, paths, t, BD_RANDOM_CAMERA);
-    uint pixel = state_load(paths, frame->stride, BD_PIXEL, t);
+    Random4 random = pool_random(frame, paths, item, BD_RANDOM_CAMERA);
+    uint pixel = state_load(paths, frame->stride, BD_PIXEL, item);
     uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), weight);
     FilmReach reach = film_reach(frame);
@@ -64,31 +64,31 @@ SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item
 
 /* Multiplies what Russian roulette goes by with what the sample's paths count for (density ratio, weight of light
  * walks), so that roulette does not make paths rarer that few samples have. docs/TUNING.md */
-SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                          float density_ratio)
 {
     uint stride = frame->stride;
     float counts = float_max(density_ratio, 1.0f) *
-                   (pool_has_light(frame, frame->first_item + t) ? frame->pool_lights_weight : 1.0f);
-    state_store_float(paths, stride, BD_ROULETTE_SCALE, t,
-                      counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, t));
+                   (pool_has_light(frame, frame->first_item + item) ? frame->pool_lights_weight : 1.0f);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, item,
+                      counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, item));
 }
 
 /* The first ray of the camera walk. What it gathers goes to the sample's pixel. */
 SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint t)
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint item)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     float weight;
-    Random4 random = pool_camera(scene, paths, t, &weight);
+    Random4 random = pool_camera(scene, paths, item, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
-    state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
-    state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, scene->guide, film));
-    float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, t));
-    state_store_float(paths, stride, BD_WEIGHT, t, density_ratio * (weight / film_reach_factor(frame)));
-    walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
-    pool_roulette_weigh(frame, paths, t, density_ratio);
+    state_store_float(paths, stride, BD_COVER, item, film_splat_cover(scene, film));
+    state_store_float(paths, stride, BD_IMPORTANCE, item, film_importance(frame, scene->guide, film));
+    float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, item));
+    state_store_float(paths, stride, BD_WEIGHT, item, density_ratio * (weight / film_reach_factor(frame)));
+    walk_start_film(scene, paths, rays, diagnostics, stride, item, random);
+    pool_roulette_weigh(frame, paths, item, density_ratio);
 }
 
 /* Offers a path of strategy (s, t) to the sample's reservoir, whose candidate it becomes with probability proportional

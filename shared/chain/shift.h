@@ -39,9 +39,9 @@ SHARED_FUNCTION uint shift_base(uint bank)
 }
 
 /* The bank of the current path. */
-SHARED_FUNCTION uint shift_bank(__global const uint *paths, uint stride, uint t)
+SHARED_FUNCTION uint shift_bank(__global const uint *paths, uint stride, uint item)
 {
-    return chain_move(paths, stride, t, MOVE_BANKS) >> SIDE_CAMERA & 1u;
+    return chain_move(paths, stride, item, MOVE_BANKS) >> SIDE_CAMERA & 1u;
 }
 
 /* First field of z_i, 2 <= i <= 3, in a bank. */
@@ -50,32 +50,32 @@ SHARED_FUNCTION uint shift_point(uint bank, uint i)
     return shift_base(bank) + SHIFT_POINTS + SHIFT_POINT_WORDS * (i - 2u);
 }
 
-SHARED_FUNCTION float shift_density(__global const uint *vertices, uint stride, uint bank, uint t)
+SHARED_FUNCTION float shift_density(__global const uint *vertices, uint stride, uint bank, uint item)
 {
-    return state_load_float(vertices, stride, shift_base(bank) + SHIFT_DENSITY, t);
+    return state_load_float(vertices, stride, shift_base(bank) + SHIFT_DENSITY, item);
 }
 
-SHARED_FUNCTION void shift_density_set(__global uint *vertices, uint stride, uint bank, uint t, float density)
+SHARED_FUNCTION void shift_density_set(__global uint *vertices, uint stride, uint bank, uint item, float density)
 {
-    state_store_float(vertices, stride, shift_base(bank) + SHIFT_DENSITY, t, density);
+    state_store_float(vertices, stride, shift_base(bank) + SHIFT_DENSITY, item, density);
 }
 
 /* MOVE_SHIFT of a proposal that is to be a shift. */
-SHARED_FUNCTION uint shift_kind(__global const uint *paths, __global const uint *vertices, uint stride, uint t)
+SHARED_FUNCTION uint shift_kind(__global const uint *paths, __global const uint *vertices, uint stride, uint item)
 {
-    return shift_density(vertices, stride, shift_bank(paths, stride, t), t) > 0.0f ? SHIFT_STEP | SHIFT_KEEPS
-                                                                                   : SHIFT_STEP;
+    return shift_density(vertices, stride, shift_bank(paths, stride, item), item) > 0.0f ? SHIFT_STEP | SHIFT_KEEPS
+                                                                                         : SHIFT_STEP;
 }
 
 /* Replaces the coordinates of the direction at z_i, in `numbers` and in state, by those that draw the direction to the
  * kept vertex z_{i+1}. d: segments of the path. False if no coordinates do. */
 SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict paths,
-                                 __global const uint *restrict vertices, uint t, uint d, uint i, const Vertex *vertex,
-                                 Random4 *numbers)
+                                 __global const uint *restrict vertices, uint item, uint d, uint i,
+                                 const Vertex *vertex, Random4 *numbers)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, point = shift_point(shift_bank(paths, stride, t), i + 1u);
-    Vec3 to = vec3_sub(state_load_vec3(vertices, stride, point, t), vertex->p);
+    uint stride = frame->stride, point = shift_point(shift_bank(paths, stride, item), i + 1u);
+    Vec3 to = vec3_sub(state_load_vec3(vertices, stride, point, item), vertex->p);
     float square = vec3_length_squared(to);
     BsdfInverse inverse;
     if (!(square > 0.0f))
@@ -89,28 +89,28 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
     numbers->x[1] = light_guide_bits(inverse.u.x) - origin.x[1];
     numbers->x[2] = light_guide_bits(inverse.u.y) - origin.x[2];
     for (uint k = 0u; k < 2u; ++k)
-        state_store(paths, stride, shift_number(frame, d, i, k), t, numbers->x[1u + k]);
+        state_store(paths, stride, shift_number(frame, d, i, k), item, numbers->x[1u + k]);
     return true;
 }
 
 /* Stores the density with which a vertex draws the world direction d. */
-SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict paths, uint t, const Vertex *vertex,
+SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict paths, uint item, const Vertex *vertex,
                                  Random4 numbers, Vec3 d)
 {
     BsdfInverse inverse;
     bool found = bsdf_invert(scene, &vertex->bsdf, vertex->wo, frame_to_local(vertex->frame, d),
                              random_float(numbers.x[0]), &inverse);
-    state_store_float(paths, scene->frame->stride, BD_SHIFT_DENSITY, t, found ? inverse.pdf_w : 0.0f);
+    state_store_float(paths, scene->frame->stride, BD_SHIFT_DENSITY, item, found ? inverse.pdf_w : 0.0f);
 }
 
 /* Whether the walk has hit the kept vertex at field `point` again. pdf_w: density of the direction that led there. */
-SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uint t, uint point, float pdf_w,
+SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uint item, uint point, float pdf_w,
                                  const WalkHit *walk_hit)
 {
-    if (walk_hit->primitive != state_load(vertices, stride, point + SHIFT_PRIMITIVE, t) ||
-        walk_hit->instance != state_load(vertices, stride, point + SHIFT_INSTANCE, t))
+    if (walk_hit->primitive != state_load(vertices, stride, point + SHIFT_PRIMITIVE, item) ||
+        walk_hit->instance != state_load(vertices, stride, point + SHIFT_INSTANCE, item))
         return false;
-    Vec3 p = walk_hit->surface.p, away = vec3_sub(p, state_load_vec3(vertices, stride, point, t));
+    Vec3 p = walk_hit->surface.p, away = vec3_sub(p, state_load_vec3(vertices, stride, point, item));
     float size = float_max(vec3_max_abs(p), vec3_max_abs(walk_hit->ray.o));
     float distance = float_sqrt(walk_hit->distance2);
     float across = SHIFT_ULPS * FLOAT_EPSILON * (size + distance * (1.0f + 1.0f / pdf_w));
@@ -122,36 +122,36 @@ SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uin
 /* The camera walk has hit z_depth, depth > 1, which a shift keeps: stores it and its density. False if it is not the
  * vertex that it should be. */
 SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const uint *restrict paths,
-                               __global uint *restrict vertices, uint t, uint depth, const WalkHit *walk_hit)
+                               __global uint *restrict vertices, uint item, uint depth, const WalkHit *walk_hit)
 {
-    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA), point = shift_point(bank, depth);
-    float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, t), density = 0.0f;
-    float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, t);
+    uint stride = frame->stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA), point = shift_point(bank, depth);
+    float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, item), density = 0.0f;
+    float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, item);
     if (!walk_hit->missed) {
         density = before * pdf_w * solid_angle_to_area(walk_hit->ray.d, walk_hit->surface.ng, walk_hit->distance2);
-        state_store_vec3(vertices, stride, point, t, walk_hit->surface.p);
-        state_store(vertices, stride, point + SHIFT_INSTANCE, t, walk_hit->instance);
-        state_store(vertices, stride, point + SHIFT_PRIMITIVE, t, walk_hit->primitive);
+        state_store_vec3(vertices, stride, point, item, walk_hit->surface.p);
+        state_store(vertices, stride, point + SHIFT_INSTANCE, item, walk_hit->instance);
+        state_store(vertices, stride, point + SHIFT_PRIMITIVE, item, walk_hit->primitive);
     }
     density = density > 0.0f && float_finite(density) ? density : 0.0f;
-    shift_density_set(vertices, stride, bank, t, density);
-    if ((chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) == 0u)
+    shift_density_set(vertices, stride, bank, item, density);
+    if ((chain_move(paths, stride, item, MOVE_SHIFT) & SHIFT_KEEPS) == 0u)
         return true;
     return density > 0.0f &&
-           shift_found(vertices, stride, t, shift_point(shift_bank(paths, stride, t), depth), pdf_w, walk_hit);
+           shift_found(vertices, stride, item, shift_point(shift_bank(paths, stride, item), depth), pdf_w, walk_hit);
 }
 
 /* Factor of the acceptance ratio; 0: refuse the proposal. */
 SHARED_FUNCTION float shift_ratio(__global const uint *restrict paths, __global const uint *restrict vertices,
-                                  uint stride, uint t)
+                                  uint stride, uint item)
 {
-    uint shift = chain_move(paths, stride, t, MOVE_SHIFT);
+    uint shift = chain_move(paths, stride, item, MOVE_SHIFT);
     if (shift == 0u)
         return 1.0f;
-    float proposed = shift_density(vertices, stride, chain_bank(paths, stride, t, SIDE_CAMERA), t);
+    float proposed = shift_density(vertices, stride, chain_bank(paths, stride, item, SIDE_CAMERA), item);
     if ((shift & SHIFT_KEEPS) == 0u)
         return proposed > 0.0f ? 0.0f : 1.0f;
-    return proposed / shift_density(vertices, stride, shift_bank(paths, stride, t), t);
+    return proposed / shift_density(vertices, stride, shift_bank(paths, stride, item), item);
 }
 
 #endif

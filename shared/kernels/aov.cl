@@ -57,21 +57,21 @@ __kernel void aov_splat(__global const FrameParams *restrict frame, __global con
                         __global const uint *restrict paths, __global const uint *restrict rays,
                         __global const uint *restrict hits, __global uint *restrict splats)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint pixel = state_load(paths, stride, PATH_PIXEL, t), sample = state_load(paths, stride, PATH_SAMPLE, t);
-    Hit hit = hit_load(hits, stride, t);
-    bool met = state_load(paths, stride, PATH_DEPTH, t) != 0u && hit.primitive != NONE;
+    uint pixel = state_load(paths, stride, PATH_PIXEL, item), sample = state_load(paths, stride, PATH_SAMPLE, item);
+    Hit hit = hit_load(hits, stride, item);
+    bool met = state_load(paths, stride, PATH_DEPTH, item) != 0u && hit.primitive != NONE;
     Vec3 value = vec3_splat(0.0f);
     if (met) {
         KERNEL_SCENE(frame, geometry, tables, texels);
-        value = aov_value(scene, pixel, sample, ray_load(rays, stride, t), hit);
+        value = aov_value(scene, pixel, sample, ray_load(rays, stride, item), hit);
     }
     if (frame->aov != AOV_DEPTH)
-        value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, t));
-    state_store(splats, stride, SPLAT_PIXEL, t, met || frame->aov != AOV_DEPTH ? pixel : NONE);
-    state_store_vec3(splats, stride, SPLAT_COLOR, t, value);
+        value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
+    state_store(splats, stride, SPLAT_PIXEL, item, met || frame->aov != AOV_DEPTH ? pixel : NONE);
+    state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
 }
 
 #endif

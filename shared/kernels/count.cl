@@ -13,8 +13,8 @@ SHARED_FUNCTION void rays_count(__global const FrameParams *frame, __global cons
     uint count = frame->item_count, groups = (count + COUNT_RAYS - 1u) / COUNT_RAYS, live = 0u;
     if (g >= groups)
         return;
-    for (uint t = g; t < count; t += groups)
-        live += state_load_float(rays, frame->stride, RAY_T_MAX, t) > 0.0f ? 1u : 0u;
+    for (uint item = g; item < count; item += groups)
+        live += state_load_float(rays, frame->stride, RAY_T_MAX, item) > 0.0f ? 1u : 0u;
     if (live != 0u)
         counter_add(counter, live);
 }

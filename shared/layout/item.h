@@ -84,9 +84,9 @@ SHARED_FUNCTION ItemPlace pool_item_place(__global const FrameParams *frame, __g
 }
 
 /* The place of item `item` of a launch, in a pass that is no pool's. */
-SHARED_FUNCTION ItemPlace item_place(__global const FrameParams *frame, uint t)
+SHARED_FUNCTION ItemPlace item_place(__global const FrameParams *frame, uint item)
 {
-    return item_place_even(frame, frame->first_item + t + frame->pixel_first);
+    return item_place_even(frame, frame->first_item + item + frame->pixel_first);
 }
 
 #endif

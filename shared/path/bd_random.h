@@ -22,23 +22,24 @@
 /* One block per connection of a pool, to draw the candidate (chain/pool.h); s * 64 + t. */
 #define BD_RANDOM_CANDIDATES 0x2000u
 
-SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint t, uint block,
-                                     uint stream)
+SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                     uint block, uint stream)
 {
     uint stride = frame->stride;
-    return random_four(state_load(paths, stride, BD_PIXEL, t), state_load(paths, stride, BD_SAMPLE, t), block, stream,
-                       frame->seed_low, frame->seed_high);
+    return random_four(state_load(paths, stride, BD_PIXEL, item), state_load(paths, stride, BD_SAMPLE, item), block,
+                       stream, frame->seed_low, frame->seed_high);
 }
 
-SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
+SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint item, uint block)
 {
-    return bd_random_of(frame, paths, t, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
+    return bd_random_of(frame, paths, item, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
 }
 
 /* bd_random of the pool sample whose pixel and sample number the item holds. */
-SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
+SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                    uint block)
 {
-    return bd_random_of(frame, paths, t, block, PATH_STREAM_POOL);
+    return bd_random_of(frame, paths, item, block, PATH_STREAM_POOL);
 }
 
 /* The block of vertex i of a side. */
@@ -49,11 +50,12 @@ SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
 
 /* The number that decides mix materials at the vertex after `depth` segments of a side. The same for all in scenes
  * without any. */
-SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint t, uint side, uint depth)
+SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint item, uint side,
+                                    uint depth)
 {
     if (!SCENE_HAS(scene, FEATURE_MIX))
         return 0.5f;
-    return random_float(bd_random(scene->frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
+    return random_float(bd_random(scene->frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
 }
 
 /* A chain has one lens point and one light for all its connections. Turns its coordinates (camera: film, lens) into the

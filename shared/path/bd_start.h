@@ -9,26 +9,26 @@
 
 /* The header of a path that has not started, for the sample `place`: no ray, no shadow ray, nothing gathered. */
 SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                     __global uint *restrict rays, __global uint *restrict shadows, uint t,
+                                     __global uint *restrict rays, __global uint *restrict shadows, uint item,
                                      ItemPlace place)
 {
     uint stride = frame->stride;
-    state_store(paths, stride, BD_PIXEL, t, place.pixel);
-    state_store(paths, stride, BD_SAMPLE, t, place.sample);
-    state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    state_store_float(paths, stride, BD_CANDIDATE_SUM, t, 0.0f);
-    state_store(paths, stride, BD_CANDIDATE, t, 0u);
-    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
-    state_store(paths, stride, BD_GATHERED, t, 0u);
-    walk_end(paths, rays, stride, t);
+    state_store(paths, stride, BD_PIXEL, item, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, item, place.sample);
+    state_store(paths, stride, BD_SIDE, item, SIDE_LIGHT);
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    state_store_float(paths, stride, BD_CANDIDATE_SUM, item, 0.0f);
+    state_store(paths, stride, BD_CANDIDATE, item, 0u);
+    state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
+    state_store(paths, stride, BD_GATHERED, item, 0u);
+    walk_end(paths, rays, stride, item);
 }
 
 /* Draws y_0, stored at `base`, and the first ray of the light walk. choice: which light (x, y); random: point,
  * direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global uint *restrict vertices,
-                                      __global uint *restrict diagnostics, uint stride, uint t, uint base,
+                                      __global uint *restrict diagnostics, uint stride, uint item, uint base,
                                       Random4 choice, Random4 random, float *own)
 {
     uint light = light_select(scene, choice.x[0], choice.x[1]);
@@ -40,36 +40,36 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *res
     bool infinite = emission.infinite != 0u;
     uint flags = (infinite ? EMITTER_INFINITE : 0u) |
                  (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
-    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, infinite ? emission.w : emission.p);
-    state_store_vec3(vertices, stride, base + VERTEX_NG, t, emission.ng);
-    state_store(paths, stride, BD_EMITTER, t, light);
-    state_store(paths, stride, BD_EMITTER_FLAGS, t, flags);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, item, infinite ? emission.w : emission.p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, item, emission.ng);
+    state_store(paths, stride, BD_EMITTER, item, light);
+    state_store(paths, stride, BD_EMITTER_FLAGS, item, flags);
     *own = select * (infinite ? emission.pdf_w : emission.pdf_p);
     Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
     bool on_surface = !infinite && emission.delta_position == 0u;
     Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta, infinite ? emission.pdf_p : emission.pdf_w,
-               infinite ? WALK_PARALLEL : 0u);
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_LIGHT, ray, beta,
+               infinite ? emission.pdf_p : emission.pdf_w, infinite ? WALK_PARALLEL : 0u);
     return true;
 }
 
 /* The first ray of the camera walk, for a sample of the item's pixel. */
 SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                       uint t)
+                                       uint item)
 {
     __global const FrameParams *frame = scene->frame;
-    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
+    Random4 random = bd_random(frame, paths, item, BD_RANDOM_CAMERA);
     float weight;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    uint pixel = state_load(paths, stride, BD_PIXEL, t);
+    uint pixel = state_load(paths, stride, BD_PIXEL, item);
     uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
-    state_store_float(paths, stride, BD_WEIGHT, t, weight);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+    state_store_float(paths, stride, BD_WEIGHT, item, weight);
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
 }
 
 /* The reach: film positions that the pixel filter of the crop window covers, width x height pixels from (x, y) on. */
@@ -115,13 +115,13 @@ SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
  * divided by samples per pixel, like those of light paths. */
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                     uint t, Random4 random)
+                                     uint item, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->width,
                          (float)frame->height, vec2(random_float(random.x[2]), random_float(random.x[3])));
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
                WALK_DELTA);
 }
 

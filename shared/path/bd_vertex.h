@@ -32,41 +32,42 @@ typedef struct Vertex {
 } Vertex;
 
 /* Stores what the next segment of a walk needs to know of the vertex that it leaves. */
-SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint t, const Vertex *vertex)
+SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint item,
+                                        const Vertex *vertex)
 {
-    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, vertex->p);
-    state_store_vec3(vertices, stride, base + VERTEX_NG, t, vertex->ng);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, item, vertex->p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, item, vertex->ng);
 }
 
-SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint t,
+SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint item,
                                   const Vertex *vertex)
 {
-    vertex_place_store(vertices, stride, base, t, vertex);
-    frame_store(vertices, stride, base + VERTEX_FRAME_N, t, vertex->frame);
-    state_store_vec3(vertices, stride, base + VERTEX_WO, t, vertex->wo);
-    state_store_vec3(vertices, stride, base + VERTEX_BETA, t, vertex->beta);
-    state_store_float(vertices, stride, base + VERTEX_BACK, t, vertex->back);
-    bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, t, &vertex->bsdf);
+    vertex_place_store(vertices, stride, base, item, vertex);
+    frame_store(vertices, stride, base + VERTEX_FRAME_N, item, vertex->frame);
+    state_store_vec3(vertices, stride, base + VERTEX_WO, item, vertex->wo);
+    state_store_vec3(vertices, stride, base + VERTEX_BETA, item, vertex->beta);
+    state_store_float(vertices, stride, base + VERTEX_BACK, item, vertex->back);
+    bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, item, &vertex->bsdf);
 }
 
 SHARED_FUNCTION Vertex vertex_load(const SceneView *scene, __global const uint *vertices, uint stride, uint base,
-                                   uint t)
+                                   uint item)
 {
     Vertex vertex;
-    vertex.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
-    vertex.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
-    vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, t);
-    vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, t);
-    vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, t);
-    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, t);
-    vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, t);
+    vertex.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
+    vertex.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, item);
+    vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, item);
+    vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, item);
+    vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, item);
+    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, item);
+    vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, item);
     return vertex;
 }
 
 /* Whether the stored vertex has delta lobes alone, so that nothing can be connected with it. */
-SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint t)
+SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint item)
 {
-    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u;
+    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u;
 }
 
 /* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
@@ -94,13 +95,13 @@ SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
 
 /* walk_back at p, vertex i >= 1 of a side; `before`: base of the vertex before it. For the lens it is never used. */
 SHARED_FUNCTION float walk_back_stored(__global const uint *restrict paths, __global const uint *restrict vertices,
-                                       uint stride, uint t, uint side, uint i, uint before, Vec3 p)
+                                       uint stride, uint item, uint side, uint i, uint before, Vec3 p)
 {
     if (side == SIDE_CAMERA && i == 1u)
         return 1.0f;
-    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
-    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, t),
-                     state_load_vec3(vertices, stride, before + VERTEX_NG, t), flags);
+    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
+    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, item),
+                     state_load_vec3(vertices, stride, before + VERTEX_NG, item), flags);
 }
 
 /* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
@@ -135,15 +136,15 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
 
 /* BD_CONNECT of y_0, stored at `base`, for y_1 at p. */
 SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
-                                            __global const uint *vertices, uint stride, uint t, uint base, Vec3 p)
+                                            __global const uint *vertices, uint stride, uint item, uint base, Vec3 p)
 {
-    uint light = state_load(paths, stride, BD_EMITTER, t);
+    uint light = state_load(paths, stride, BD_EMITTER, item);
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return 1.0f;
     Surface point = {0}; /* spheres read no more than this */
-    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
-    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
+    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
+    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, item);
     Vec3 d = vec3_sub(point.p, p);
     float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))

@@ -6,18 +6,18 @@
 #include "path/strategy.h"
 
 SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, __global const uint *paths,
-                                            __global const uint *densities, uint t)
+                                            __global const uint *densities, uint item)
 {
     DensityView view;
     view.light = densities;
     view.camera = densities + (size_t)frame->max_depth * DENSITY_WORDS * frame->stride;
     view.stride = frame->stride;
-    view.t = t;
+    view.item = item;
     view.compact = false;
     view.light_end = 0u;
     view.camera_end = 0u;
-    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, t);
-    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, t);
+    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, item);
+    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, item);
     return view;
 }
 

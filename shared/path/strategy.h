@@ -23,7 +23,7 @@ typedef struct StrategyEnds {
  * vertices of a side, whose density by the other side only the connection determines. */
 typedef struct DensityView {
     __global const uint *light, *camera;
-    uint stride, t;
+    uint stride, item;
     uint light_delta, camera_delta; /* bit i: the vertex scattered by a delta lobe */
     bool compact;
     uint light_end, camera_end; /* compact: from this index on a vertex has its own density, before it the ratio */
@@ -35,9 +35,9 @@ SHARED_FUNCTION float density_own(const DensityView *view, uint side, uint i)
     __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
     uint index = side == SIDE_LIGHT ? i : i - 1u;
     if (!view->compact)
-        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->t);
+        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->item);
     uint end = side == SIDE_LIGHT ? view->light_end : view->camera_end;
-    return i >= end ? state_load_float(words, view->stride, index, view->t) : 1.0f;
+    return i >= end ? state_load_float(words, view->stride, index, view->item) : 1.0f;
 }
 
 SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
@@ -45,7 +45,7 @@ SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
     __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
     uint index = side == SIDE_LIGHT ? i : i - 1u;
     return state_load_float(words, view->stride, view->compact ? index : index * DENSITY_WORDS + DENSITY_OTHER,
-                            view->t);
+                            view->item);
 }
 
 /* MIS weights of a path. */
