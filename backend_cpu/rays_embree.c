@@ -335,7 +335,7 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
 #define EMBREE_THREAD_BYTES ((size_t)8 << 20)
 #define EMBREE_PRIMITIVE_BYTES ((size_t)200)
 
-/* Embree may end the program when it runs out of memory, so that much memory is reserved beforehand and given back. */
+/* Embree may end the program when it runs out of memory, so this amount is mapped beforehand and unmapped again. */
 static bool memory_probe(const RaysEmbree *rays, int threads, Error *error)
 {
     size_t bytes = (size_t)threads * EMBREE_THREAD_BYTES;
