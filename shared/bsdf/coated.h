@@ -21,17 +21,12 @@
 
 #include "bsdf/coat.h"
 #include "bsdf/dielectric.h"
-#include "bsdf/diffuse.h"
-
-SHARED_FUNCTION bool coated_is_rough(const SceneView *scene, const Bsdf *bsdf)
-{
-    return SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
-}
+#include "bsdf/lobe.h"
 
 /* T of direction w (w.z > 0); *escape: 1 - R_i, which is the same for every direction. */
 SHARED_FUNCTION float coated_transmission(const SceneView *scene, const Bsdf *bsdf, Vec3 w, float *escape)
 {
-    if (coated_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
+    if (bsdf_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
         return coat_table_lookup(scene->lookup + bsdf->coat_table, bsdf->alpha_x, bsdf->alpha_y, w, escape);
     *escape = coat_smooth_escape(bsdf->eta);
     return 1.0f - fresnel_dielectric(w.z, bsdf->eta);
@@ -78,7 +73,7 @@ SHARED_FUNCTION BsdfValue coated_eval_above(const SceneView *scene, const Bsdf *
     value.f_cos = vec3_scale(base, absorbed * t_o * t_i * i.z * INV_PI);
     value.pdf_w = (1.0f - specular_o) * i.z * INV_PI;
     value.pdf_rev_w = (1.0f - specular_i) * o.z * INV_PI;
-    if (!coated_is_rough(scene, bsdf))
+    if (!bsdf_is_rough(scene, bsdf))
         return value;
     Vec3 h = vec3_add(o, i);
     float density = 0.5f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y);
@@ -116,7 +111,7 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
 {
     bool flip = wo.z < 0.0f;
     Vec3 o = direction_flip(wo, flip);
-    bool rough = coated_is_rough(scene, bsdf);
+    bool rough = bsdf_is_rough(scene, bsdf);
     float t_o, specular = coated_specular(scene, bsdf, o, &t_o);
     Vec3 i;
     if (!(u_lobe < specular)) {
@@ -135,6 +130,39 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
         return false;
     bsdf_sample_set(sample, direction_flip(i, flip), vec3_scale(value.f_cos, 1.0f / value.pdf_w), value);
     return true;
+}
+
+SHARED_FUNCTION bool coated_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                   BsdfInverse *inverse)
+{
+    float t_o;
+    if (!(u_lobe < coated_specular(scene, bsdf, wo, &t_o)))
+        return cosine_invert(wi, inverse);
+    return bsdf_is_rough(scene, bsdf) && reflection_invert(bsdf, wo, wi, inverse);
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_coated_diffuse_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                   uint transport)
+{
+    (void)transport;
+    return coated_eval(scene, bsdf, wo, wi);
+}
+
+SHARED_FUNCTION bool bsdf_coated_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                                Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)transport;
+    return coated_sample(scene, bsdf, wo, u_lobe, u, u_base, sample);
+}
+
+SHARED_FUNCTION bool bsdf_coated_diffuse_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                float u_lobe, BsdfInverse *inverse)
+{
+    bool flip = wo.z < 0.0f;
+    return wo.z * wi.z > 0.0f &&
+           coated_invert(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip), u_lobe, inverse);
 }
 
 #endif

@@ -5,9 +5,8 @@
 #ifndef TWINLIGHT_BSDF_DIELECTRIC_H
 #define TWINLIGHT_BSDF_DIELECTRIC_H
 
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 #include "bsdf/fresnel.h"
-#include "bsdf/microfacet.h"
 
 SHARED_FUNCTION float dielectric_relative_eta(float eta, Vec3 wo)
 {
@@ -141,6 +140,55 @@ SHARED_FUNCTION bool dielectric_rough_sample(const Bsdf *bsdf, Vec3 wo, float u_
         sample->eta = eta;
     }
     return true;
+}
+
+/* Given u_lobe, exactly the microfacets whose reflectance exceeds u_lobe reflect, so no density contains the
+ * probability of the choice. */
+SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec3 wi, float u_lobe,
+                                       BsdfInverse *inverse)
+{
+    bool reflected = wi.z > 0.0f;
+    Vec3 h = reflected ? vec3_add(wo, wi) : vec3_mad(wo, eta, wi);
+    float length = vec3_length(h);
+    if (!(length > 0.0f))
+        return false;
+    h = vec3_scale(h, (h.z < 0.0f ? -1.0f : 1.0f) / length);
+    float cos_o = vec3_dot(wo, h), cos_i = vec3_dot(wi, h);
+    float reflectance = fresnel_dielectric(cos_o, eta);
+    if (!(cos_o > 0.0f) || (cos_i > 0.0f) != reflected || (u_lobe < reflectance) != reflected)
+        return false;
+    if (reflected)
+        return reflection_invert(bsdf, wo, wi, inverse);
+    inverse->u = ggx_invert_visible(wo, h, bsdf->alpha_x, bsdf->alpha_y);
+    inverse->pdf_w = 2.0f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y) * cos_o * -cos_i * eta * eta /
+                     (length * length * (wo.z + ggx_root(wo, bsdf->alpha_x, bsdf->alpha_y)));
+    inverse->base = false;
+    return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_dielectric_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                               uint transport)
+{
+    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_eval(bsdf, wo, wi, transport) : bsdf_value_zero();
+}
+
+SHARED_FUNCTION bool bsdf_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                            Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)u_base;
+    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_sample(bsdf, wo, u_lobe, u, transport, sample)
+                                      : dielectric_smooth_sample(bsdf, wo, u_lobe, transport, sample);
+}
+
+SHARED_FUNCTION bool bsdf_dielectric_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                            BsdfInverse *inverse)
+{
+    bool flip = wo.z < 0.0f;
+    return bsdf_is_rough(scene, bsdf) &&
+           dielectric_invert(bsdf, dielectric_relative_eta(bsdf->eta, wo), direction_flip(wo, flip),
+                             direction_flip(wi, flip), u_lobe, inverse);
 }
 
 #endif

@@ -19,7 +19,7 @@
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
 #define TWINLIGHT_CHAIN_SHIFT_H
 
-#include "bsdf/invert.h"
+#include "bsdf/bsdf.h"
 #include "chain/chain_numbers.h"
 #include "path/bd_walk.h"
 

@@ -7,33 +7,39 @@
 #ifndef TWINLIGHT_LAYOUT_SCENE_TYPES_H
 #define TWINLIGHT_LAYOUT_SCENE_TYPES_H
 
+#include "layout/material_list.h"
 #include "math/vec.h"
 
 /* ---- what a scene uses: the feature mask ---------------------------------------------------------------------- */
 
-#define FEATURE_TRIANGLE 0x1u
-#define FEATURE_BILINEAR 0x2u
-#define FEATURE_SPHERE 0x4u
-#define FEATURE_DISK 0x8u
-#define FEATURE_INSTANCE 0x10u
-#define FEATURE_ALPHA 0x20u /* alpha-textured shapes */
-#define FEATURE_NORMALS 0x40u /* per-vertex normals */
-#define FEATURE_TEXTURE 0x80u /* any parameter that is not constant */
-#define FEATURE_BUMP 0x100u /* normal maps or displacement */
-#define FEATURE_MIX 0x200u /* mix materials */
-#define FEATURE_DIFFUSE 0x400u
-#define FEATURE_CONDUCTOR 0x800u
-#define FEATURE_DIELECTRIC 0x1000u
-#define FEATURE_THIN_DIELECTRIC 0x2000u
-#define FEATURE_COATED_DIFFUSE 0x4000u
-#define FEATURE_DIFFUSE_TRANSMISSION 0x8000u
-#define FEATURE_ROUGH 0x10000u /* a microfacet lobe that is not a delta */
-#define FEATURE_AREA_LIGHT 0x20000u
-#define FEATURE_INFINITE_LIGHT 0x40000u
-#define FEATURE_DELTA_LIGHT 0x80000u /* point, spot, distant */
-#define FEATURE_LENS 0x100000u /* a camera with a lens of non-zero radius */
-#define FEATURE_TANGENTS 0x200000u /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
-#define FEATURE_COUNT 22
+/* Features: X(NAME, name, text, 0u). Between the two lists come the BSDFs, whose bits are in the order of their
+ * kinds. */
+#define FEATURE_LIST_BEFORE(X)                                                                                         \
+    X(TRIANGLE, triangle, "triangle", 0u)                                                                              \
+    X(BILINEAR, bilinear, "bilinear", 0u)                                                                              \
+    X(SPHERE, sphere, "sphere", 0u)                                                                                    \
+    X(DISK, disk, "disk", 0u)                                                                                          \
+    X(INSTANCE, instance, "instance", 0u)                                                                              \
+    X(ALPHA, alpha, "alpha", 0u) /* alpha-textured shapes */                                                           \
+    X(NORMALS, normals, "normals", 0u) /* per-vertex normals */                                                        \
+    X(TEXTURE, texture, "texture", 0u) /* any parameter that is not constant */                                        \
+    X(BUMP, bump, "bump", 0u) /* normal maps or displacement */                                                        \
+    X(MIX, mix, "mix", 0u) /* mix materials */
+#define FEATURE_LIST_AFTER(X)                                                                                          \
+    X(ROUGH, rough, "rough", 0u) /* a microfacet lobe that is not a delta */                                           \
+    X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
+    X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
+    X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
+    X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
+    X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
+#define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
+
+#define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
+enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
+#undef FEATURE_NUMBER
+#define FEATURE_BIT(NAME, name, text, traits) FEATURE_##NAME = 1 << FEATURE_NUMBER_##NAME,
+enum { FEATURE_LIST(FEATURE_BIT) FEATURE_NONE = 0 };
+#undef FEATURE_BIT
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
 
@@ -172,14 +178,6 @@ typedef struct FloatParam {
 
 /* ---- materials ------------------------------------------------------------------------------------------------- */
 
-#define MATERIAL_DIFFUSE 0u
-#define MATERIAL_CONDUCTOR 1u
-#define MATERIAL_DIELECTRIC 2u
-#define MATERIAL_THIN_DIELECTRIC 3u
-#define MATERIAL_COATED_DIFFUSE 4u
-#define MATERIAL_DIFFUSE_TRANSMISSION 5u
-#define MATERIAL_MIX 6u
-
 #define MATERIAL_REMAP_ROUGHNESS 0x1u
 #define MATERIAL_CONDUCTOR_REFLECTANCE 0x2u /* color0 is reflectance at normal incidence; else eta color0, k color1 */
 
@@ -206,12 +204,19 @@ typedef struct Material {
 
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
-#define LIGHT_AREA 0u
-#define LIGHT_POINT 1u
-#define LIGHT_SPOT 2u
-#define LIGHT_DISTANT 3u
-#define LIGHT_INFINITE 4u /* constant environment */
-#define LIGHT_INFINITE_IMAGE 5u
+/* X(NAME, text, feature): LIGHT_NAME, its name in `twinlight info`, and the group of lights that it is dispatched with.
+ * Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment. */
+#define LIGHT_LIST(X)                                                                                                  \
+    X(AREA, "area", FEATURE_AREA_LIGHT)                                                                                \
+    X(POINT, "point", FEATURE_DELTA_LIGHT)                                                                             \
+    X(SPOT, "spot", FEATURE_DELTA_LIGHT)                                                                               \
+    X(DISTANT, "distant", FEATURE_DELTA_LIGHT)                                                                         \
+    X(INFINITE, "infinite", FEATURE_INFINITE_LIGHT)                                                                    \
+    X(INFINITE_IMAGE, "infinite image", FEATURE_INFINITE_LIGHT)
+
+#define LIGHT_ENUMERATE(NAME, text, feature) LIGHT_##NAME,
+enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
+#undef LIGHT_ENUMERATE
 
 #define LIGHT_TWO_SIDED 0x1u
 #define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
