@@ -1,5 +1,5 @@
-/* Scattering at a surface: evaluation and sampling of whatever Bsdf it has. A branch for a kind or a rough lobe that
- * the scene lacks is compiled out on devices and costs one test in C. */
+/* Scattering at a surface: evaluates and samples whatever Bsdf it has. A branch for a kind or a rough lobe that the
+ * scene lacks is compiled out on devices and costs one test in C. */
 #ifndef TWINLIGHT_BSDF_BSDF_H
 #define TWINLIGHT_BSDF_BSDF_H
 
@@ -11,11 +11,11 @@
 #include "bsdf/thin_dielectric.h"
 #include "layout/scene_view.h"
 
-/* A rough interface whose index is this close to 1 is taken as smooth: it bends light by less than 1e-3 alpha radians,
- * and float32 half vectors no longer resolve that. */
+/* A rough interface whose relative index is this close to 1 is treated as smooth: it bends light by less than 1e-3
+ * alpha radians, which float32 half vectors no longer resolve. */
 #define ETA_MATCHED 1e-3f
 
-/* TRAIT_* of a kind of BSDF: four bits of a constant. */
+/* TRAIT_* of a kind of BSDF, from a constant with four bits per kind. */
 SHARED_FUNCTION uint bsdf_traits(uint kind)
 {
 #define TRAITS_OF(NAME, name, text, traits) | (ulong)(traits) << 4 * MATERIAL_##NAME
@@ -23,8 +23,8 @@ SHARED_FUNCTION uint bsdf_traits(uint kind)
 #undef TRAITS_OF
 }
 
-/* Must be called once kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and bounds the
- * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Other flags are kept. */
+/* To be called after kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and clamps the
+ * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
     uint traits = bsdf_traits(bsdf->kind);
@@ -40,10 +40,11 @@ SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
     }
 }
 
-/* The functions of each kind's file, for directions with |z| above BSDF_COSINE_MIN. */
+/* Whether to dispatch to the functions of kind NAME, whose directions have |z| > BSDF_COSINE_MIN. */
 #define OF_KIND(scene, bsdf, NAME) (SCENE_HAS(scene, FEATURE_##NAME) && (bsdf)->kind == MATERIAL_##NAME)
 
-/* Both directions are unit, in the shading frame, pointing away from the surface. Delta lobes are zero. */
+/* f(wo, wi) |cos wi| and both densities; delta lobes count as zero. wo and wi: unit, in the shading frame, pointing
+ * away from the surface. */
 SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
@@ -56,16 +57,16 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
     return bsdf_value_zero();
 }
 
-/* Whether bsdf_sample_base asks for u_base. */
+/* Whether bsdf_sample_base reads u_base. */
 SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
 {
     (void)scene;
     return (bsdf_traits(bsdf->kind) & TRAIT_COSINE) != 0u;
 }
 
-/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills
- * every member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it
- * contributes nothing. */
+/* Draws wi. u_lobe chooses the lobe; u_base draws the direction in a cosine lobe, u in any other; all in [0,1). Fills
+ * every member of *sample. False: no contribution, since the light is absorbed or the direction lies on the wrong side
+ * of the surface. */
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                       Vec2 u_base, uint transport, BsdfSample *sample)
 {
@@ -79,15 +80,15 @@ SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, 
     return false;
 }
 
-/* The same with one point for all lobes. */
+/* bsdf_sample_base with the same point for all lobes. */
 SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                  uint transport, BsdfSample *sample)
 {
     return bsdf_sample_base(scene, bsdf, wo, u_lobe, u, u, transport, sample);
 }
 
-/* The point by which bsdf_sample_base would draw wi, with the lobe that u_lobe chooses. False: that lobe is a delta, or
- * does not reach wi. Where it is one of several lobes that do, the same direction has other points, too. */
+/* The point with which bsdf_sample_base draws wi in the lobe that u_lobe chooses. False: that lobe is a delta or cannot
+ * draw wi. If several lobes can draw wi, it has other points as well. */
 SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
                                  BsdfInverse *inverse)
 {

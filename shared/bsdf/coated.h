@@ -23,7 +23,7 @@
 #include "bsdf/dielectric.h"
 #include "bsdf/lobe.h"
 
-/* T of direction w (w.z > 0) and, in *escape, 1 - R_i, which is the same for every direction. */
+/* T of direction w (w.z > 0); *escape: 1 - R_i, which is the same for every direction. */
 SHARED_FUNCTION float coated_transmission(const SceneView *scene, const Bsdf *bsdf, Vec3 w, float *escape)
 {
     if (bsdf_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
@@ -32,7 +32,7 @@ SHARED_FUNCTION float coated_transmission(const SceneView *scene, const Bsdf *bs
     return 1.0f - fresnel_dielectric(w.z, bsdf->eta);
 }
 
-/* rho / (eta^2 (1 - rho R_i)): the base's albedo between the two passages through the coat, R_i with absorption. */
+/* rho / (eta^2 (1 - rho R_i)): albedo of the base between the two crossings of the coat; R_i includes absorption. */
 SHARED_FUNCTION float coated_base_channel(float rho, float eta, float escape)
 {
     return rho / (eta * eta * ((1.0f - rho) + rho * escape));
@@ -47,8 +47,8 @@ SHARED_FUNCTION Vec3 coated_base(const Bsdf *bsdf, float interface_escape)
                 coated_base_channel(bsdf->color0.z, bsdf->eta, escape));
 }
 
-/* Probability of sampling the coat's reflection from a direction whose T is `t`: its share of the albedo,
- * (1 - T) : T base T_mean, with T_mean = escape eta^2. */
+/* Probability of sampling the coat's reflection from a direction with transmission `t`: its share of the albedo, (1 -
+ * T) : T base T_mean, with T_mean = escape eta^2. */
 SHARED_FUNCTION float coated_specular_probability(float t, float base_max, float escape_eta2)
 {
     float specular = 1.0f - t;
@@ -95,7 +95,7 @@ SHARED_FUNCTION BsdfValue coated_eval(const SceneView *scene, const Bsdf *bsdf, 
     return coated_eval_above(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip));
 }
 
-/* coated_specular_probability of direction o, o.z > 0, and in *t_o its T. */
+/* coated_specular_probability of direction o, o.z > 0; *t_o: its T. */
 SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, Vec3 o, float *t_o)
 {
     float escape;
@@ -104,8 +104,8 @@ SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, 
     return coated_specular_probability(*t_o, base_max, escape * bsdf->eta * bsdf->eta);
 }
 
-/* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta
- * reflection of a smooth coat stays apart. */
+/* Draws a direction from the mixture of both lobes: u in the coat's, u_base in the base's. The delta reflection of a
+ * smooth coat is no part of the mixture's density. */
 SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, Vec2 u_base,
                                    BsdfSample *sample)
 {

@@ -19,8 +19,8 @@ SHARED_FUNCTION bool conductor_smooth_sample(const Bsdf *bsdf, Vec3 wo, BsdfSamp
     return true;
 }
 
-/* Walter et al. 2007, eq. 20, times |cos wi|, in the form of bsdf/microfacet.h. The half vector of the two unit
- * directions h has wo.h / |h| = |h| / 2, which stays accurate where both are grazing. */
+/* Walter et al. 2007, eq. 20, times |cos wi|, in the form of bsdf/microfacet.h. For unit directions the half vector h =
+ * wo + wi has wo.h / |h| = |h| / 2, which stays accurate where both are grazing. */
 SHARED_FUNCTION BsdfValue conductor_rough_eval(const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
     BsdfValue value = bsdf_value_zero();

@@ -1,4 +1,4 @@
-/* Lambertian reflection on whichever side the light comes from. */
+/* Lambertian reflection on the side that light comes from. */
 #ifndef TWINLIGHT_BSDF_DIFFUSE_H
 #define TWINLIGHT_BSDF_DIFFUSE_H
 

@@ -4,7 +4,7 @@
 
 #include "bsdf/lobe.h"
 
-/* Probability of sampling reflection; the largest components decide. Both colours must not be black. */
+/* Probability of sampling reflection, by the largest components. The two colours must not both be black. */
 SHARED_FUNCTION float diffuse_transmission_reflect_probability(const Bsdf *bsdf)
 {
     float reflected = vec3_max_component(bsdf->color0);

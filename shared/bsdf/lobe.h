@@ -1,7 +1,7 @@
-/* What BSDFs share: conventions, the cut-off, lobes that several have.
+/* What BSDFs share: conventions, the cut-off at grazing directions, and lobes that several have.
  *
  * Conventions of every BSDF: directions are unit, in the shading frame, and point away from the surface. Evaluation and
- * sampling treat directions whose |z| is at most BSDF_COSINE_MIN alike: they carry nothing. */
+ * sampling return nothing for directions with |z| <= BSDF_COSINE_MIN. */
 #ifndef TWINLIGHT_BSDF_LOBE_H
 #define TWINLIGHT_BSDF_LOBE_H
 
@@ -21,13 +21,13 @@ SHARED_FUNCTION BsdfValue bsdf_value_zero(void)
     return value;
 }
 
-/* The same direction seen from the other side of the surface when `flip`. */
+/* w, mirrored to the other side of the surface if `flip`. */
 SHARED_FUNCTION Vec3 direction_flip(Vec3 w, bool flip)
 {
     return vec3(w.x, w.y, flip ? -w.z : w.z);
 }
 
-/* A sample that stays on wo's side and is no delta, with everything but wi and weight taken from `value`. */
+/* A non-delta sample on wo's side; everything but wi and weight comes from `value`. */
 SHARED_FUNCTION void bsdf_sample_set(BsdfSample *sample, Vec3 wi, Vec3 weight, BsdfValue value)
 {
     sample->wi = wi;
@@ -39,7 +39,7 @@ SHARED_FUNCTION void bsdf_sample_set(BsdfSample *sample, Vec3 wi, Vec3 weight, B
     sample->eta = 1.0f;
 }
 
-/* A delta lobe that is chosen with probability `probability` from either of its directions. */
+/* A sample of a delta lobe that is chosen with probability `probability` in either direction. */
 SHARED_FUNCTION void bsdf_sample_set_delta(BsdfSample *sample, Vec3 wi, Vec3 weight, float probability)
 {
     sample->wi = wi;
@@ -51,18 +51,18 @@ SHARED_FUNCTION void bsdf_sample_set_delta(BsdfSample *sample, Vec3 wi, Vec3 wei
     sample->eta = 1.0f;
 }
 
-/* Whether its specular lobe is a microfacet lobe. */
+/* Whether the specular lobe is a microfacet lobe, not a delta. */
 SHARED_FUNCTION bool bsdf_is_rough(const SceneView *scene, const Bsdf *bsdf)
 {
     return SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
 }
 
-/* ---- inverses: the point that draws a direction ------------------------------------------------------------------- */
+/* ---- inverses: the point that draws a direction ------------------------------------------------------------------ */
 
-/* By which numbers a lobe draws a direction, and how densely, once the number that chooses the lobe is given: pdf_w is
- * of that lobe alone, without the probability of its choice. */
+/* The numbers with which a lobe draws a direction, once the lobe is chosen, and their density: pdf_w is that of the
+ * lobe alone, without the probability of choosing it. */
 typedef struct BsdfInverse {
-    Vec2 u; /* or u_base, where `base` */
+    Vec2 u; /* u of bsdf_sample_base, or its u_base if `base` */
     float pdf_w;
     bool base;
 } BsdfInverse;
@@ -75,7 +75,7 @@ SHARED_FUNCTION bool cosine_invert(Vec3 wi, BsdfInverse *inverse)
     return true;
 }
 
-/* The lobe of wo, wo.z > 0, that reflects about microfacets, towards wi, wi.z > 0. */
+/* Microfacet reflection from wo to wi, both with z > 0. */
 SHARED_FUNCTION bool reflection_invert(const Bsdf *bsdf, Vec3 wo, Vec3 wi, BsdfInverse *inverse)
 {
     Vec3 h = vec3_add(wo, wi);
