@@ -251,6 +251,7 @@ script_tests = \
 	tests/command/test_cli.sh \
 	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \
-	tests/command/test_outputs.sh
+	tests/command/test_outputs.sh \
+	tests/command/test_readme.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

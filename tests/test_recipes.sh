@@ -59,12 +59,12 @@ files 5 'an integrator'
 
 sed 's/Material "diffuse"/Material "plaster"/' scenes/cornell.pbrt >"$work/plaster.pbrt"
 cmp -s scenes/cornell.pbrt "$work/plaster.pbrt" && fail 'the scene has nothing to be made of plaster'
-autoreconf -i >"$work/log" 2>&1 && cd "$work/build" && ../copy/configure -q CFLAGS=-O1 >>"$work/log" 2>&1 &&
-    make -s twinlight tests/test_bsdf >>"$work/log" 2>&1 || {
+if ! { autoreconf -i && cd "$work/build" && ../copy/configure -q CFLAGS=-O1 && make -s twinlight tests/test_bsdf; } \
+    >"$work/log" 2>&1; then
     tail -n 30 "$work/log"
     echo 'FAILED: the copy does not build'
     exit 1
-}
+fi
 srcdir=../copy tests/test_bsdf >"$work/log" 2>&1 || {
     tail -n 10 "$work/log"
     fail 'the tests of BSDFs'

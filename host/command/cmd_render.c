@@ -51,12 +51,22 @@ typedef struct RenderJob {
     Progress progress;
     uint64_t samples_done; /* paths, at the latest progress */
     bool left; /* the files are as they were: nothing was rendered */
+    bool frame_used; /* a file name has the frame's number */
     RenderResult result;
     double load, build, rendering, write; /* seconds */
     double start;
 } RenderJob;
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
+
+/* A number that no name takes would have every frame overwrite the last. */
+static bool frame_check(const RenderJob *job, Error *error)
+{
+    if (job->command->frame < 0 || job->frame_used)
+        return true;
+    error_set(error, "--frame=%d: no file name has a place for the number", job->command->frame);
+    return error_fix(error, "write it as %%04d, as in -o frame.%%04d.exr");
+}
 
 /* Puts the frame's number into the names of the command line. */
 static bool names_fill(RenderJob *job, Error *error)
@@ -71,10 +81,11 @@ static bool names_fill(RenderJob *job, Error *error)
             return error_fix(error, "add --frame=N");
         }
         *names[i] = frame_name_fill(&job->names, *names[i], command->frame, error);
+        job->frame_used = true;
         if (!*names[i])
             return false;
     }
-    return true;
+    return !command->output || frame_check(job, error);
 }
 
 /* The image's name: the command line's, or the scene's Film's, which may have a place for the frame too. */
@@ -84,6 +95,9 @@ static const char *image_name(RenderJob *job, Error *error)
     const char *film = path_file_name(job->scene.settings.output);
     if (command->output)
         return command->output;
+    job->frame_used = job->frame_used || frame_name_has(film);
+    if (!frame_check(job, error))
+        return NULL;
     if (!film[0])
         return strcmp(command->scene, "-") == 0 ? "stdin" : path_file_name(command->scene);
     return command->frame < 0 ? film : frame_name_fill(&job->names, film, command->frame, error);

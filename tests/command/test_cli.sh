@@ -34,6 +34,8 @@ expect 2 'is short for several: --strategy, --steps, --stats' render --st=1 "$sc
 expect 2 'unknown option --verbose' render --verbose "$scene"
 expect 2 'add --frame=N' render -o a.%04d.exr "$scene"
 expect 2 '--frame=-1: not a whole number' render --frame=-1 "$scene"
+expect 2 '--frame=3: no file name has a place for the number' render --frame=3 -o frame.exr "$scene"
+expect 1 'write it as %04d' render --frame=3 --samples=1 --resolution=8x6 "$scene"
 expect 2 '--samples needs a value' render "$scene" --samples
 expect 2 '--quiet takes no value' render --quiet=yes "$scene"
 expect 2 '--samples=0: out of range' render --samples=0 "$scene"

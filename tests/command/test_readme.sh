@@ -1,0 +1,43 @@
+#!/bin/sh
+# Every command of README.md and docs/guide.md as it stands there, in order, in a folder with build/twinlight and scenes/,
+# but with fewer samples, pixels and seconds.
+set -u
+# shellcheck source=tests/support/cli.sh
+. "${srcdir:-.}/tests/support/cli.sh"
+
+sources=$(cd "${scene%/*}/.." && pwd)
+mkdir build
+ln -s "$program" build/twinlight
+ln -s "$sources/scenes" scenes
+opencl=yes
+"$program" devices --json | grep -q '"opencl": *\[\]' && opencl=
+
+# shortened COMMAND: takes a moment.
+shortened() {
+    text=$(printf '%s\n' "$1" | sed 's/--time=[0-9a-z]*/--time=1s/; s/--times=[0-9a-z,]*/--times=1s/; s/--save-every=[0-9a-z]*/--save-every=1s/')
+    case $text in
+    *' bench '*)
+        case $text in *--times=*) ;; *) text="$text --times=1s" ;; esac
+        text="$text --runs=1 --resolution=16x12 --reference-time=1s"
+        ;;
+    *' render '* | *' pyramid '*)
+        case $text in *--resolution=*) ;; *) text="$text --resolution=32x24" ;; esac
+        case $text in *--time=* | *--samples=*) ;; *) text="$text --samples=2" ;; esac
+        ;;
+    esac
+    printf '%s\n' "$text"
+}
+
+commands=0
+for page in README.md docs/guide.md; do
+    grep -E '^    (build/twinlight|cmp) ' "$sources/$page" | sed 's/ *# .*//' >"commands"
+    while read -r command; do
+        case $command in *opencl* | *--verify* | *--backend=all*) [ "$opencl" ] || continue ;; esac
+        sh -c "$(shortened "$command")" >out 2>err </dev/null
+        result "$page: $command" $?
+        commands=$((commands + 1))
+    done <commands
+done
+[ $commands -ge 20 ]
+result "only $commands commands were found" $?
+checks_end
