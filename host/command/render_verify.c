@@ -82,7 +82,7 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
     return same;
 }
 
-/* Number of items to compare: sample numbers and items are 32-bit, so whole samples up to 2^32 - 1 items. */
+/* Items to compare: those of all samples, but only as many whole samples as 32-bit item numbers allow. */
 static uint64_t items_limit(const SceneSettings *settings, unsigned samples)
 {
     uint64_t pixels =
