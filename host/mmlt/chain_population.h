@@ -27,6 +27,7 @@ typedef struct ChainPopulation {
     double brightness; /* mean contribution weight of a pool's sample (POOL_WEIGHT); 0: there are no chains */
 } ChainPopulation;
 
+/* An empty population. fields: words per chain, chain_pass_fields (mmlt/chain_list.h). */
 void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 

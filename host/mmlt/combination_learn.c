@@ -95,17 +95,17 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
 
 /* ---- variances --------------------------------------------------------------------------------------------------- */
 
-/* Degrees of freedom of the series' variances: its pictures less one. */
-static double seen(const Combination *combination, int s)
+/* Degrees of freedom of the series' variances: the number of its pictures less one. */
+static double freedom_of(const Combination *combination, int s)
 {
     return combination->pixels[s].pictures[0] > 0 ? combination->pixels[s].pictures[0] - 1.0 : 0.0;
 }
 
 /* Lower confidence bound of a tile's light: its mean less `deviations` standard errors and MISSING_UNCERTAIN more in
  * proportion to its relative error; the mean itself if deviations is 0. 0 until the series' variance is known. */
-static double sure_of(const Combination *combination, int s, size_t tile, double deviations)
+static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
 {
-    if (!(seen(combination, s) >= 1.0))
+    if (!(freedom_of(combination, s) >= 1.0))
         return 0.0;
     double mean = (double)combination->sums[s].mean[tile],
            error = sqrt(pixel_series_variance(&combination->sums[s], tile));
@@ -116,13 +116,13 @@ static double sure_of(const Combination *combination, int s, size_t tile, double
 
 /* The largest such bound of any way to see all of the tile's light: path tracing plus rare, chains or pool plus
  * excess. */
-static double brightest_of(const Combination *combination, size_t tile, double deviations)
+static double light_bound_best(const Combination *combination, size_t tile, double deviations)
 {
-    double chains = sure_of(combination, ESTIMATOR_CHAINS, tile, deviations),
-           pool = sure_of(combination, ESTIMATOR_POOL, tile, deviations);
-    return fmax(sure_of(combination, ESTIMATOR_PATHS, tile, deviations) +
-                    sure_of(combination, SERIES_RARE, tile, deviations),
-                fmax(chains, pool) + sure_of(combination, SERIES_EXCESS, tile, deviations));
+    double chains = light_bound(combination, ESTIMATOR_CHAINS, tile, deviations),
+           pool = light_bound(combination, ESTIMATOR_POOL, tile, deviations);
+    return fmax(light_bound(combination, ESTIMATOR_PATHS, tile, deviations) +
+                    light_bound(combination, SERIES_RARE, tile, deviations),
+                fmax(chains, pool) + light_bound(combination, SERIES_EXCESS, tile, deviations));
 }
 
 /* Squared luminance of a pixel, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
@@ -147,8 +147,8 @@ static void pool_correct(Combination *combination)
 {
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         CombinationTile *tile = &combination->known[i];
-        double gap = seen(combination, ESTIMATOR_POOL) > 0.0
-                         ? combination->gaps[i] / (seen(combination, ESTIMATOR_POOL) + 1.0)
+        double gap = freedom_of(combination, ESTIMATOR_POOL) > 0.0
+                         ? combination->gaps[i] / (freedom_of(combination, ESTIMATOR_POOL) + 1.0)
                          : 0.0;
         double light = (double)combination->sums[ESTIMATOR_POOL].mean[i], *pool = &tile->spread[ESTIMATOR_POOL];
         double less = gap * (double)combination->direct.pixels * light * light / (TILE_SIDE * TILE_SIDE);
@@ -165,7 +165,7 @@ static void tiles_sum(Combination *combination)
     for (size_t i = 0; i < combination->direct.pixels; ++i)
         combination->known[combination_tile_of(combination, i)].light += fabs((double)combination->direct.mean[i]);
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        combination->known[i].indirect = brightest_of(combination, i, 0.0);
+        combination->known[i].indirect = light_bound_best(combination, i, 0.0);
         combination->known[i].light += combination->known[i].indirect;
         mean += combination->known[i].light / (area * (double)combination_tile_count(combination));
     }
@@ -195,13 +195,14 @@ static double ratio_median(const Combination *combination, int s, double *ratios
  * its samples or less: adds the variance of one such event. */
 static double missing_spread(const Combination *combination, int s, size_t tile)
 {
-    double deviations = MISSING_DEVIATIONS * seen(combination, s) / (seen(combination, s) + MISSING_GENERATIONS);
+    double deviations =
+        MISSING_DEVIATIONS * freedom_of(combination, s) / (freedom_of(combination, s) + MISSING_GENERATIONS);
     const PixelSeries *sums = combination->sums;
     double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
-        other = sure_of(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
+        other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
     } else {
-        other = brightest_of(combination, tile, deviations);
+        other = light_bound_best(combination, tile, deviations);
         if (s == SERIES_EXCESS)
             own += fmax((double)sums[ESTIMATOR_CHAINS].mean[tile], (double)sums[ESTIMATOR_POOL].mean[tile]);
         else
@@ -243,7 +244,7 @@ void combination_variances_update(Combination *combination, double *ratios)
     tiles_sum(combination);
     for (int s = 0; s < SERIES_COUNT; ++s) {
         spreads_share(combination, s, ratios);
-        double usual = ratio_median(combination, s, ratios), known = seen(combination, s);
+        double usual = ratio_median(combination, s, ratios), known = freedom_of(combination, s);
         combination->ready[s] = known >= 1.0;
         for (size_t i = 0; i < combination_tile_count(combination); ++i) {
             CombinationTile *tile = &combination->known[i];

@@ -178,7 +178,7 @@ static bool pool_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 }
 
 /* A uniform number for each generation, for systematic resampling. */
-static double offset_of(const Mmlt *mmlt)
+static double resampling_offset(const Mmlt *mmlt)
 {
     return host_random(&mmlt->run->frame, mmlt->generation, 0);
 }
@@ -203,7 +203,7 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint 
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count, 0, 1);
     if (!chain_population_renew(population, mmlt->pool_words, pool_count, change, threshold, mmlt->options.order,
-                                offset_of(mmlt), count, &starts, error))
+                                resampling_offset(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;
     mmlt->chains.pass_stride = count;

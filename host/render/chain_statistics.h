@@ -29,6 +29,7 @@ typedef struct ChainStarts {
     uint chains[CHAIN_DEPTHS], distinct[CHAIN_DEPTHS]; /* by depth: all starts, and distinct paths among them */
 } ChainStarts;
 
+/* Adds the starts of a generation. */
 void chain_statistics_starts(ChainStatistics *statistics, const ChainStarts *starts);
 
 /* Adds a pass of `steps` steps. words: CHAIN_PASS_* of `count` chains. */

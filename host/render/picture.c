@@ -60,7 +60,7 @@ void picture_memory_lend(PictureMemory *memory)
     memory->spare = NULL;
 }
 
-/* That it may fail is no worse than not to try. */
+/* If this fails, the next write merely has no reserve. */
 void picture_memory_take_back(PictureMemory *memory)
 {
     memory->spare = malloc(memory->spare_bytes);

@@ -19,7 +19,10 @@ typedef struct Progress {
 /* Without a terminal: fewest seconds between two lines. */
 #define PROGRESS_PLAIN_SECONDS 10.0
 
+/* stream: standard error. quiet: show nothing. */
 void progress_init(Progress *progress, FILE *stream, bool quiet);
+
+/* Shows `now`: at once on a terminal, otherwise if PROGRESS_PLAIN_SECONDS have passed since the last line. */
 void progress_update(Progress *progress, const RenderProgress *now);
 
 /* Reports that the fraction `part` (0 ... 1) of a file has been written; the first call for a file must have 0. Shown

@@ -25,6 +25,7 @@ typedef struct RenderStats {
 /* Whether the path is "-", standard output. */
 bool stats_to_output(const char *path);
 
+/* Writes the file, or prints to standard output if the path is "-". */
 bool stats_write(const char *path, const RenderStats *stats, Error *error);
 
 /* Name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */
