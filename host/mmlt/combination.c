@@ -20,8 +20,8 @@ static const double COSTS[ESTIMATOR_COUNT] = {1.2, 4.0, 1.0};
 /* Plans are searched on a grid that divides time into this many parts. */
 #define PLAN_PARTS 20
 
-/* Best fraction of the chains' time (pools and steps) to spend on pools, which determines how the chains' variance is
- * split between starts and steps: for variance a / T_pool + b / T_steps it is sqrt(a) / (sqrt(a) + sqrt(b));
+/* The fraction of time for pools in the best division between pools and steps. It stands for how much of the chains'
+ * variance a / T_pool + b / T_steps is due to starts and how much to steps: POOL_PART = sqrt(a) / (sqrt(a) + sqrt(b));
  * docs/TUNING.md. */
 #define POOL_PART 0.45
 

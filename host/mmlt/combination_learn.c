@@ -18,8 +18,8 @@
 #define MISSING_DEVIATIONS 2.0
 #define MISSING_GENERATIONS 5.0
 
-/* Additional standard errors if the brighter estimator's relative error is 1 or more, in proportion below: chains that
- * have been in few tiles are no evidence; docs/TUNING.md. */
+/* This many further standard errors, times the brighter estimator's relative error (at most 1): chains that have been
+ * in few tiles are no evidence; docs/TUNING.md. */
 #define MISSING_UNCERTAIN 3.0
 
 /* A pixel's luminance is clamped to this many times its tile's mean: it may be noise. */
@@ -54,7 +54,8 @@ static float luminance_of(const int64_t *sums, double scale)
 }
 
 /* The luminances of `sums`: picture, a value per pixel, and tiles, their sum per tile. */
-static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture, float *tiles)
+static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture,
+                     float *tiles)
 {
     size_t pixels = film_pixels(film);
     double unit = ldexp((double)pixels / (double)film->light_samples, film->quantum_exponent);
@@ -65,6 +66,7 @@ static void image_of(const Combination *combination, const Film *film, const int
     }
 }
 
+/* Adds the luminances of `sums` to series s. picture, tiles: scratch, a value per pixel and per tile. */
 static void series_learn(Combination *combination, int s, const Film *film, const int64_t *sums, float *picture,
                          float *tiles)
 {

@@ -20,12 +20,12 @@ void importance_even(float importance[IMPORTANCE_CELLS]);
  * weight unchanged. All 1 if the picture is black so far. */
 void importance_learn(const Combination *combination, float importance[IMPORTANCE_CELLS]);
 
-/* Computes how often a pool visits the pixels of each cell, as FrameParams.visits: more often the larger the relative
- * error.
+/* Computes the visits of a pool per cell (Guide.visits): the pixels of a cell are visited the more often the larger
+ * their relative error.
  *
  * samples: of each estimator, for which errors are predicted (combination_errors). visited[cell]: how often earlier
- * pools have visited the cell's pixels, relative to the mean. The last of `visits` is 0, visiting all pixels alike,
- * while errors are unknown or if the film is too large. Fails only when out of memory. */
+ * pools have visited the cell's pixels, relative to the mean. The last of `visits` is 0, which means that all pixels
+ * are visited alike, while errors are unknown or if the film is too large. Fails only when out of memory. */
 bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                        const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error);
 

@@ -73,7 +73,7 @@ void mmlt_frame_film(FrameParams *frame, const Film *film);
 /* The replica that a generation belongs to; always 0 with --mlt-scheme=paper, whose chains never restart. */
 int mmlt_replica(const Mmlt *mmlt, uint generation);
 
-/* Sets what all passes of a generation share: target importance and clamping threshold. */
+/* Sets what all passes of a generation share: target importance (in mmlt->guide) and clamping threshold. */
 void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame);
 
 /* Frames for passes of the latest pool, of `count` samples, and of chains that start from it. */
