@@ -42,8 +42,9 @@ struct Backend {
 
 /* ---- the pool ---------------------------------------------------------------------------------------------------- */
 
-/* Items of a chunk: of a small pass, as the first generations of chains are, every thread is to have several. Not where
- * states are compared: a chunk of few items is idle, and leaves out what only clears, before a device's batch is. */
+/* Items per chunk. In a small pass, such as the first generations of chains, every thread should get several chunks.
+ * Not when states are compared: a chunk of few items may be idle and skip steps that clear state, which a device with
+ * its larger batch would run. */
 static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)
@@ -166,7 +167,7 @@ static uint thread_count_of(const BackendOptions *options)
     return count < 1 ? 1u : count > THREADS_MAX ? THREADS_MAX : (uint)count;
 }
 
-/* backend->thread_count counts those that were started, so that close stops no other. */
+/* backend->thread_count counts the threads that were started, so that close joins no others. */
 static bool threads_start(Backend *backend, uint count, Error *error)
 {
     backend->threads = calloc(count, sizeof *backend->threads);
@@ -212,7 +213,7 @@ static Backend *backend_cpu_open(const BackendScene *scene, const BackendOptions
     return backend;
 }
 
-/* ---- what happened ----------------------------------------------------------------------------------------------- */
+/* ---- diagnostics and statistics ---------------------------------------------------------------------------------- */
 
 static void backend_cpu_diagnostics(Backend *backend, uint64_t *counters)
 {
@@ -258,7 +259,7 @@ static void backend_cpu_statistics(Backend *backend, BackendStatistics *statisti
 
 static size_t backend_cpu_devices(BackendDevice *devices, size_t capacity, bool probe_all)
 {
-    (void)probe_all; /* it is what others are compared with */
+    (void)probe_all; /* it is the reference for others */
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE), units = sysconf(_SC_NPROCESSORS_ONLN);
     if (capacity < 1)
         return 1;

@@ -1,4 +1,4 @@
-/* The CPU backend: a pthread pool that runs the kernels as C and asks Embree for rays. */
+/* The CPU backend: a pool of threads that runs the kernels as C and queries Embree for rays. */
 #ifndef TWINLIGHT_BACKEND_CPU_H
 #define TWINLIGHT_BACKEND_CPU_H
 

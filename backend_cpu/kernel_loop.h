@@ -1,17 +1,17 @@
-/* Loops over items around the kernels of a list, for the translation units that define them. */
+/* Loops over the items of each kernel in a list, for the translation units that define the kernels. */
 #ifndef TWINLIGHT_KERNEL_LOOP_H
 #define TWINLIGHT_KERNEL_LOOP_H
 
-/* What kernels have instead of a view of their own: making one costs as much as loading a vertex, and compilers do not
- * take it out of the loop. */
+/* The view that kernels use instead of making their own: making one costs as much as loading a vertex, and compilers do
+ * not hoist it out of the loop. */
 #define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
     const SceneView *scene = ((void)(frame), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
 #define KERNEL_SCENE_GUIDED(frame, guided_by, geometry, tables, texels)                                                \
     const SceneView *scene =                                                                                           \
         ((void)(frame), (void)(guided_by), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
 
-/* Nor do they compute where a field of their state is: in the loops of a chunk that is known. Translation units whose
- * kernels are run on other buffers as well, by tests, define KERNEL_ANY_STRIDE. */
+/* Kernels in the loops of a chunk know their stride at compile time. Translation units whose kernels also run on other
+ * buffers, in tests, define KERNEL_ANY_STRIDE. */
 #ifndef KERNEL_ANY_STRIDE
 #include "chunk.h"
 #define STATE_STRIDE CHUNK_STRIDE
@@ -26,7 +26,7 @@
 
 #include <assert.h>
 
-/* The scene of the loop under way. */
+/* The scene of the running loop. */
 static _Thread_local SceneView kernel_scene __attribute__((unused));
 
 typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
@@ -45,12 +45,12 @@ KERNEL_LIST(KERNEL_DECLARE)
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 #define ARGUMENTS_11(a, b, c, d, e, f, g, h, i, j, k) ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j), buffers[k]
 
-/* A translation unit that is compiled in another way has other names. */
+/* A translation unit that is compiled with other options defines other names. */
 #ifndef KERNEL_LOOP_NAME
 #define KERNEL_LOOP_NAME(name) kernel_loop_##name
 #endif
 
-/* One loop a kernel, with the kernel inlined into it. */
+/* One loop per kernel, with the kernel inlined into it. */
 #define KERNEL_LOOP(name, n, ...)                                                                                      \
     void KERNEL_LOOP_NAME(name)(void *const *buffers, const uint *items, uint count)                                   \
     {                                                                                                                  \

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* They are copied for every chunk of items. */
+/* FrameParams are copied for every chunk of items. */
 _Static_assert(sizeof(FrameParams) <= 512, "parameters that only some passes have belong into Guide");
 
 struct KernelScene {
@@ -50,7 +50,7 @@ size_t kernel_guide_bytes(void)
 void *kernel_guide(const Guide *guide, void *storage)
 {
     (void)storage;
-    return (void *)(uintptr_t)guide; /* the array of arguments cannot say const */
+    return (void *)(uintptr_t)guide; /* the array of arguments cannot express const */
 }
 
 uint *kernel_state_create(size_t words)

@@ -1,5 +1,5 @@
-/* Every array of the scene, with a double where the host has a float. The numbers are the host's: what differs from a
- * build without --enable-double is the arithmetic, and nothing else. */
+/* Every array of the scene, with a double where the host has a float. The numbers are the host's, so that builds with
+ * and without --enable-double differ in their arithmetic and nothing else. */
 #ifndef TWINLIGHT_DOUBLE
 #define TWINLIGHT_DOUBLE
 #endif
@@ -40,7 +40,7 @@ enum {
         SceneLayout: STRUCT_SceneLayout)
 
 typedef struct Member {
-    int owner, kind; /* kind -1: begins the struct `owner` */
+    int owner, kind; /* -1: the entry begins the struct `owner` */
     size_t offset, size;
 } Member;
 
@@ -79,7 +79,7 @@ static size_t struct_words(int type) // NOLINT(misc-no-recursion)
     return words;
 }
 
-/* Writes the kernels' struct from the words of the host's. */
+/* Fills the kernels' struct from the words of the host's. */
 static void struct_widen(int type, const uint *words, char *out) // NOLINT(misc-no-recursion)
 {
     for (const Member *m = struct_begin(type) + 1; m < MEMBERS + MEMBER_COUNT && m->kind != -1; ++m) {
@@ -101,7 +101,7 @@ static void struct_widen(int type, const uint *words, char *out) // NOLINT(misc-
 typedef struct WideArray {
     int type; /* STRUCT_*, MEMBER_FLOATS or MEMBER_WORDS */
     uint from; /* first word of the host's array */
-    uint *first; /* gets the first word of the kernels' */
+    uint *first; /* where the first word of the kernels' array goes */
 } WideArray;
 
 static size_t element_words(int type)
@@ -114,7 +114,7 @@ static size_t element_bytes(int type)
     return type == MEMBER_FLOATS ? sizeof(float) : type == MEMBER_WORDS ? sizeof(uint) : struct_begin(type)->size;
 }
 
-/* How many elements array i may have: up to where the next begins. */
+/* Upper bound of the elements of array i: up to where the next one begins. */
 static size_t array_count(const WideArray *arrays, size_t i, size_t count, size_t words)
 {
     size_t end = i + 1 < count ? arrays[i + 1].from : words;
@@ -135,7 +135,7 @@ static void array_widen(const WideArray *array, size_t count, const uint *words,
     }
 }
 
-/* A buffer of the arrays, each at a multiple of 16 bytes. */
+/* A buffer with all arrays, each at a multiple of 16 bytes. */
 static uint *arrays_widen(const WideArray *arrays, size_t count, const uint *words, size_t word_count,
                           size_t *out_words, Error *error)
 {
@@ -164,7 +164,7 @@ struct KernelScene {
     uint *geometry, *tables;
 };
 
-/* The host's layout: the first member of its frame, and words in both. */
+/* The host's layout: the first member of its frame, made of words in both formats. */
 static SceneLayout layout_of(const void *frame)
 {
     return *(const SceneLayout *)frame;
@@ -257,6 +257,6 @@ void *kernel_guide(const Guide *guide, void *storage)
 
 uint *kernel_state_create(size_t words)
 {
-    /* Never touched pages of the block are never made, and those that are begin with zeros. */
+    /* Untouched pages of the block are never allocated, and those that are touched start with zeros. */
     return words * sizeof(uint) <= STATE_BLOCK / 4 ? aligned_alloc(STATE_BLOCK, STATE_BLOCK) : NULL;
 }

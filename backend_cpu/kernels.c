@@ -2,8 +2,8 @@
 #include "config.h"
 #endif
 
-/* Before any shared header: everything is inlined into the loops of this file, those of path tracing and what starts
- * like it. */
+/* Before any shared header: inlines everything into the loops of this file, which are those of path tracing and of the
+ * auxiliary variables, which start with the same kernels. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif
@@ -24,7 +24,7 @@ static KernelLoop *const KERNEL_LOOPS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ENTRY)
 #define KERNEL_WIDE(name, n, ...) [KERNEL_##name] = kernel_wide_##name,
 static KernelLoop *const WIDE_LOOPS[KERNEL_COUNT] = {KERNEL_LIST_CHAINS(KERNEL_WIDE)};
 
-/* What WIDE_CFLAGS in configure.ac asks for. */
+/* The instruction sets of WIDE_CFLAGS in configure.ac. */
 static bool processor_wide(void)
 {
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&

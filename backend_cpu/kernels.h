@@ -4,8 +4,8 @@
 
 #include "math/platform.h"
 
-/* Runs kernel `kernel` (KERNEL_* of layout/kernel_list.h) for items[0] ... items[count - 1], or without `items` for 0
- * ... count - 1. `buffers`: by BufferId. */
+/* Runs kernel `kernel` (KERNEL_* of layout/kernel_list.h) for items[0] ... items[count - 1], or, if `items` is NULL,
+ * for items 0 ... count - 1. buffers: indexed by BufferId. */
 void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count);
 
 #endif

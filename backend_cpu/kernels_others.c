@@ -1,4 +1,5 @@
-/* Kernels that the CPU backend runs for tests and benches alone: it has rays of its own, and counts them. */
+/* Kernels that the CPU backend runs for tests and benchmarks only: it has ray queries of its own, and counts rays
+ * itself. */
 #define KERNEL_ANY_STRIDE
 #include "kernel_loop.h"
 

@@ -20,7 +20,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* One Object's hierarchy. */
+/* The hierarchy of one Object. */
 typedef struct ObjectRays {
     const RaysEmbree *rays;
     RTCScene scene;
@@ -28,7 +28,7 @@ typedef struct ObjectRays {
     uint cluster_count;
     uint *others; /* primitives of other kinds */
     uint other_count;
-    float reach; /* of the origins of rays, in the space of the object */
+    float reach; /* largest coordinate of ray origins, in the space of the object */
     Box box; /* without margin */
 } ObjectRays;
 
@@ -38,26 +38,26 @@ struct RaysEmbree {
     ObjectRays *objects; /* [0]: the world */
     size_t object_count;
     size_t instance_count;
-    float reach; /* of the origins of rays that Embree is asked about, in the world */
-    Bvh outer; /* for the others; empty where there are none */
+    float reach; /* largest coordinate of the origins of rays for Embree, in the world */
+    Bvh outer; /* for rays from further out; empty where there are none */
     atomic_llong bytes;
-    char failure[256]; /* Embree's last complaint */
+    char failure[256]; /* Embree's first complaint */
 };
 
-/* What the callbacks find through the context that Embree hands on. The hit is kept here and not in Embree's record;
- * Embree is told nothing but the new end of the ray. */
+/* What the callbacks reach through the context that Embree passes on. The hit is kept here and not in Embree's record;
+ * Embree only learns the new end of the ray. */
 typedef struct RayWalk {
-    struct RTCIntersectContext context; /* first: Embree's pointer to it is one to the walk */
+    struct RTCIntersectContext context; /* first, so that Embree's pointer to it is one to the walk */
     const RaysEmbree *rays;
-    const Ray *ray; /* NULL once `query` is made from it: many rays meet no box and never need it */
+    const Ray *ray; /* NULL once `query` is made from it: many rays hit no box and never need one */
     RayQuery query;
-    float t_scale; /* Embree's t over ours: see embree_ray */
+    float t_scale; /* Embree's t over ours: embree_ray */
     uint instance;
     Hit best;
 } RayWalk;
 
-/* Embree takes direction components below 10^-18 for that number, so a very short direction is lengthened for it by a
- * power of two, and t shortened: exact, and 1 for nearly all rays. */
+/* Embree replaces components of a direction below 10^-18 by that number, so a very short direction is scaled up by a
+ * power of two, and t down: exact, and by 1 for nearly all rays. */
 #define SHORT_DIRECTION 0x1p-40f
 #define SHORT_STRETCH 0x1p100f
 
@@ -130,7 +130,7 @@ static void other_occluded_callback(const struct RTCOccludedFunctionNArguments *
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
 
-/* The ray up to walk->best.t as Embree gets it. */
+/* The ray, up to walk->best.t, in Embree's format. */
 static struct RTCRay embree_ray(RayWalk *walk, Vec3 o, Vec3 d)
 {
     bool is_short = vec3_max_abs(d) < SHORT_DIRECTION;
@@ -160,7 +160,7 @@ static void instance_bounds_callback(const struct RTCBoundsFunctionArguments *ar
     *args->bounds_o = embree_bounds(box);
 }
 
-/* The walk through an instance's object: the ray in its space, the best hit so far taken along. */
+/* The walk through an instance's object: the ray in its space, starting with the best hit so far. */
 static RayWalk walk_enter(RayWalk *outer, uint instance)
 {
     RayWalk inner;
@@ -236,7 +236,7 @@ static void geometry_attach(RTCDevice device, RTCScene scene, uint count, void *
     rtcReleaseGeometry(geometry);
 }
 
-#ifdef TWINLIGHT_DOUBLE /* the host's hierarchy knows floats alone; Embree's boxes suit all rays */
+#ifdef TWINLIGHT_DOUBLE /* the host's hierarchy has only floats; Embree's boxes get a margin for all rays */
 
 static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
 {
@@ -280,7 +280,7 @@ static void reaches_set(RaysEmbree *rays)
     }
 }
 
-/* Splits the object's primitives into triangles, which are grouped, and others. */
+/* Splits the object's primitives into triangles, which are clustered, and others. */
 static bool object_sort(ObjectRays *object, Object record, Error *error)
 {
     const SceneView *view = &object->rays->view;
@@ -331,11 +331,11 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     return true;
 }
 
-/* What Embree takes to build, for each of its threads and for each primitive. */
+/* Memory that Embree needs to build, per thread and per primitive. */
 #define EMBREE_THREAD_BYTES ((size_t)8 << 20)
 #define EMBREE_PRIMITIVE_BYTES ((size_t)200)
 
-/* Where memory ends inside of Embree, it may end the program. So its memory is asked for before, and given back. */
+/* Embree may end the program when it runs out of memory, so this amount is mapped beforehand and unmapped again. */
 static bool memory_probe(const RaysEmbree *rays, int threads, Error *error)
 {
     size_t bytes = (size_t)threads * EMBREE_THREAD_BYTES;
@@ -353,7 +353,7 @@ static void *thread_empty(void *nothing)
     return nothing;
 }
 
-/* Likewise where there can be no thread at all. */
+/* Likewise if no thread can be started. */
 static bool thread_probe(Error *error)
 {
     pthread_t thread;
@@ -386,7 +386,7 @@ static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads,
     if (!outer_build(rays, scene, error))
         return false;
     reaches_set(rays);
-    /* The world last: its instances need their objects' bounds. */
+    /* The world last: the bounds of its instances need those of their objects. */
     for (size_t i = rays->object_count; i-- > 0;)
         if (!object_build(rays, i, error))
             return false;
@@ -429,7 +429,7 @@ void rays_embree_destroy(RaysEmbree *rays)
     free(rays);
 }
 
-/* ---- asking ------------------------------------------------------------------------------------------------------ */
+/* ---- ray queries ------------------------------------------------------------------------------------------------- */
 
 static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *ray)
 {
@@ -440,8 +440,8 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
-/* Embree's boxes are wide enough for rays that start within reach, and which ray that is decides no bit: both walks
- * find what the shared primitive test finds. */
+/* Whether the ray starts beyond the reach of Embree's margins. That choice decides no bit: both traversals find what
+ * the shared primitive test finds. */
 static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
 {
     return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;
@@ -478,11 +478,11 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
 {
     uint traced = 0;
     for (uint i = 0; i < count; ++i) {
-        uint t = items ? items[i] : i;
-        Ray ray = ray_load(ray_words, stride, t);
+        uint item = items ? items[i] : i;
+        Ray ray = ray_load(ray_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        hit_store(hit_words, stride, t, rays_embree_closest(rays, &ray));
+        hit_store(hit_words, stride, item, rays_embree_closest(rays, &ray));
         ++traced;
     }
     return traced;
@@ -491,11 +491,11 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride)
 {
     uint traced = 0;
-    for (uint t = 0; t < count; ++t) {
-        Ray ray = ray_load(shadow_words, stride, t);
+    for (uint item = 0; item < count; ++item) {
+        Ray ray = ray_load(shadow_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        state_store(shadow_words, stride, SHADOW_OCCLUDED, t, rays_embree_occluded(rays, &ray) ? 1u : 0u);
+        state_store(shadow_words, stride, SHADOW_OCCLUDED, item, rays_embree_occluded(rays, &ray) ? 1u : 0u);
         ++traced;
     }
     return traced;

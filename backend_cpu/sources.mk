@@ -1,5 +1,5 @@
-# What is compiled with the arithmetic of the kernels: float, or double with --enable-double; and the rest, which has the
-# host's structs.
+# libtwinlight_kernels: what is compiled with the arithmetic of the kernels, float, or double with --enable-double.
+# libtwinlight_cpu: the rest, which uses the host's structs.
 noinst_LTLIBRARIES += libtwinlight_cpu.la libtwinlight_kernels.la
 libtwinlight_cpu_la_SOURCES = \
 	backend_cpu/backend_cpu.c backend_cpu/backend_cpu.h \

@@ -42,7 +42,7 @@ static void *build_leaf(RTCThreadLocalAllocator allocator, const struct RTCBuild
     return cluster;
 }
 
-/* Only the leaves are wanted; Embree insists on nodes that are not NULL. */
+/* Only the leaves are used; Embree insists on nodes that are not NULL. */
 static void *build_node(RTCThreadLocalAllocator allocator, unsigned children, void *context)
 {
     (void)allocator;
@@ -94,7 +94,7 @@ bool triangle_clusters_build(RTCDevice device, const SceneView *scene, const uin
 {
     size_t item_bytes = ((size_t)count * sizeof(struct RTCBuildPrimitive) + 63) / 64 * 64;
     struct RTCBuildPrimitive *items = aligned_alloc(64, item_bytes);
-    /* Leaves may hold a single triangle; pages that no leaf is written to are never made. */
+    /* There may be one leaf per triangle; pages that no leaf is written to are never allocated. */
     TriangleCluster *out = aligned_alloc(64, ((size_t)count * sizeof *out + 63) / 64 * 64);
     if (!items || !out) {
         free(items);
@@ -129,19 +129,19 @@ Box triangle_cluster_box(const TriangleCluster *cluster)
     return box;
 }
 
-/* ---- asking ------------------------------------------------------------------------------------------------------ */
+/* ---- ray queries ------------------------------------------------------------------------------------------------- */
 
-/* ShearedCorner of four triangles. */
+/* The ShearedCorner of four triangles. */
 typedef struct ShearedLanes {
     Lanes x, y, z;
 } ShearedLanes;
 
 typedef struct ClusterTest {
     Lanes edge_b, edge_c, area, t;
-    unsigned sure; /* candidates that are hits but for alpha; of the others triangle_query has to say */
+    unsigned sure; /* bit i: candidate i is a hit, but for alpha; others are left to triangle_query */
 } ClusterTest;
 
-/* Bit i: lane i of the mask. */
+/* Bit i is set where lane i of the mask is. */
 static inline unsigned lanes_bits(LaneMask mask)
 {
 #if defined(__SSE__) && CLUSTER_LANES == 4 && !defined(PLATFORM_DOUBLE)
@@ -182,7 +182,7 @@ static inline Lanes lanes_abs(Lanes a)
 #endif
 }
 
-/* triangle_shear of four triangles' corner. */
+/* triangle_shear of one corner of four triangles. */
 static inline ShearedLanes lanes_shear(const Lanes corner[3], const RayQuery *query)
 {
     ShearedLanes out;
@@ -212,7 +212,7 @@ static inline Lanes lanes_t_error(const ShearedLanes corner[3], const RayQuery *
     return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
 }
 
-/* Where box_admits_hit of the triangles' boxes leaves t as it is. */
+/* The lanes in which box_admits_hit of the triangle's box leaves t as it is. */
 static inline LaneMask lanes_in_box(const TriangleCluster *cluster, const RayQuery *query, Lanes t)
 {
     const float o[3] = {query->o.x, query->o.y, query->o.z}, d[3] = {query->d.x, query->d.y, query->d.z};
@@ -232,10 +232,10 @@ static inline LaneMask lanes_in_box(const TriangleCluster *cluster, const RayQue
     return inside;
 }
 
-/* Which lanes triangle_query would go on with: its first half, and t as triangle_finish makes it, which has to lie
- * ahead of the origin and, where box_admits_hit will not move it, not beyond t_best. The triangle that a ray starts on
- * is nearly always turned away here. Of the others nearly all are hits inside their boxes and far from the ray's ends,
- * which is all that is left to find out. */
+/* The lanes that triangle_query would continue with: does its first half, and computes t as triangle_finish does, which
+ * must be ahead of the origin and, unless box_admits_hit would move it, not beyond t_best. This nearly always rejects
+ * the triangle that a ray starts on. Of the other candidates nearly all are hits inside their boxes and far from the
+ * ray's ends; test->sure says which are. */
 static inline unsigned cluster_candidates(const TriangleCluster *cluster, const RayQuery *query, float t_best,
                                           ClusterTest *test)
 {

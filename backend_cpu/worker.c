@@ -50,7 +50,7 @@ bool worker_reserve(Worker *worker, const StepList *list)
     return true;
 }
 
-/* What a kernel's BufferIds mean to this worker. */
+/* Sets the arguments of kernels, by BufferId, to this worker's buffers and the scene. */
 static void worker_arguments(Worker *worker, const StepList *list, void *arguments[BUFFER_COUNT])
 {
     const BackendScene *scene = kernel_scene_view(worker->scene);
@@ -59,7 +59,7 @@ static void worker_arguments(Worker *worker, const StepList *list, void *argumen
     arguments[BUFFER_FRAME] = kernel_frame(worker->scene, &worker->frame, worker->kernel_frame);
     arguments[BUFFER_GUIDE] = kernel_guide(list->guide, worker->kernel_guide);
     arguments[BUFFER_PASS] = list->pass_words;
-    /* Kernels take the scene as pointers to const; the array of arguments cannot say so. */
+    /* Kernels take the scene as pointers to const, which the array of arguments cannot express. */
     arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;
     arguments[BUFFER_TABLES] = (void *)(uintptr_t)scene->tables;
     arguments[BUFFER_TEXELS] = (void *)(uintptr_t)scene->texels;
@@ -73,8 +73,8 @@ static void worker_sum_diagnostics(Worker *worker)
     }
 }
 
-/* Late segments are few: most paths have left the scene or were absorbed. A list of the living spares rays and kernels
- * the others. */
+/* In late segments few items are live: most paths have left the scene or were absorbed. A list of the live items spares
+ * ray queries and kernels the others. */
 static void worker_find_live(Worker *worker, uint count)
 {
     const uint *t_max = worker->buffers[BUFFER_RAYS] + (size_t)RAY_T_MAX * CHUNK_STRIDE;
@@ -82,9 +82,9 @@ static void worker_find_live(Worker *worker, uint count)
     if (worker->live_list == LIVE_SAME)
         return;
     for (uint i = 0; i < before; ++i) {
-        uint t = worker->live_list == LIVE_ANY ? i : worker->live[i];
-        worker->live[live] = t;
-        live += bits_float(t_max[t]) > 0.0f;
+        uint item = worker->live_list == LIVE_ANY ? i : worker->live[i];
+        worker->live[live] = item;
+        live += bits_float(t_max[item]) > 0.0f;
     }
     worker->live_count = live;
     worker->live_list = LIVE_SAME;
@@ -112,7 +112,7 @@ static void worker_run_kernel(Worker *worker, const Step *step, void *const *arg
     worker->live_list = step->live_only && worker->live_list != LIVE_ANY ? LIVE_FEWER : LIVE_ANY;
 }
 
-/* Step i of the list; returns the next. */
+/* Runs step i of the list; returns the index of the next. */
 static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *const *arguments, uint count)
 {
     const Step *step = &job->list->steps[i];
@@ -155,13 +155,14 @@ static void worker_show_state(Worker *worker, const Job *job, uint first, uint c
             job->inspect(job->context, (BufferId)id, worker->buffers[id], first, count, CHUNK_STRIDE);
 }
 
-/* Whether a stop ends the chunk here: the film shows nothing of it, or is of no use without the whole pass. */
+/* Whether a stop drops the chunk at this point: either the film has nothing of it yet, or it has no use for part of a
+ * pass. */
 static bool chunk_dropped(const Worker *worker, const Job *job)
 {
     return *job->stop && (!worker->splatted || job->sink->whole);
 }
 
-/* The steps of the list; false when they were stopped before the end. */
+/* Runs the steps of the list; false if they were stopped before the end. */
 static bool worker_run_steps(Worker *worker, const Job *job, uint count)
 {
     void *arguments[BUFFER_COUNT];

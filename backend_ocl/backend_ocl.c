@@ -12,11 +12,11 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Threads that add splats to the film, when --threads says nothing: more than a device can keep busy are of no use. */
+/* Default number of threads that add splats to the film; more would exceed what one device keeps busy. */
 #define ADDERS_DEFAULT 8
 
-/* Work-items of a work-group. Kernels use no local memory and meet at no barrier, so this only has to be a multiple of
- * what devices run in step. */
+/* Work-items per work-group. Kernels use neither local memory nor barriers, so any multiple of the devices' SIMD width
+ * will do. */
 #define GROUP_ITEMS 64u
 
 struct Backend {
@@ -29,11 +29,11 @@ struct Backend {
     FilmAdders *adders;
     int adder_count;
     Batch batches[BATCH_SLOTS];
-    bool film_on_device; /* where a sink takes sums */
-    int slots; /* batches under way at a time: BATCH_SLOTS, or 1 without overlap */
+    bool film_on_device; /* if the sink supports it */
+    int slots; /* batches in flight: BATCH_SLOTS, or 1 without overlap */
     uint64_t next_batch;
     double build_seconds;
-    bool failed; /* a batch failed: the device's state is not to be trusted */
+    bool failed; /* a batch failed, so the device's state cannot be trusted */
 };
 
 /* ---- open and close ---------------------------------------------------------------------------------------------- */
@@ -53,7 +53,7 @@ static bool queues_make(Backend *backend, Error *error)
     return status == CL_SUCCESS || ocl_fail(error, name, "making a queue", status);
 }
 
-/* A driver's promise is taken; where there is none, a probe says what the device does. */
+/* Trusts a driver that claims correct rounding; otherwise a probe decides. */
 static void rounding_ask(OclDevice *device)
 {
     const BackendDevice *info = &device->info;
@@ -213,7 +213,7 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
     return true;
 }
 
-/* Runs all batches and waits until nothing is under way. */
+/* Runs all batches and waits until no command is in flight. */
 static bool pass_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                      const atomic_int *stop, Error *error)
 {
@@ -226,7 +226,7 @@ static bool pass_run(Backend *backend, const FrameParams *frame, const StepList 
     bool dropped = false;
     bool done = (!launcher->adds || device_film_begin(&backend->memory, sink->sum_words, error)) &&
                 batches_run(backend, frame, list, stop, &dropped, error);
-    if (!done || dropped) { /* a batch that was launched in part writes to the host until the queues are empty */
+    if (!done || dropped) { /* a batch that was launched in part writes to host memory until the queues are empty */
         clFinish(backend->compute);
         clFinish(backend->copy);
     }
@@ -253,12 +253,12 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
     adders_total(backend->adders, &total);
     if (items_done && (done || !backend->launcher.adds))
         *items_done = total.items;
-    backend->launcher.adds = false; /* for `inspect`, as is the next */
+    backend->launcher.adds = false; /* `inspect` expects both to be reset */
     backend->launcher.stop = NULL;
     return done;
 }
 
-/* One batch at a time, none of it in the statistics. */
+/* Runs one batch at a time; does not count in the statistics. */
 static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, const StepList *list, StateSink sink,
                                 void *context, Error *error)
 {
@@ -274,7 +274,7 @@ static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, cons
     return done && pass_data_end(&backend->memory, frame, list, error);
 }
 
-/* ---- what happened ----------------------------------------------------------------------------------------------- */
+/* ---- diagnostics and statistics ---------------------------------------------------------------------------------- */
 
 static void backend_ocl_diagnostics(Backend *backend, uint64_t *counters)
 {

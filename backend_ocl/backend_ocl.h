@@ -1,4 +1,4 @@
-/* The OpenCL backend: the kernels and the rays on one device, step by step over batches of items. */
+/* The OpenCL backend: kernels and ray queries on one device, step by step over batches of items. */
 #ifndef TWINLIGHT_BACKEND_OCL_H
 #define TWINLIGHT_BACKEND_OCL_H
 

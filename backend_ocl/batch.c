@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The host enqueues no more than so many ray queries before the device has done them: what is enqueued cannot be
- * stopped. */
+/* Ray queries that the host enqueues ahead of the device at most: commands in a queue cannot be cancelled. */
 #define TRACES_AHEAD 4u
 
 /* A launch in progress. */
@@ -13,12 +12,12 @@ typedef struct Launch {
     Batch *batch;
     const StepList *list;
     Error *error;
-    uint turn; /* closest-hit queries so far */
-    cl_event counted; /* the latest number of live rays is being read */
-    uint idle_turn; /* the turn that found no live ray; 0: none did */
-    size_t traces[TRACES_AHEAD]; /* places of the latest ray queries' events in batch->events, in turn */
-    uint traced; /* ray queries so far */
-    bool splatted; /* the film has splats of the batch, or will have */
+    uint turn; /* number of closest-hit queries so far */
+    cl_event counted; /* pending read of the latest number of live rays */
+    uint idle_turn; /* turn that had no live ray; 0: none so far */
+    size_t traces[TRACES_AHEAD]; /* ring of the latest ray queries' events, as indices into batch->events */
+    uint traced; /* number of ray queries so far */
+    bool splatted; /* the film has received, or will receive, splats of the batch */
 } Launch;
 
 static bool check(Launch *launch, cl_int status, const char *what)
@@ -28,7 +27,7 @@ static bool check(Launch *launch, cl_int status, const char *what)
 
 /* ---- events ------------------------------------------------------------------------------------------------------ */
 
-/* Where to put the event of a command called `name`, or NULL when nobody will ask. */
+/* Returns where to store the event of a command called `name`; NULL in *slot if it is not needed. */
 static bool event_slot(Launch *launch, const char *name, bool traces, cl_event **slot)
 {
     Batch *batch = launch->batch;
@@ -91,7 +90,7 @@ static cl_mem argument(const Launch *launch, BufferId id)
     }
 }
 
-/* Enqueues `kernel` for `items` items, rounded up to whole work-groups; kernels look after the rest themselves. */
+/* Enqueues `kernel` for `items` items, rounded up to whole work-groups; kernels ignore excess work-items. */
 static bool kernel_enqueue(Launch *launch, unsigned number, uint items, bool traces)
 {
     Launcher *launcher = launch->launcher;
@@ -110,7 +109,7 @@ static bool kernel_enqueue(Launch *launch, unsigned number, uint items, bool tra
                  name);
 }
 
-/* A ray query, when the device is close behind. */
+/* Enqueues a ray query once the device is at most TRACES_AHEAD queries behind. */
 static bool trace_enqueue(Launch *launch, unsigned number)
 {
     size_t *place = &launch->traces[launch->traced % TRACES_AHEAD];
@@ -151,8 +150,8 @@ static void counted_release(Launch *launch)
     launch->counted = NULL;
 }
 
-/* Counts and traces. From the turn on at which a batch may have ended, the count is read back while the rays are
- * traced, so that the device has work while the host waits for it. */
+/* Counts live rays and traces them. Near the turn at which a batch may have ended, the count is read back while the
+ * rays are traced, so that the device stays busy while the host waits for it. */
 static bool trace_closest(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -183,7 +182,7 @@ static bool splats_add(Launch *launch)
     return kernel_enqueue(launch, KERNEL_film_add, launch->batch->frame.item_count, false);
 }
 
-/* Puts the splats behind those put aside before. */
+/* Appends the splats to those of earlier STEP_SPLATs, in the same buffer. */
 static bool splats_put_aside(Launch *launch)
 {
     Batch *batch = launch->batch;
@@ -196,7 +195,7 @@ static bool splats_put_aside(Launch *launch)
                  "putting splats aside");
 }
 
-/* Whether the turn just enqueued had no live ray, as far as that is known by now. */
+/* Sets *idle if the turn just enqueued has no live ray; false before turn first_check, where counts are not read. */
 static bool turn_was_idle(Launch *launch, bool *idle)
 {
     *idle = false;
@@ -205,7 +204,7 @@ static bool turn_was_idle(Launch *launch, bool *idle)
     if (!check(launch, clFlush(launch->launcher->compute), "starting commands") ||
         !check(launch, clWaitForEvents(1, &launch->counted), "tracing rays"))
         return false;
-    /* The queue is in order: the number of the turn before has been read as well. */
+    /* The counter is cumulative, and the queue is in order, so the count of the turn before has been read as well. */
     const uint *live = launch->batch->memory->results->live;
     *idle = live[0] == live[1];
     if (*idle)
@@ -213,7 +212,7 @@ static bool turn_was_idle(Launch *launch, bool *idle)
     return true;
 }
 
-/* Whether a stop ends the batch here: the film shows nothing of it, or is of no use without the whole pass. */
+/* Whether a stop ends the batch here: the film has no part of it, or is useless without the whole pass. */
 static bool stop_wanted(const Launch *launch)
 {
     const Launcher *launcher = launch->launcher;
@@ -253,8 +252,8 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
     return done;
 }
 
-/* The next batch asks a turn before this one ended: the turns differ by one or two. Of several walks in a list each may
- * end early, so all turns are asked. */
+/* The next batch starts asking one turn before this one ended, since batches differ by a turn or two. With several
+ * walks in the list, each of which may end early, all turns are asked. */
 static void first_check_adapt(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -272,7 +271,7 @@ static void first_check_adapt(Launch *launch)
     launcher->first_check = turns > 2 ? turns - 1 : 2;
 }
 
-/* ---- the end ----------------------------------------------------------------------------------------------------- */
+/* ---- results ----------------------------------------------------------------------------------------------------- */
 
 static bool results_read(Launch *launch)
 {

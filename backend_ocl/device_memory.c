@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Items of a batch when nobody asks for a number. A CPU's caches want it small, a GPU's many lanes want it large. */
+/* Default items per batch: few fit a CPU's caches better, many fill a GPU. */
 #define BATCH_CPU 32768u
 #define BATCH_PER_GPU_UNIT 8192u
 #define BATCH_MIN 256u
@@ -12,7 +12,7 @@
 #define STRIDE_STEP 64u
 #define STRIDE_OFFSET 32u
 
-/* What is left to the driver, other programs and the display. */
+/* Fraction of the memory that may be used; the rest is left to the driver, other programs and the display. */
 #define MEMORY_PART 0.9
 
 uint device_memory_stride(uint count)
@@ -78,7 +78,7 @@ static bool buffer_make(DeviceMemory *memory, cl_mem *buffer, cl_mem_flags flags
     return ocl_fail(error, memory->device->info.name, what, status);
 }
 
-/* OpenCL has no empty buffers: one word stands for none. */
+/* OpenCL has no empty buffers: an empty one gets one word. */
 static bool scene_copy(DeviceMemory *memory, int i, const uint *words, size_t bytes, Error *error)
 {
     cl_int status;
@@ -130,7 +130,7 @@ static uint64_t item_bytes_largest(const uint *words_per_item)
     return (uint64_t)words * sizeof(uint);
 }
 
-/* Items whose state fits beside the scene, in whole groups. */
+/* Items whose state fits next to the scene, a multiple of STRIDE_STEP. */
 static uint batch_limit(const DeviceMemory *memory, const uint *words_per_item)
 {
     const BackendDevice *info = &memory->device->info;
@@ -240,7 +240,7 @@ static bool state_make(DeviceMemory *memory, uint batch, Error *error)
     return true;
 }
 
-/* Splats of an item, those of every STEP_SPLAT beside those of the end. */
+/* Words of splats per item, with a section for every STEP_SPLAT and one for the end of the list. */
 static uint splat_words(const StepList *list)
 {
     uint sections = 1;

@@ -1,5 +1,5 @@
-/* What a device holds: the scene, the state of a batch of items, and for each batch under way its parameters and its
- * splats. Everything is sized and compared with the device's limits before any of it is allocated. */
+/* Memory of a device: the scene, the state of a batch of items and, for each batch in flight, its parameters and
+ * splats. All sizes are checked against the device's limits before anything is allocated. */
 #ifndef TWINLIGHT_DEVICE_MEMORY_H
 #define TWINLIGHT_DEVICE_MEMORY_H
 
@@ -9,22 +9,22 @@
 #include "layout/diagnostics.h"
 #include "layout/state.h"
 
-/* Batches under way: one computed, one copied, one added to the film. */
+/* Batches in flight: one being computed, one being copied, one being added to the film. */
 #define BATCH_SLOTS 3
 
-/* What is read back beside the splats. */
+/* Read back in addition to the splats. */
 typedef struct BatchResults {
-    uint live[2]; /* closest-hit rays up to the latest odd and even turn of the loop */
-    uint counts[COUNT_WORDS]; /* of the whole batch */
+    uint live[2]; /* closest-hit rays in total up to the latest even [0] and odd [1] turn */
+    uint counts[COUNT_WORDS]; /* numbers of rays of the whole batch */
     uint diagnostics[DIAGNOSTIC_COUNT];
 } BatchResults;
 
 typedef struct BatchMemory {
     cl_mem frame;
-    cl_mem splats; /* what kernels write, and behind it what every STEP_SPLAT has put aside */
-    cl_mem staging; /* host memory that the device reaches directly, mapped as long as it lives */
-    uint *host; /* its splats */
-    BatchResults *results; /* behind them */
+    cl_mem splats; /* output of kernels, followed by the sections saved by STEP_SPLATs */
+    cl_mem staging; /* pinned host memory, mapped during its whole life */
+    uint *host; /* the splats in `staging` */
+    BatchResults *results; /* after the splats in `staging` */
 } BatchMemory;
 
 typedef struct DeviceMemory {
@@ -32,28 +32,28 @@ typedef struct DeviceMemory {
     cl_command_queue queue;
     const OclDevice *device;
     cl_mem scene[BUFFER_BVH + 1]; /* geometry, tables, texels, bvh */
-    cl_mem state[BUFFER_COUNT]; /* per-item buffers but splats; diagnostics; counts */
+    cl_mem state[BUFFER_COUNT]; /* per-item buffers except splats; diagnostics; counts */
     BatchMemory batches[BATCH_SLOTS];
-    cl_mem guide; /* of the pass under way */
-    cl_mem film; /* its sums, when the device adds (device_film.h) */
-    uint words_per_item[BUFFER_COUNT]; /* that the state was made for */
-    uint batch; /* items of a batch; 0 until state is made */
-    uint batch_wanted; /* --batch, 0: chosen here */
+    cl_mem guide; /* of the current pass */
+    cl_mem film; /* sums of the film, if the device adds splats (device_film.h) */
+    uint words_per_item[BUFFER_COUNT]; /* for which the state was allocated */
+    uint batch; /* items per batch; 0: no state yet */
+    uint batch_wanted; /* --batch; 0: chosen automatically */
     size_t scene_bytes, film_bytes, bytes;
 } DeviceMemory;
 
-/* Words between two fields of a batch of `count` items: whole groups, and an offset that keeps the fields of an item
- * off one another's cache sets when `count` is a power of two. */
+/* Words between two fields for a batch of `count` items: a multiple of the group size plus an offset, which avoids
+ * cache conflicts between the fields of an item if `count` is a power of two. */
 uint device_memory_stride(uint count);
 
-/* Copies the scene to the device. `batch`: items of a batch, 0 to choose. */
+/* Copies the scene to the device. `batch`: items per batch, 0: chosen automatically. */
 bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_queue queue, const OclDevice *device,
                         const BackendScene *scene, const Bvh *bvh, uint batch, Error *error);
 
-/* Makes state for this list, unless what is there is enough. No command may be under way. */
+/* Allocates state for this list, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
 
-/* Makes room for a film of so many bytes, unless there is enough. No command may be under way. */
+/* Allocates a film of `bytes` bytes, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error);
 
 void device_memory_destroy(DeviceMemory *memory);

@@ -9,7 +9,7 @@
 
 #define PLATFORMS_MAX 16
 
-/* ---- what a device says of itself -------------------------------------------------------------------------------- */
+/* ---- properties of a device -------------------------------------------------------------------------------------- */
 
 static void device_text(cl_device_id id, cl_device_info what, char *text, size_t size)
 {
@@ -50,8 +50,8 @@ static const char *device_kind(cl_device_id id)
                                                : "device";
 }
 
-/* Kernels use nothing but + - * / sqrt in single precision (NUMERICS): with these correctly rounded and denormals kept,
- * every device computes what the CPU computes. */
+/* Kernels use only + - * / and sqrt in single precision (docs/NUMERICS.md): if these are correctly rounded and
+ * denormals are kept, every device computes the same bits as the CPU. */
 static bool device_same_bits(const OclDevice *device)
 {
     return device->info.rounds_division && device->info.keeps_denormals && device->rounds_to_nearest;
@@ -85,12 +85,12 @@ static void device_describe(cl_platform_id platform, OclDevice *device)
     info->units = (unsigned)device_number(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
     device->group_limit = 1;
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof device->group_limit, &device->group_limit, NULL);
-    /* PoCL. Asked for a program's binary it would build every kernel of it, most of which no rendering uses. */
+    /* PoCL: asking for a program's binary would make it compile every kernel, most of which no rendering uses. */
     device->keeps_programs = strcmp(info->platform, "Portable Computing Language") == 0;
     device_promises(id, device);
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------------- */
+/* ---- enumeration ------------------------------------------------------------------------------------------------- */
 
 size_t ocl_devices_find(OclDevice *devices, size_t capacity)
 {
@@ -148,7 +148,7 @@ size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all)
     return count;
 }
 
-/* ---- the one that is meant --------------------------------------------------------------------------------------- */
+/* ---- the selected one -------------------------------------------------------------------------------------------- */
 
 static bool fix_with_list(const OclDevice *devices, size_t count, Error *error)
 {
@@ -197,7 +197,8 @@ static bool device_pick(const OclDevice *devices, size_t count, const char *choi
     return fix_with_list(devices, count, error);
 }
 
-/* A platform without a device is a driver that gave up; PoCL does where it cannot keep its own files. */
+/* An error for no devices. A platform without devices means that its driver failed; PoCL does so if it cannot write its
+ * cache. */
 static bool no_device(Error *error)
 {
     cl_platform_id platform;

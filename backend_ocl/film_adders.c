@@ -4,20 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Items that a thread takes at a time: enough for the lock to be rarely asked for. */
+/* Items that a thread takes at a time: enough to make the lock rarely contended. */
 #define ADD_ITEMS 4096u
 
 typedef enum SlotState {
     SLOT_FREE,
-    SLOT_LAUNCHED, /* on the device; nobody waits for it */
-    SLOT_AWAITED, /* one thread waits for its copy */
-    SLOT_COPIED /* to be added by whoever has time */
+    SLOT_LAUNCHED, /* on the device; no thread waits for it yet */
+    SLOT_AWAITED, /* a thread waits for its results */
+    SLOT_COPIED /* ready to be added to the film by any thread */
 } SlotState;
 
 typedef struct Slot {
     SlotState state;
     Batch *batch;
-    uint next, added; /* items handed out, items done */
+    uint next, added; /* items assigned to threads, items added */
 } Slot;
 
 typedef struct Adder {
@@ -28,10 +28,10 @@ typedef struct Adder {
 
 struct FilmAdders {
     pthread_mutex_t mutex;
-    pthread_cond_t work; /* for the threads */
-    pthread_cond_t freed; /* for who launches */
+    pthread_cond_t work; /* signals the threads */
+    pthread_cond_t freed; /* signals adders_wait */
     Slot slots[BATCH_SLOTS];
-    const SplatSink *sink; /* NULL: there is nothing to add */
+    const SplatSink *sink; /* NULL: no splats to add */
     AddersTotal total;
     Timeline *timeline;
     bool quit;
@@ -48,7 +48,7 @@ static void slot_free(FilmAdders *adders, Slot *slot)
     pthread_cond_broadcast(&adders->freed);
 }
 
-/* With the lock held: a copied batch's numbers; its splats are added afterwards. */
+/* Adds up the statistics of a finished batch. Called with the lock held. */
 static void batch_account(FilmAdders *adders, const Batch *batch, uint64_t ray_nanoseconds)
 {
     const BatchResults *results = batch->memory->results;
@@ -59,7 +59,7 @@ static void batch_account(FilmAdders *adders, const Batch *batch, uint64_t ray_n
         adders->total.diagnostics[i] += results->diagnostics[i];
 }
 
-/* Called and returns with the lock held. */
+/* Waits for a batch without the lock. Called and returns with the lock held. */
 static void slot_await(FilmAdders *adders, Slot *slot)
 {
     slot->state = SLOT_AWAITED;
@@ -84,7 +84,7 @@ static void slot_await(FilmAdders *adders, Slot *slot)
     pthread_cond_broadcast(&adders->work);
 }
 
-/* Called and returns with the lock held. */
+/* Adds some items without the lock. Called and returns with the lock held. */
 static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
 {
     Batch *batch = slot->batch;
@@ -110,7 +110,7 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
     }
 }
 
-/* Work for a thread, splats before waiting; NULL when there is none. */
+/* Finds work for a thread: splats to add first, then the oldest batch to wait for; NULL if there is none. */
 static Slot *slot_find(FilmAdders *adders)
 {
     for (int i = 0; i < BATCH_SLOTS; ++i)
@@ -144,7 +144,7 @@ static void *adder_main(void *argument)
     return NULL;
 }
 
-/* ---- all of them ------------------------------------------------------------------------------------------------- */
+/* ---- interface --------------------------------------------------------------------------------------------------- */
 
 FilmAdders *adders_create(int threads, Timeline *timeline, Error *error)
 {

@@ -50,7 +50,7 @@ static bool state_show(Launcher *launcher, const Batch *batch, const StepList *l
 bool inspect_batch(Launcher *launcher, Batch *batch, const StepList *list, uint first, StateSink sink, void *context,
                    Error *error)
 {
-    bool dropped; /* nothing stops it */
+    bool dropped; /* cannot happen: no stop flag is set */
     bool done = state_clear(launcher, batch, list, error) && batch_launch(launcher, batch, list, &dropped, error);
     clFinish(launcher->compute);
     cl_int status = clFinish(launcher->copy);

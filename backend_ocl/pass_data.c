@@ -2,7 +2,7 @@
 
 #include "ocl_status.h"
 
-/* Fields lie pass_stride apart on the host and item_count apart on the device. */
+/* Offsets and pitches, bytes: fields are pass_stride words apart on the host and item_count words on the device. */
 typedef struct Region {
     size_t device[3], host[3], size[3];
     size_t device_row, host_row;

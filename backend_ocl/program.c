@@ -19,15 +19,15 @@ const char *ocl_kernel_name(unsigned kernel)
     return KERNEL_NAMES[kernel];
 }
 
-/* No option here lets a device compute other bits: what OpenCL calls fast is all off by default, and fused products are
- * switched off in math/platform.h. */
+/* None of these options changes results: OpenCL's fast-math options are off by default, and contraction to fused
+ * multiply-add is disabled in math/platform.h. */
 void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size)
 {
     snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,
              device->info.promises_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
-/* Nanoseconds: a driver that takes longer to make a program did not have it in its cache. */
+/* Nanoseconds: if a build took longer, the driver's own cache did not have the program. */
 #define SLOW_BUILD 1000000000u
 
 /* ---- building ---------------------------------------------------------------------------------------------------- */
@@ -43,7 +43,7 @@ static char *build_log(cl_program program, cl_device_id device)
     return log;
 }
 
-/* The first line of the compiler's log that is an error, or its first line. */
+/* The first line with an error in the compiler's log, else its first line. */
 static const char *log_first_error(const char *log, int *length)
 {
     const char *line = strstr(log, "error:");
@@ -55,7 +55,7 @@ static const char *log_first_error(const char *log, int *length)
     return line;
 }
 
-/* Line by line: a message is one line. */
+/* Logs line by line, because a message is one line. */
 static void log_show(const OclProgram *program, char *log)
 {
     char *rest = NULL;
@@ -105,7 +105,7 @@ static bool build_from_source(OclProgram *program, const char *source, const cha
 
 /* ---- the cache --------------------------------------------------------------------------------------------------- */
 
-/* False when there is no entry or the device does not take it: the program is then built anew. */
+/* False if there is no entry or the device rejects it; the program is then built from source. */
 static bool build_from_cache(OclProgram *program, CacheKey key, const char *options)
 {
     size_t size = 0;

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* At the head of every file: what it is, and a check of the rest. */
+/* Header of every file: identification, and a checksum of the contents. */
 typedef struct CacheHeader {
     char magic[16];
     uint64_t key[2];
@@ -20,7 +20,7 @@ typedef struct CacheHeader {
 
 /* ---- hashes ------------------------------------------------------------------------------------------------------ */
 
-/* FNV-1a, 64 bits. Two with different starts make the key's 128. */
+/* 64-bit FNV-1a. Two hashes with different start values make a 128-bit key. */
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 {
     const unsigned char *p = bytes;
@@ -35,7 +35,7 @@ CacheKey cache_key(const char *const *strings, int count)
     for (int i = 0; i < count; ++i)
         for (int k = 0; k < 2; ++k) {
             key.hash[k] = hash_bytes(key.hash[k], strings[i], strlen(strings[i]) + 1);
-            key.hash[k] ^= key.hash[k] >> (29 + k); /* FNV alone keeps both halves alike */
+            key.hash[k] ^= key.hash[k] >> (29 + k); /* with FNV alone, both halves would stay correlated */
         }
     return key;
 }
@@ -45,9 +45,9 @@ static uint64_t header_check(CacheKey key, const unsigned char *binary, size_t s
     return hash_bytes(key.hash[0] ^ key.hash[1], binary, size);
 }
 
-/* ---- places ------------------------------------------------------------------------------------------------------ */
+/* ---- paths ------------------------------------------------------------------------------------------------------- */
 
-/* The cache's folder; an XDG_CACHE_HOME that is not absolute does not count (XDG Base Directory Specification). */
+/* The cache's folder. A relative XDG_CACHE_HOME is ignored (XDG Base Directory Specification). */
 static bool cache_folder(char *folder, size_t size)
 {
     const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
@@ -71,7 +71,7 @@ static bool cache_path(CacheKey key, char *path, size_t size)
     return true;
 }
 
-/* Makes every folder on the way to `path`, readable by its owner alone, as the specification asks. */
+/* Creates all parent folders of `path` with mode 0700, as the XDG specification asks. */
 static void folders_make(char *path)
 {
     for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
@@ -92,7 +92,7 @@ static unsigned char *entry_read(FILE *file, CacheKey key, size_t *size)
     unsigned char *binary = malloc((size_t)header.size + 1);
     if (!binary)
         return NULL;
-    /* One byte more must not be there. */
+    /* reading one byte more than the size detects excess data */
     if (fread(binary, 1, (size_t)header.size + 1, file) == header.size &&
         header_check(key, binary, (size_t)header.size) == header.check) {
         *size = (size_t)header.size;

@@ -9,7 +9,7 @@
 #define FILES_MAX 128
 #define DEPTH_MAX 32
 
-/* A text that grows. */
+/* A growable text. */
 typedef struct Text {
     char *bytes;
     size_t length, capacity;
@@ -18,7 +18,7 @@ typedef struct Text {
 typedef struct Reader {
     const char *folder;
     Text out;
-    char *files[FILES_MAX]; /* already in the text */
+    char *files[FILES_MAX]; /* files included so far */
     int file_count;
     int depth;
     Error *error;
@@ -41,7 +41,7 @@ const char *program_source_folder(void)
     const char *folder = getenv("TWINLIGHT_KERNELS");
     if (folder && folder[0])
         return folder;
-    /* Run out of the tree that it was built in, the program is not to pick up another version's sources. */
+    /* Run from its build tree, the program must not use the installed sources of another version. */
     return !program_is_installed() && access(KERNELS_BUILD "/kernels.cl", R_OK) == 0 ? KERNELS_BUILD
                                                                                      : KERNELS_INSTALLED;
 }
@@ -70,7 +70,7 @@ static bool text_add_line(Reader *reader, int line, const char *name)
     return text_add(reader, directive, (size_t)length);
 }
 
-/* The name in `#include "name"`, or NULL for any other line. Includes in angle brackets are C's, behind a #if. */
+/* The name in a line `#include "name"`; NULL for other lines. Includes in angle brackets are for C only, inside #if. */
 static const char *included_name(const char *line, char *name, size_t size)
 {
     line += strspn(line, " \t");
@@ -130,7 +130,7 @@ static bool lines_add(Reader *reader, FILE *file, const char *name)
     return done;
 }
 
-/* Every file of shared/ guards against a second inclusion, so leaving that out is the same. */
+/* Every file of shared/ has an include guard, so including it once is enough. */
 static bool file_add(Reader *reader, const char *name)
 {
     if (already_read(reader, name))

@@ -1,16 +1,15 @@
-/* The kernels' text, as one string: kernels.cl with every file that it includes in its place. One text is what a driver
- * without a file system of ours can build, and what a cache can be keyed by; #line lines keep the compiler's messages
- * at our files and lines. */
+/* The kernels' source as one string: kernels.cl with all its includes expanded. Drivers need not read our files, and
+ * the cache can hash the text. #line directives keep compiler messages at the original files and lines. */
 #ifndef TWINLIGHT_PROGRAM_SOURCE_H
 #define TWINLIGHT_PROGRAM_SOURCE_H
 
 #include "base/error.h"
 
-/* The folder of the kernels' sources: $TWINLIGHT_KERNELS, or where they were installed, or the sources that the program
- * was built from. */
+/* The folder of the kernel sources: $TWINLIGHT_KERNELS; else, for a program that is not installed, the source tree that
+ * it was built from, if it exists; else the installation folder. */
 const char *program_source_folder(void);
 
-/* The text of `name` and all it includes, each file once; to be freed. NULL when a file cannot be read. */
+/* The text of `name` with its includes, each file once, to be freed by the caller. NULL if a file cannot be read. */
 char *program_source_read(const char *folder, const char *name, Error *error);
 
 #endif

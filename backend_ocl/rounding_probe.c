@@ -12,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sets of operands, and how many are computed and compared at a time: twice as many as before, up to the last
- * figure. */
+/* Number of operand sets, and how many are computed and compared at a time: doubled from CHUNK_FIRST to CHUNK_LAST. */
 #define ITEMS (1u << 20)
 #define CHUNK_FIRST (1u << 10)
 #define CHUNK_LAST (1u << 17)
 
-/* Nanoseconds: then fewer have to do. All take 0.1 s on two cores; simulators of devices need an hour. */
+/* Nanoseconds after which no further chunk is started. All sets take 0.1 s on two cores, but an hour on simulated
+ * devices. */
 #define TIME_LIMIT 5000000000u
 
 typedef struct ProbeDevice {
@@ -78,7 +78,7 @@ static bool chunk_launch(const ProbeDevice *device, uint first, uint count, uint
     return status == CL_SUCCESS || ocl_fail(error, device->name, "the probe of divisions", status);
 }
 
-/* The sign and payload of a NaN are left open. */
+/* The sign and payload of a NaN may differ. */
 static bool same_result(uint a, uint b)
 {
     return a == b || ((a & 0x7fffffffu) > 0x7f800000u && (b & 0x7fffffffu) > 0x7f800000u);
@@ -109,7 +109,7 @@ static void chunk_compare(RoundingProbe *probe, uint first, uint count, const ui
     probe->compared += ROUNDING_OPERATIONS * (uint64_t)count;
 }
 
-/* The first chunk is small, and not timed: drivers build kernels when they are first used. */
+/* The first chunk is small and not timed, because drivers may compile the kernel on first use. */
 static bool chunks_run(const ProbeDevice *device, RoundingProbe *probe, Error *error)
 {
     uint *theirs = calloc((size_t)CHUNK_LAST * ROUNDING_WORDS, sizeof *theirs);

@@ -1,19 +1,18 @@
-/* Whether a device rounds quotients and square roots as IEEE 754 asks: it computes some millions of them, and so does
- * the host. */
+/* Tests whether a device rounds quotients and square roots correctly (IEEE 754) by comparing some millions of results
+ * with the host's. */
 #ifndef TWINLIGHT_ROUNDING_PROBE_H
 #define TWINLIGHT_ROUNDING_PROBE_H
 
 #include "devices.h"
 
 typedef struct RoundingProbe {
-    uint64_t compared; /* divisions and roots */
-    uint64_t wrong; /* results that are not the host's */
-    char first[128]; /* the first of those, in words */
+    uint64_t compared; /* number of divisions and roots */
+    uint64_t wrong; /* results that differ from the host's */
+    char first[128]; /* description of the first wrong result */
 } RoundingProbe;
 
-/* Builds kernels/rounding.cl with the kernels' options and compares what it gives. What was found is kept with built
- * programs (program_cache.h) and taken from there unless `anew`. False with an error when the device cannot be
- * asked. */
+/* Builds kernels/rounding.cl with the options of the kernels and compares its results. The outcome is stored with the
+ * built programs (program_cache.h) and reused unless `anew`. False with an error if the probe cannot run. */
 bool rounding_probe_run(const OclDevice *device, bool anew, RoundingProbe *probe, Error *error);
 
 #endif

@@ -11,7 +11,7 @@ bool timeline_init(Timeline *timeline, bool records, Error *error)
     timeline->records = records;
     if (!records)
         return true;
-    /* Pages that no span reaches are never touched. */
+    /* Untouched pages of the buffer take no memory. */
     timeline->spans = malloc(TIMELINE_SPANS_MAX * sizeof *timeline->spans);
     return timeline->spans || error_memory(error, TIMELINE_SPANS_MAX * sizeof *timeline->spans, "the trace");
 }

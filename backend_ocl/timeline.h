@@ -1,4 +1,4 @@
-/* What ran when: commands of the device by event profiling, work of the host by its clock, on one time axis. */
+/* Timeline: device commands timed by event profiling and host work timed by its clock, on one time axis. */
 #ifndef TWINLIGHT_TIMELINE_H
 #define TWINLIGHT_TIMELINE_H
 
@@ -9,7 +9,7 @@
 #include <pthread.h>
 
 typedef struct Timeline {
-    bool records; /* false: nothing is kept */
+    bool records; /* false: nothing is recorded */
     pthread_mutex_t mutex;
     BackendSpan *spans;
     size_t count;
@@ -17,23 +17,24 @@ typedef struct Timeline {
     int64_t offset; /* host clock minus device clock, nanoseconds */
 } Timeline;
 
-/* Spans kept at most (48 bytes each); later ones are counted only. */
+/* Maximum number of spans (48 bytes each); later ones are only counted. */
 #define TIMELINE_SPANS_MAX ((size_t)1 << 20)
 
+/* Allocates the spans if `records`; fails when out of memory. */
 bool timeline_init(Timeline *timeline, bool records, Error *error);
 void timeline_destroy(Timeline *timeline);
 
-/* Nanoseconds of the host's steady clock. */
+/* Monotonic host time, nanoseconds. */
 uint64_t timeline_now(void);
 
-/* Finds the offset between the clocks by a command on `queue`, which must be idle and have profiling on. */
+/* Determines the offset between both clocks with a command on `queue`, which must be idle and have profiling
+ * enabled. */
 void timeline_synchronize(Timeline *timeline, cl_command_queue queue, cl_mem buffer);
 
-/* Adds a span of the host. Any thread. */
+/* Adds a host span. Thread-safe. */
 void timeline_add(Timeline *timeline, BackendSpan span);
 
-/* Adds a finished command of the device, and returns how long it ran in nanoseconds (0 when the device does not
- * say). */
+/* Adds a finished device command. Returns its duration in nanoseconds, 0 if the device does not report it. */
 uint64_t timeline_add_event(Timeline *timeline, cl_event event, const char *name, SpanTrack track, uint64_t batch);
 
 #endif

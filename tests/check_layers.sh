@@ -1,19 +1,18 @@
 #!/bin/sh
-# Who may include whom:
-#   shared/      shared; system headers in math/platform.h alone (it knows the language)
+# Checks which file includes which:
+#   shared/      shared; system headers in math/platform.h alone (it detects the language)
 #   backend_*/   itself, shared, the rooms base and backend of host/
 #   host/        host, shared; main.c alone may name a backend's header
-# Within host/ and shared/ a room may include itself and those before it, in the order below, and no file includes, by way
-# of others, what includes it (x.c and x.h count as one). A room that is not in the list is a fault.
-# An include that this tree does not resolve is a fault too. config.h, build_commit.h (both made by the build) and
-# <system headers> are free outside shared/.
+# Within host/ and shared/ a room may include itself and those before it, in the order below, and no file includes itself by
+# way of others (x.c and x.h count as one). A room that is not in the list is a fault, and so is an include that this tree
+# does not resolve. config.h, build_commit.h (both made by the build) and <system headers> are free outside shared/.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
 shared_rooms='math layout geometry bsdf light camera path chain kernels'
 host_rooms='base image film backend compare scene pbrt render mmlt bench command'
 
-# resolve ROOT DIRECTORY NAME: the file that #include "NAME" in DIRECTORY means, relative to ROOT, in the order of the
-# build's include path. Prints nothing when there is none.
+# resolve ROOT DIRECTORY NAME: prints the file that #include "NAME" in DIRECTORY refers to, relative to ROOT, in the
+# order of the build's include path, or nothing if there is none.
 resolve() {
     for resolve_directory in "$2" shared host backend_cpu backend_ocl; do
         if [ -f "$1/$resolve_directory/$3" ]; then
@@ -23,7 +22,7 @@ resolve() {
     done
 }
 
-# place ROOM ROOMS: its number in the list; nothing when it is not in it.
+# place ROOM ROOMS: prints its number in the list, or nothing if it is not in it.
 place() {
     place_number=0
     for place_room in $2; do
@@ -32,7 +31,7 @@ place() {
     done
 }
 
-# ordered FROM TO ROOMS: two files of the same layer, "room/file" or a file above all rooms.
+# ordered FROM TO ROOMS: for two files of the same layer, "room/file" or a file above all rooms.
 ordered() {
     case $1 in
     */*) ordered_from=$(place "${1%%/*}" "$3") ;;
@@ -59,14 +58,14 @@ allowed() {
     esac
 }
 
-# One line "path:line:include" for every include of the layers below ROOT.
+# Prints a line "path:line:include" for every include of the layers below ROOT.
 includes() {
     (cd "$1" && for includes_directory in shared host backend_cpu backend_ocl; do
         [ -d "$includes_directory" ] && find "$includes_directory" -name '*.[ch]' -o -name '*.cl'
     done | sort | xargs grep -nE '^[[:space:]]*#[[:space:]]*include' /dev/null)
 }
 
-# check ROOT: prints "file:line: why" for every fault and fails when there is one.
+# check ROOT: prints "file:line: why" for every fault; fails if there is one.
 check() {
     : >"$work/pairs"
     includes "$1" | while IFS=: read -r file line text; do
@@ -102,7 +101,7 @@ check() {
     [ ! -s "$work/faults" ]
 }
 
-# planted FILE INCLUDE: a small tree with this line as line 2 of FILE must be refused, naming file and line.
+# planted FILE INCLUDE: a small tree with this line as line 2 of FILE must be rejected, naming file and line.
 planted() {
     rm -rf "$work/tree"
     for folder in shared/math shared/geometry host/base host/scene host/backend backend_cpu backend_ocl; do

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Compiles every file of shared/ as OpenCL C 1.2: each alone (so that it includes what it needs), and all kernel files
-# together, with features read at run time, all on, and all off. Exit 77 (skipped) only where there is no clang.
+# together, with features read at run time, all on, and all off. Exit 77 (skipped) only if there is no clang.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
 clang=
@@ -15,8 +15,8 @@ if [ -z "$clang" ]; then
     exit 77
 fi
 
-# compile DIRECTORY TEXT [OPTION...]: TEXT as a program. Its text comes through standard input so that functions of a
-# header that the program does not use are no warnings.
+# compile DIRECTORY TEXT [OPTION...]: compiles TEXT as a program. It is passed on standard input so that functions of a
+# header that the program does not use cause no warnings.
 compile() {
     compile_directory=$1
     compile_text=$2
@@ -25,7 +25,7 @@ compile() {
         -nostdlibinc -Wall -Wextra -Werror -I"$compile_directory" "$@" -
 }
 
-# check DIRECTORY: status 1 when a file of it does not compile.
+# check DIRECTORY: status 1 if any of its files does not compile.
 check() {
     check_status=0
     check_kernels=
@@ -49,7 +49,7 @@ check() {
     return $check_status
 }
 
-# The check itself must be able to fail: texts that are C11 but not OpenCL C 1.2, or that do not stand alone.
+# The check itself must be able to fail: texts that are C11 but not OpenCL C 1.2, or not self-contained.
 planted() {
     plant=$(mktemp -d) || exit 99
     cp -r "$srcdir/shared/math" "$plant"

@@ -43,9 +43,11 @@ TESTS += $(check_PROGRAMS)
 check_LTLIBRARIES = tests/libfixtures.la
 endif
 
-# The statistical tests with EFFORT times the samples, and cases that are left out of `make check`.
+# The statistical tests with EFFORT times the samples, and cases that `make check` leaves out.
 EFFORT = 8
-LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+# Builds a copy with a BSDF and an integrator more: minutes.
+dist_check_SCRIPTS += tests/test_recipes.sh
+LONG_TESTS = tests/test_recipes.sh tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
@@ -54,12 +56,13 @@ endif
 check-long:
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
-# Whether the tests see faults that are planted one at a time: mutants.sh -h. A quarter of an hour; not a part of any check.
+# Whether the tests detect faults that are planted one at a time: mutants.sh -h. Takes a quarter of an hour; not part of
+# any check.
 .PHONY: mutants
 mutants: twinlight$(EXEEXT)
 	$(srcdir)/tests/mutants/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
 
-# Kernels that one test program has had built serve the next, and the user's own cache is left alone.
+# Kernels built by one test program serve the next, without touching the user's own cache.
 TEST_CACHE = $(abs_top_builddir)/test-cache
 AM_TESTS_ENVIRONMENT = XDG_CACHE_HOME='$(TEST_CACHE)'; export XDG_CACHE_HOME;
 clean-local:
@@ -103,7 +106,7 @@ else
 OPENCL_PROBE = tests/support/opencl_probe_absent.c
 endif
 
-# What several programs share.
+# Shared by several programs.
 tests_libfixtures_la_SOURCES = \
 	tests/support/analytic_fixture.c \
 	tests/support/bidirectional_groups.c \
@@ -240,7 +243,7 @@ tests_test_texture_SOURCES = tests/image/test_texture.c \
 	tests/image/test_texture_files.c \
 	tests/image/test_texture_image.c
 
-# Rules of the tree itself, and the whole program from outside.
+# Rules of the source tree, and end-to-end tests of the program.
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_opencl.sh \

@@ -10,10 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Levels that the surface area heuristic may have for itself; Embree keeps eight of them in reserve. */
+/* Depth limit of the first attempt, which leaves the surface area heuristic a free choice. Embree reserves eight levels
+ * of it. */
 #define DEPTH_FREE 64u
 
-/* Entries below and inside an instance: BVH_EMPTY at the bottom; the rest of the leaf and BVH_RETURN. */
+/* Stack entries besides waiting siblings: BVH_EMPTY at the bottom; inside an instance, the rest of the leaf and
+ * BVH_RETURN. */
 #define STACK_BOTTOM 1u
 #define STACK_INSTANCE 2u
 
@@ -24,7 +26,7 @@
 
 typedef struct BuiltObject {
     Box box; /* without margin */
-    uint root; /* BVH_EMPTY when there is nothing in it */
+    uint root; /* BVH_EMPTY for an empty object */
     BvhTreeSize size;
 } BuiltObject;
 
@@ -33,11 +35,11 @@ typedef struct Builder {
     SceneView view;
     size_t object_count, instance_count;
     BuiltObject *objects;
-    uint stack; /* the traversal's */
-    float origin_ulps; /* for the header */
+    uint stack; /* stack size of the traversal, entries */
+    float origin_ulps; /* largest of all instances, for the buffer's header */
     Bvh *bvh;
     size_t capacity; /* words */
-    char failure[256]; /* Embree's last complaint */
+    char failure[256]; /* Embree's first error message */
 } Builder;
 
 /* ---- the buffer -------------------------------------------------------------------------------------------------- */
@@ -60,7 +62,7 @@ static bool words_reserve(Builder *builder, size_t words, Error *error)
     return true;
 }
 
-/* Rounds the end of the buffer up and sets the words between to zero. */
+/* Pads the buffer with zeros to a multiple of `unit` words; returns its size in units. */
 static size_t words_align(Bvh *bvh, size_t unit)
 {
     size_t end = (bvh->word_count + unit - 1) / unit * unit;
@@ -69,7 +71,7 @@ static size_t words_align(Bvh *bvh, size_t unit)
     return end / unit;
 }
 
-/* Where the nodes and items of one tree go. */
+/* Write positions for the nodes and items of one tree. */
 typedef struct Flattener {
     const SceneView *view;
     const BuiltObject *objects;
@@ -114,7 +116,7 @@ static uint leaf_write(Flattener *flattener, const BvhTreeNode *leaf)
     return BVH_LEAF | (leaf->item_count - 1u) << BVH_LEAF_COUNT_SHIFT | first;
 }
 
-/* Planes of child `lane`; the empty box when there is none: the ray would have to enter after it leaves. */
+/* Writes the planes of child `lane`; for no child an empty box, which a ray leaves before it enters. */
 static void planes_write(uint *node, uint lane, const struct RTCBounds *box)
 {
     const float inf = FLOAT_INFINITY;
@@ -126,7 +128,7 @@ static void planes_write(uint *node, uint lane, const struct RTCBounds *box)
     }
 }
 
-/* Writes `tree` as node `place`, its inner children side by side behind what is there already. */
+/* Writes `tree` as node `place`; its inner children get consecutive nodes after those already allocated. */
 static void node_write(Flattener *flattener, const BvhTreeNode *tree, uint place)
 {
     uint *node = flattener->words + (size_t)place * NODE_WORDS, word[BVH_WIDTH] = {0};
@@ -170,7 +172,8 @@ static bool tree_flatten(Builder *builder, BuiltObject *object, const BvhTreeNod
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
 
-/* Of an object, half of what instances leave of the stack; of the world, what the deepest object leaves. */
+/* Stack entries that object `index` may use: half of what instancing leaves, or, for the world (index 0, built last),
+ * what the deepest object leaves. */
 static uint object_stack(const Builder *builder, size_t index)
 {
     uint taken = STACK_BOTTOM, deepest = 0;
@@ -191,7 +194,8 @@ static bool embree_failed(const Builder *builder, size_t count, Error *error)
                      builder->failure[0] ? builder->failure : "no reason given");
 }
 
-/* The best tree when it is shallow enough, else one that is split in halves below some depth. */
+/* Builds the best tree if it is shallow enough for the stack, else one with a depth limit, below which nodes are split
+ * in halves. */
 static bool object_tree(Builder *builder, size_t index, RTCBVH bvh, BvhBoxes *boxes, Error *error)
 {
     BuiltObject *object = &builder->objects[index];
@@ -223,7 +227,8 @@ static void object_boxes(const Builder *builder, BuiltObject *object, Object rec
     }
 }
 
-/* Raises *origin_ulps to what the rays of the world have to add for the worst of the instances. */
+/* Adds the instances' boxes and raises *origin_ulps to the largest margin that rays of the world need for any of
+ * them. */
 static void instance_boxes(const Builder *builder, BvhBoxes *boxes, float *origin_ulps)
 {
     for (uint i = 0; i < builder->instance_count; ++i) {
@@ -259,7 +264,7 @@ static bool object_build(Builder *builder, size_t index, Error *error)
     return built;
 }
 
-/* ---- all of it --------------------------------------------------------------------------------------------------- */
+/* ---- building ---------------------------------------------------------------------------------------------------- */
 
 static void embree_error_callback(void *context, enum RTCError code, const char *text)
 {
@@ -295,7 +300,7 @@ static bool builder_run(Builder *builder, Error *error)
         return false;
     memset(builder->bvh->words, 0, NODE_WORDS * sizeof *builder->bvh->words);
     builder->bvh->word_count = NODE_WORDS;
-    /* The world last: its instances need their objects' boxes and roots. */
+    /* The world is built last: its instances need the boxes and roots of their objects. */
     for (size_t i = builder->object_count; i-- > 0;)
         if (!object_build(builder, i, error))
             return false;

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Relative costs of a node and of a primitive. */
+/* Relative costs of a node and of a primitive in the surface area heuristic. */
 #define COST_NODE 1.0f
 #define COST_ITEM 1.0f
 
-/* Items of a leaf that cost as much as one. */
+/* Number of leaf items that are intersected at the cost of one. */
 #define COST_BLOCK 2
 
 bool bvh_boxes_create(BvhBoxes *boxes, size_t capacity, Error *error)
@@ -36,7 +36,7 @@ void bvh_boxes_destroy(BvhBoxes *boxes)
     memset(boxes, 0, sizeof *boxes);
 }
 
-/* ---- what Embree calls; from many threads -------------------------------------------------------------------------- */
+/* ---- callbacks of Embree, from many threads ---------------------------------------------------------------------- */
 
 static void *build_node(RTCThreadLocalAllocator allocator, unsigned children, void *context)
 {

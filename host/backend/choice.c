@@ -53,7 +53,7 @@ static bool choice_add(BackendChoices *choices, const BackendInterface *interfac
     return true;
 }
 
-/* "0,2,radeon": one choice for each. */
+/* Adds one choice for each part of a list like "0,2,radeon". */
 static bool devices_add(BackendChoices *choices, const BackendInterface *interface, const char *devices, Error *error)
 {
     for (const char *word = devices;;) {
@@ -70,7 +70,7 @@ static bool devices_add(BackendChoices *choices, const BackendInterface *interfa
     }
 }
 
-/* Devices that may differ in the last bits would make a picture that nobody can repeat. */
+/* Adds all devices expected to give the same bits: with others, the image would depend on how work is divided. */
 static bool all_devices_add(BackendChoices *choices, const BackendInterface *interface, Error *error)
 {
     static BackendDevice devices[DEVICES_MAX];
@@ -88,8 +88,8 @@ static bool all_devices_add(BackendChoices *choices, const BackendInterface *int
     return true;
 }
 
-/* The same device twice would be two programs on one device. This sees it in the words; devices_distinct, once drivers
- * are asked, also where a number and a name mean the same. */
+/* Rejects choices that are textually equal: a device must not be opened twice. devices_distinct also finds a number and
+ * a name that mean the same device, once drivers can be asked. */
 static bool choices_distinct(const BackendChoices *choices, Error *error)
 {
     for (size_t i = 0; i < choices->count; ++i)
@@ -123,7 +123,7 @@ bool backend_choices_make(BackendChoices *choices, const BackendTable *table, co
         if (!interface)
             return unknown_backend(table, backend, error);
     }
-    if (!devices || !interface->spans) /* a device for a backend without is the caller's to refuse */
+    if (!devices || !interface->spans) /* --device for a backend without devices is rejected by the caller */
         return choice_add(choices, interface, "", 0, error);
     return devices_add(choices, interface, devices, error) && choices_distinct(choices, error);
 }

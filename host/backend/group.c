@@ -9,19 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Weight of the latest pass in a member's speed: a few passes forget a disturbance, one does not rule. */
+/* Weight of the latest pass in a member's measured speed: averages over a few passes, so that one outlier has little
+ * effect. */
 #define SPEED_BLEND 0.3
 
-/* Every member gets at least this part of an equal share, so that one that was slow once is measured again. */
+/* Least share of a member, relative to the mean: a member that was slow once must be measured again. */
 #define SHARE_MIN 0.02
 
-/* Shares are multiples of this many items, so that members with batches or chunks are not left with splinters. */
+/* Shares are multiples of this many items, to keep members' batches and chunks full. */
 #define SHARE_GRAIN 512u
 
 typedef struct GroupMember {
     BackendMember member;
     double speed; /* items per second; 0: not measured yet */
-    /* The pass under way. */
+    /* State of the current pass. */
     FrameParams frame;
     const struct GroupRun *run;
     uint64_t delivered;
@@ -30,14 +31,14 @@ typedef struct GroupMember {
     Error error;
 } GroupMember;
 
-/* What the members share of one call of run. */
+/* Arguments of `run`, common to all members. */
 typedef struct GroupRun {
     const StepList *list;
     const SplatSink *sink;
     const atomic_int *stop;
 } GroupRun;
 
-/* To everybody else a Backend; only this file knows better. */
+/* The Backend of a group; only this file knows the type. */
 typedef struct Group {
     size_t count;
     GroupMember members[BACKEND_GROUP_MAX];
@@ -61,7 +62,7 @@ static void *member_run(void *argument)
     return NULL;
 }
 
-/* Shares of `items`, in proportion to speed; those not measured yet count as the mean of the others. */
+/* Divides `items` in proportion to speed; members not yet measured count with the mean of the others. */
 static void shares_make(const Group *group, uint items, uint shares[BACKEND_GROUP_MAX])
 {
     double known = 0.0, sum = 0.0, speeds[BACKEND_GROUP_MAX];
@@ -89,13 +90,13 @@ static void shares_make(const Group *group, uint items, uint shares[BACKEND_GROU
 static void member_learn(GroupMember *member)
 {
     if (!member->done || member->delivered < member->frame.item_count || member->delivered == 0)
-        return; /* stopped or failed: says nothing about its speed */
+        return; /* stopped or failed, so its speed is unknown */
     double speed = (double)member->delivered / fmax(member->seconds, 1e-6);
     member->speed = member->speed > 0.0 ? member->speed + SPEED_BLEND * (speed - member->speed) : speed;
 }
 
-/* The first member runs on this thread, the others on one each. A member whose thread cannot be started runs here
- * too, after the first. */
+/* Runs the first member on the calling thread, each other one on a thread of its own. A member whose thread cannot be
+ * started also runs on the calling thread, one after the other. */
 static bool group_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                       const atomic_int *stop, uint64_t *items_done, Error *error)
 {
@@ -139,7 +140,7 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
     return done;
 }
 
-/* ---- what happened ----------------------------------------------------------------------------------------------- */
+/* ---- diagnostics and statistics ---------------------------------------------------------------------------------- */
 
 static void group_diagnostics(Backend *backend, uint64_t *counters)
 {
@@ -153,7 +154,7 @@ static void group_diagnostics(Backend *backend, uint64_t *counters)
     }
 }
 
-/* "A + B", cut where it does not fit. */
+/* Appends " + NAME", or NAME if `out` is empty; parts that do not fit are dropped. */
 static void device_append(char *out, size_t size, const char *name)
 {
     size_t used = strlen(out);

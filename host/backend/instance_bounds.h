@@ -1,5 +1,5 @@
-/* Boxes around instances in world space, for hierarchies that any traversal may walk (shared/geometry/box.h). A header
- * alone, since one of its callers is compiled a second time with double in the place of float. */
+/* Bounds of instances in world space that are conservative for every traversal (shared/geometry/box.h). Header only,
+ * because one of its users is also compiled with double in place of float. */
 #ifndef TWINLIGHT_BACKEND_INSTANCE_BOUNDS_H
 #define TWINLIGHT_BACKEND_INSTANCE_BOUNDS_H
 
@@ -7,30 +7,30 @@
 
 #include <math.h>
 
-/* The primitives of an instance are tested in the space of its object, with an origin and a direction that the
- * instance's float matrix M and translation b have rounded. With coordinates |.| the largest ones and E =
- * FLOAT_EPSILON, a hit that counts at P = o + t d lies, mapped to object space exactly, within
+/* The primitives of an instance are intersected in object space, with origin and direction transformed by the
+ * instance's float matrix M and translation b, and rounded. Let |.| be the largest coordinate and E = FLOAT_EPSILON. An
+ * accepted hit at P = o + t d, mapped to object space exactly, lies within
  *
  *     E (7.5 (|B| + |o'|) + 2 (|M| |o| + |b|) + 1.5 |M| t |d|)
  *
- * of its box B: box_admits_hit with o', the four roundings of o' and the three of d'. With |o'| <= |M| |o| + |b| and t
- * |d| <= |P| + |o| that is at most
+ * of the object's box B: the terms are box_admits_hit with o', the four roundings of o', and the three of d'. With
+ * |o'| <= |M| |o| + |b| and t |d| <= |P| + |o| this is at most
  *
- *     E (7.5 |B| + 9.5 |b| + 1.5 |M| |P|)  +  E 11 |M| |o|,
+ *     E (7.5 |B| + 9.5 |b| + 1.5 |M| |P|)  +  E 11 |M| |o|.
  *
- * where the inverse of M takes what depends on o to 11 |M^-1| |M| E |o| in world space. */
+ * The inverse of M maps the term in o to 11 |M^-1| |M| E |o| in world space. */
 typedef struct InstanceBounds {
-    Box box; /* widened by all that does not depend on the origin of the ray */
-    float origin_ulps; /* what does: in units of FLOAT_EPSILON times the largest coordinate of the origin */
+    Box box; /* includes every margin that does not depend on the ray's origin */
+    float origin_ulps; /* margin that does, in units of FLOAT_EPSILON times the origin's largest coordinate */
 } InstanceBounds;
 
-/* Room for the rounding of these figures themselves. */
+/* Covers the rounding of the bounds computed here. */
 #define INSTANCE_SLACK 1.001
 
-/* Of a box, and of its margin: Embree leaves out boxes that reach further than 1.844e18. */
+/* Limit of a box and of its margin: Embree drops boxes that extend beyond 1.844e18. */
 #define INSTANCE_BOX_MAX 0.9e18
 
-/* Row-major inverse of the upper left 3x3 part of a; false when it has none. */
+/* Row-major inverse of the upper left 3x3 part of `a`; false if it is singular. */
 static inline bool instance_invert(const Affine *a, double out[9])
 {
     double m[9], determinant = 0.0;
@@ -49,7 +49,7 @@ static inline bool instance_invert(const Affine *a, double out[9])
     return isfinite(determinant) && determinant != 0.0;
 }
 
-/* The largest sum of the absolute values of a row. */
+/* Largest absolute row sum. */
 static inline double rows_norm(const double *rows, int stride)
 {
     double largest = 0.0;
@@ -58,7 +58,7 @@ static inline double rows_norm(const double *rows, int stride)
     return largest;
 }
 
-/* The box of the exact inverse image of `object` under a, widened before by `margin`. */
+/* Box of the exact preimage under `a` of `object`, inflated by `margin` first. */
 static inline void instance_image(const Affine *a, const double inverse[9], const Box *object, double margin,
                                   double low[3], double high[3])
 {
@@ -87,8 +87,7 @@ static inline double corners_largest(const double low[3], const double high[3])
     return largest;
 }
 
-/* `object`: the box of the instance's object without margin; not empty. A map that has no inverse gives all of
- * space. */
+/* `object`: box of the instance's object without margin, not empty. A singular transform gives a box of all space. */
 static inline InstanceBounds instance_bounds(const Instance *instance, const Box *object)
 {
     const Affine *a = &instance->object_from_world;
@@ -115,14 +114,13 @@ static inline InstanceBounds instance_bounds(const Instance *instance, const Box
     return bounds;
 }
 
-/* What the box is widened by for rays whose origins have no coordinate above `reach`. */
+/* Margin of the box for rays whose origins have no coordinate above `reach`. */
 static inline float instance_margin(const InstanceBounds *bounds, float reach)
 {
     return float_min(bounds->origin_ulps * FLOAT_EPSILON * reach, (float)INSTANCE_BOX_MAX);
 }
 
-/* No coordinate of a ray's origin is above this in the space of the instance's object, where none in world space is
- * above `reach`. */
+/* Upper bound of the coordinates, in object space, of a ray origin whose world coordinates are at most `reach`. */
 static inline float instance_reach(const Instance *instance, float reach)
 {
     return (1.0f + 8.0f * FLOAT_EPSILON) *

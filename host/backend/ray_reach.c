@@ -4,17 +4,16 @@
 
 #include <stdlib.h>
 
-/* So many primitives and instances, evenly over all, stand for the rest. */
+/* Number of evenly spaced primitives and instances examined in place of all. */
 #define SAMPLES 4096u
 
-/* Margins up to this part of the size of primitives cost next to nothing. */
+/* Margins up to this fraction of the size of primitives cost next to nothing. */
 #define MARGIN_PART 0.125f
 
-/* A reach that is not smaller by this factor is not worth a hierarchy of its own. */
+/* A separate hierarchy pays off only if its reach is smaller by this factor. */
 #define WORTHWHILE 4.0f
 
-/* The largest coordinate of primitive or instance i of the world: primitives first. *size: the longest side of its
- * box. */
+/* Largest coordinate of item i of the world, primitives first, then instances. *size: longest side of its box. */
 static float item_reach(const SceneView *view, uint i, float *size)
 {
     const Object *world = &view->objects[0];
@@ -24,7 +23,7 @@ static float item_reach(const SceneView *view, uint i, float *size)
     } else {
         const Instance *instance = &view->instances[i - world->primitive_count];
         const Object *object = &view->objects[instance->object];
-        box = box_empty(); /* of one primitive, which stands for all */
+        box = box_empty(); /* of one primitive, representative of the object */
         if (object->primitive_count > 0) {
             Box inner = primitive_box(view, object->first_primitive + object->primitive_count / 2u);
             box = box_transform(&inner, instance->world_from_object);
@@ -42,7 +41,7 @@ static int float_order(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* No ray of the camera starts further out, but for an orthographic one's. */
+/* Upper bound of the coordinates of camera ray origins, except for an orthographic camera. */
 static float camera_place_reach(const Camera *camera)
 {
     const float *m = camera->world_from_camera.m;
@@ -65,11 +64,11 @@ float ray_reach_inner(const SceneView *view, uint instance_count)
     return inner * WORTHWHILE < all ? inner : all;
 }
 
-/* Few are up to so many, and up to this part of all. */
+/* Upper limits of the number of strays: absolute, and as a fraction 1 / STRAYS_PART of all items. */
 #define STRAYS_MOST 64u
 #define STRAYS_PART 8u
 
-/* Puts `reach` among the `kept` largest, in falling order. */
+/* Inserts `reach` into the `kept` largest, in descending order. */
 static void largest_insert(float *largest, uint kept, float reach)
 {
     if (!(reach > largest[kept - 1u]))

@@ -1,4 +1,4 @@
-/* A list of steps while an integrator records it. */
+/* Records the list of steps of an integrator. */
 #ifndef TWINLIGHT_BACKEND_STEP_RECORDER_H
 #define TWINLIGHT_BACKEND_STEP_RECORDER_H
 
@@ -9,21 +9,23 @@ typedef struct Recorder {
     size_t count, capacity;
 } Recorder;
 
-/* `capacity`: the most steps that will be recorded. */
+/* `capacity`: maximum number of steps. */
 bool recorder_init(Recorder *recorder, size_t capacity, Error *error);
 
+/* Append a step without arguments, a kernel step, or a STEP_SKIP_IF_IDLE to step `target`. */
 void recorder_step(Recorder *recorder, StepKind kind);
 void recorder_kernel(Recorder *recorder, unsigned kernel, bool live_only);
 void recorder_skip(Recorder *recorder, size_t target);
 
-/* Up to `segments` segments of a walk: rays, the kernel for what they meet, and, but at the last vertex where nothing
- * is drawn, the one that goes on; KERNEL_COUNT: the first does. */
+/* Records a walk of up to `segments` segments: trace rays, `shade` the hits and, except after the last segment,
+ * `extend` the path. KERNEL_COUNT for `extend`: `shade` does both. */
 void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned extend);
 
-/* The list that was recorded, whose steps it now owns: `path_words` words a path, with rays, hits, shadow rays and
- * splats. What else an integrator keeps it adds to words_per_item. */
+/* The recorded list, which takes ownership of the steps: `path_words` words per path, rays, hits, shadow rays and
+ * splats. An integrator adds further buffers to words_per_item. */
 StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count);
 
+/* Frees the steps. Safe on {0} and twice. */
 void step_list_destroy(StepList *list);
 
 #endif

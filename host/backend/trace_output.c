@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* Rows of the picture: tid of the trace. */
+/* Row of the span in the diagram: the trace's tid. */
 static uint span_row(const BackendSpan *span)
 {
     return span->track == SPAN_COMPUTE ? 1u : span->track == SPAN_COPY ? 2u : 3u + span->lane;

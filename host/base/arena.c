@@ -30,7 +30,7 @@ void *arena_alloc(Arena *arena, size_t size, Error *error)
         }
         fresh->used = 0;
         fresh->size = capacity;
-        /* A block of its own goes behind the chunk that still has room. */
+        /* A large block gets a chunk of its own, behind the first one, which still has room. */
         ArenaChunk **link = chunk && capacity == needed ? &chunk->next : &arena->chunks;
         fresh->next = *link;
         *link = fresh;

@@ -1,4 +1,4 @@
-/* Memory that lives and dies together: many small blocks, freed all at once. */
+/* Arena allocator: many small blocks that are freed all at once. */
 #ifndef TWINLIGHT_BASE_ARENA_H
 #define TWINLIGHT_BASE_ARENA_H
 
@@ -13,13 +13,13 @@ typedef struct Arena {
     size_t bytes; /* handed out so far */
 } Arena;
 
-/* `size` bytes aligned for any plain type, not cleared. NULL with `error` filled when memory is out. */
+/* Returns `size` bytes, aligned for any plain type and not cleared; NULL with `error` filled when out of memory. */
 void *arena_alloc(Arena *arena, size_t size, Error *error);
 
-/* A NUL-terminated copy of length characters. */
+/* Returns a NUL-terminated copy of `length` characters; NULL with `error` filled when out of memory. */
 const char *arena_text(Arena *arena, const char *text, size_t length, Error *error);
 
-/* Frees everything; the arena is empty and usable again. Safe on {0} and twice. */
+/* Frees all blocks; the arena is then empty and can be used again. Safe on {0} and twice. */
 void arena_destroy(Arena *arena);
 
 #endif

@@ -38,7 +38,7 @@ void *array_grow(Array *array, size_t count, Error *error)
         return NULL;
     }
     size_t needed = array->count + count;
-    /* An empty array gets memory too: NULL means failure. */
+    /* Allocates even for zero elements: NULL means failure. */
     if (needed > array->capacity || !array->data) {
         size_t larger = array->capacity + array->capacity / 2 + 1;
         if (!array_reserve(array, needed > larger ? needed : larger, error))

@@ -16,11 +16,11 @@ typedef struct Array {
 void array_init(Array *array, size_t element_size);
 void array_destroy(Array *array);
 
-/* Appends `count` zeroed elements and returns the first of them, or NULL with `error` filled when memory is out.
- * Pointers into the array are invalid afterwards. */
+/* Appends `count` zeroed elements and returns the first of them; NULL with `error` filled when out of memory.
+ * Invalidates pointers into the array. */
 void *array_grow(Array *array, size_t count, Error *error);
 
-/* Makes room for `count` elements in all without adding any. */
+/* Makes room for `count` elements in total; adds none. */
 bool array_reserve(Array *array, size_t count, Error *error);
 
 /* Element i as a T. */

@@ -1,4 +1,4 @@
-/* What this program was built from and runs on, in words, for reports of measurements. */
+/* Commit, compiler and machine as text, for benchmark reports. */
 #ifndef TWINLIGHT_BASE_BUILD_INFO_H
 #define TWINLIGHT_BASE_BUILD_INFO_H
 
@@ -7,7 +7,7 @@
 /* "3d7bc78", "3d7bc78-dirty", or "unknown" for a build outside a repository. */
 const char *build_commit(void);
 
-/* "GCC 12.2.0", "Clang 14.0.6"; and whether assertions are off. */
+/* For example "GCC 12.2.0" or "Clang 14.0.6", and whether assertions are on. */
 const char *build_compiler(void);
 
 /* "Intel Xeon ..., 8 processors, 32 GiB, Linux 6.1". */

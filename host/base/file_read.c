@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* 0, or the errno that says why the file is not read. */
+/* 0, or the errno of why the file is refused. */
 static int status_refusal(const struct stat *status, size_t limit)
 {
     if (S_ISDIR(status->st_mode))

@@ -1,4 +1,4 @@
-/* Files that are only read, and whole ones into memory. */
+/* Opens files for reading, and reads whole files into memory. */
 #ifndef TWINLIGHT_BASE_FILE_READ_H
 #define TWINLIGHT_BASE_FILE_READ_H
 
@@ -10,7 +10,7 @@
 typedef struct FileOpened {
     int descriptor; /* the caller closes it */
     size_t size;
-    dev_t device; /* with inode: which file it is, whatever its name */
+    dev_t device; /* with `inode`, identifies the file whatever its name */
     ino_t inode;
 } FileOpened;
 
@@ -19,17 +19,17 @@ typedef struct FileData {
     size_t size;
 } FileData;
 
-/* Opens a regular file of at most `limit` bytes. Folders, devices and pipes are refused, so that reading ends. Errors
- * stand at `place` (a file of NULL: at none) and name the path. */
+/* Opens a regular file of at most `limit` bytes. Folders, devices and pipes are refused, because reading them may never
+ * end. Errors name the path and are reported at `place` (place.file may be NULL). */
 bool file_open(const char *path, size_t limit, SourcePlace place, FileOpened *file, Error *error);
 
-/* The same, and reads it. */
+/* Opens the file as above, reads all of it and closes it. */
 bool file_read(const char *path, size_t limit, SourcePlace place, FileData *file, Error *error);
 
-/* Reads a stream of at most `limit` bytes to its end: a pipe or a file. `name` is for errors. */
+/* Reads a stream (pipe or file) of at most `limit` bytes to its end. `name` is used in errors. */
 bool file_read_stream(int descriptor, const char *name, size_t limit, FileData *file, Error *error);
 
-/* "cannot read PATH: ..." for an errno. Returns false. */
+/* Sets "cannot read PATH: ..." for the errno `failure`. Returns false. */
 bool file_read_error(const char *path, int failure, SourcePlace place, Error *error);
 
 #endif

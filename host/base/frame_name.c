@@ -6,7 +6,7 @@
 
 #define DIGITS "0123456789"
 
-/* The length of the place that begins here; 0: none does. */
+/* Length of the placeholder that begins here, 0 if there is none. */
 static size_t place_length(const char *text)
 {
     if (text[0] != '%')

@@ -1,4 +1,4 @@
-/* Keys of what does not change. */
+/* Hashing of byte strings. */
 #ifndef TWINLIGHT_BASE_HASH_H
 #define TWINLIGHT_BASE_HASH_H
 
@@ -7,7 +7,7 @@
 
 #define HASH_START 0xcbf29ce484222325u
 
-/* FNV-1a of 64 bits (Fowler, Noll, Vo) continued from `hash`, which is HASH_START or an earlier result. */
+/* 64-bit FNV-1a (Fowler, Noll, Vo), continued from `hash`, which is HASH_START or an earlier result. */
 static inline uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
 {
     const unsigned char *p = bytes;

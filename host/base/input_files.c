@@ -12,7 +12,7 @@ typedef struct InputFile {
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static InputFile *files;
 
-/* Without memory for it the file is not noted; the scene will not be read much further either. */
+/* When out of memory the file is not recorded; reading the scene will fail soon anyway. */
 void input_file_note(int descriptor)
 {
     struct stat status;

@@ -9,12 +9,12 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A signal that comes no later than this after the first is a repetition of it. */
+/* Signals within this time of the first count as repetitions of it. */
 #define REPEAT_NANOSECONDS 1000000000ull
 
-/* Atomic, for worker threads poll it; a handler may touch it because it is lock-free. */
+/* Atomic because worker threads poll it, lock-free because a signal handler sets it. */
 static atomic_int interrupt_seen;
-static atomic_ullong first_time; /* nanoseconds; 0: none yet */
+static atomic_ullong first_time; /* nanoseconds; 0: no signal yet */
 _Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LLONG_LOCK_FREE == 2,
                "a signal handler may only touch lock-free atomics");
 
@@ -25,7 +25,8 @@ static unsigned long long now_nanoseconds(void)
     return (unsigned long long)now.tv_sec * 1000000000ull + (unsigned long long)now.tv_nsec;
 }
 
-/* A limit that has been met, or a pipe that nobody reads, is met again by every write: it asks only once. */
+/* After a failed write (file size limit, closed pipe) every later write raises the signal again, so these signals never
+ * end the program at once. */
 static bool is_of_writes(int signal_number)
 {
     return signal_number == SIGPIPE || signal_number == SIGXFSZ;

@@ -1,8 +1,8 @@
-/* Signals that end a rendering: SIGINT, SIGTERM, SIGHUP, SIGXFSZ (a file has come to the limit of its size) and SIGPIPE
- * (whoever read the messages is gone). The first asks the program to write what it has and end. One of the first three
- * a second later or more ends it at once, without temporary files; sooner it is taken for the same request, for
- * `timeout` and terminals signal a process and its group. Signals that are ignored when the program begins stay ignored
- * (nohup, and jobs in the background of a script). */
+/* Signals that end a rendering: SIGINT, SIGTERM, SIGHUP, SIGXFSZ (file size limit reached) and SIGPIPE (the reader of
+ * the messages is gone). The first one asks the program to write what it has and end. A later SIGINT, SIGTERM or SIGHUP
+ * ends it at once and removes its temporary files, if more than a second has passed; sooner it counts as the same
+ * request, because `timeout` and terminals signal both a process and its group. Signals that are ignored at startup
+ * stay ignored (nohup, background jobs of a script). */
 #ifndef TWINLIGHT_BASE_INTERRUPT_H
 #define TWINLIGHT_BASE_INTERRUPT_H
 
@@ -13,7 +13,7 @@
 /* Installs the handlers. */
 bool interrupt_install(Error *error);
 
-/* Points to 0, and to 1 after a signal. */
+/* Points to a flag that is 0, and 1 after a signal. */
 const atomic_int *interrupt_flag(void);
 
 #endif

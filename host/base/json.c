@@ -54,7 +54,7 @@ static void json_escaped(JsonWriter *json, const char *text)
     fputc('"', json->stream);
 }
 
-/* Comma, line, indent and key before a value. */
+/* Writes comma, line break, indent and key, as needed before a value. */
 static void json_prefix(JsonWriter *json, const char *key)
 {
     if (!json->empty)

@@ -1,7 +1,8 @@
-/* Writes JSON (RFC 8259) to a stream: the caller opens, names and closes, the writer sets commas, indents and escapes.
+/* JSON writer (RFC 8259). The caller opens and closes objects and arrays and names values; the writer takes care of
+ * commas, indentation and escapes.
  *
- * Inside an object every value needs a key; inside an array the key is NULL. Numbers that JSON cannot express (NaN,
- * infinities) are written as null. */
+ * Inside an object every value needs a key; inside an array the key is NULL. NaN and infinities, which JSON cannot
+ * express, are written as null. */
 #ifndef TWINLIGHT_BASE_JSON_H
 #define TWINLIGHT_BASE_JSON_H
 
@@ -12,7 +13,7 @@
 typedef struct JsonWriter {
     FILE *stream;
     int depth;
-    bool empty; /* nothing yet in the innermost object or array */
+    bool empty; /* the innermost object or array has no element yet */
 } JsonWriter;
 
 void json_init(JsonWriter *json, FILE *stream);
@@ -22,7 +23,7 @@ void json_object_end(JsonWriter *json);
 void json_array_begin(JsonWriter *json, const char *key);
 void json_array_end(JsonWriter *json);
 
-/* `value` is UTF-8; bytes that are not become U+FFFD. NULL is written as null. */
+/* `value` is UTF-8; each invalid byte becomes U+FFFD. NULL is written as null. */
 void json_string(JsonWriter *json, const char *key, const char *value);
 void json_number(JsonWriter *json, const char *key, double value);
 void json_integer(JsonWriter *json, const char *key, int64_t value);

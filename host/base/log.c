@@ -52,7 +52,7 @@ unsigned long log_warning_count(void)
     return count;
 }
 
-/* The mutex is held. */
+/* The caller holds the mutex. */
 static void line_write(const char *line)
 {
     if (log_sink)
@@ -63,7 +63,7 @@ static void line_write(const char *line)
 
 static void log_write(LogLevel level, const char *where, const char *text)
 {
-    char line[2304]; /* 512 of where, 1536 of text */
+    char line[2304]; /* 512 for the place, 1536 for the text */
     snprintf(line, sizeof line, "%s%s: %s", where, LEVEL_NAMES[level], text);
     text_make_printable(line);
     pthread_mutex_lock(&log_mutex);

@@ -42,7 +42,7 @@ void vector_cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* False when v has no direction. Scaled first, so that nothing under- or overflows. */
+/* False if v has no direction. Scales first, to avoid underflow and overflow. */
 static bool normalize3(double v[3])
 {
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));

@@ -29,7 +29,7 @@ static uint64_t name_hash(const char *name)
     return hash ^ (hash >> 29);
 }
 
-/* The slot that holds `name`, or the empty one where it belongs. */
+/* The slot that holds `name`, or else the empty slot where it belongs. */
 static size_t slot_find(const NameTable *table, const char *name)
 {
     size_t mask = table->slot_count - 1;
@@ -70,7 +70,7 @@ bool name_table_add(NameTable *table, const char *name, uint value, Error *error
     NameEntry *entry = array_grow(&table->entries, 1, error);
     if (!entry)
         return false;
-    /* The new entry is looked for by its hash alone: until its slot is set, no slot leads to it. */
+    /* slot_find cannot find the new entry itself, because no slot refers to it yet; it returns an empty slot. */
     size_t slot = slot_find(table, name);
     *entry = (NameEntry){.name = name, .value = value};
     table->slots[slot] = (uint)(table->entries.count - 1);
@@ -112,7 +112,7 @@ int name_distance(const char *a, const char *b, int limit)
     return row[m] < limit ? row[m] : limit;
 }
 
-/* How far a name may be from a word of this length to be what was meant. */
+/* Largest edit distance at which a name is suggested for a word of this length. */
 static int distance_allowed(const char *wanted)
 {
     size_t length = strnlen(wanted, NAME_COMPARED);

@@ -1,4 +1,4 @@
-/* A table from names to indices (open addressing), and the search for the known name nearest to a misspelt one. */
+/* Hash table from names to indices (open addressing), and the search for the known name nearest to a misspelt one. */
 #ifndef TWINLIGHT_BASE_NAME_TABLE_H
 #define TWINLIGHT_BASE_NAME_TABLE_H
 
@@ -22,20 +22,19 @@ void name_table_destroy(NameTable *table);
 /* The value of `name`, or NONE. */
 uint name_table_find(const NameTable *table, const char *name);
 
-/* Adds `name`, which must not be in the table. */
+/* Adds `name`, which must not be in the table. False when out of memory. */
 bool name_table_add(NameTable *table, const char *name, uint value, Error *error);
 
-/* Writes "a, b, c ..." (the first names that fit) into out[size]. "none" for an empty table. */
+/* Writes "a, b, c ..." with as many of the first names as fit into out[size]; "none" for an empty table. */
 void name_table_list(const NameTable *table, char *out, size_t size);
 
-/* Least number of insertions, deletions and substitutions of characters that turn a into b (Levenshtein), at most
- * `limit`. Names are cut at 63 characters. */
+/* Edit distance of a and b (Levenshtein), at most `limit`. Only the first 63 characters of a name are compared. */
 int name_distance(const char *a, const char *b, int limit);
 
-/* The name of `names` (count of them) that is nearest to `wanted`, or NULL when none is near enough to be meant. */
+/* The name among `names` that is nearest to `wanted`, or NULL if none is near enough to be a likely typo. */
 const char *name_nearest(const char *wanted, const char *const *names, size_t count);
 
-/* The same for a table's names. */
+/* The same for the names of a table. */
 const char *name_table_nearest(const NameTable *table, const char *wanted);
 
 #endif

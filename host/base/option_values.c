@@ -10,7 +10,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Reads the decimal digits at *text and moves behind them. Values that do not fit become UINT64_MAX. */
+/* Reads decimal digits at *text and advances past them. Values that do not fit become UINT64_MAX. */
 static bool read_whole(const char **text, uint64_t *value)
 {
     if (!is_digit(**text))
@@ -36,7 +36,7 @@ bool option_whole(const char *option, const char *text, uint64_t low, uint64_t h
     return true;
 }
 
-/* Reads a decimal number at *text and moves behind it. strtod alone would also take blanks, hexadecimal, inf and
+/* Reads a decimal number at *text and advances past it. Plain strtod would also accept blanks, hexadecimal, inf and
  * nan. */
 static bool read_number(const char **text, double *value)
 {
@@ -84,7 +84,7 @@ bool option_seconds(const char *option, const char *text, double *seconds, Error
     return true;
 }
 
-/* `count` whole numbers with `separator` between them and nothing around them. */
+/* Reads `count` whole numbers separated by `separator`, with nothing around them. */
 static bool read_list(const char *text, char separator, int count, int *values)
 {
     for (int i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-/* Strict reading of the values of command-line options. Every function reads the whole of `text` or fails with an
- * Error that names the option, the value and what is accepted. `option` is the name without dashes. */
+/* Strict parsing of option values. Every function must consume all of `text`; otherwise it fails with an Error that
+ * names the option, the value and what is accepted. `option` is the name without dashes. */
 #ifndef TWINLIGHT_BASE_OPTION_VALUES_H
 #define TWINLIGHT_BASE_OPTION_VALUES_H
 
@@ -7,13 +7,13 @@
 
 #include <stdint.h>
 
-/* A decimal whole number, low <= value <= high. */
+/* A decimal integer, low <= value <= high. */
 bool option_whole(const char *option, const char *text, uint64_t low, uint64_t high, uint64_t *value, Error *error);
 
 /* A decimal number with optional fraction and exponent, low <= value <= high. */
 bool option_number(const char *option, const char *text, double low, double high, double *value, Error *error);
 
-/* A positive time of at most a year with its unit, 30s, 10m, 2h or 1.5h, in seconds. */
+/* A positive duration of at most a year with its unit (30s, 10m, 2h, 1.5h), in seconds. */
 bool option_seconds(const char *option, const char *text, double *seconds, Error *error);
 
 /* WxH, each 1 ... OPTION_SIZE_MAX. */
@@ -22,10 +22,10 @@ bool option_resolution(const char *option, const char *text, int size[2], Error 
 /* x0,y0,x1,y1 with x0 < x1 and y0 < y1, each 0 ... OPTION_SIZE_MAX. */
 bool option_crop(const char *option, const char *text, int crop[4], Error *error);
 
-/* The widest film: the square of this is below 2^32 - 1, so every pixel has a 32-bit index that is not NONE. */
+/* Largest width and height: its square is below 2^32 - 1, so every pixel has a 32-bit index that is not NONE. */
 #define OPTION_SIZE_MAX 65535
 
-/* s,t of a bidirectional strategy: s >= 0 vertices from the light, t >= 1 from the camera, two at least. */
+/* s,t of a bidirectional strategy: s >= 0 vertices from the light, t >= 1 from the camera, s + t >= 2. */
 bool option_strategy(const char *option, const char *text, unsigned strategy[2], Error *error);
 
 #endif

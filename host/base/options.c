@@ -7,25 +7,25 @@
 #include <stdio.h>
 #include <string.h>
 
-/* getopt_long's return value for option i without a letter of its own. */
+/* getopt_long returns OPTION_CODE + i for option i if it has no letter. */
 #define OPTION_CODE 256
 
 static const OptionSpec HELP = {"help", 'h', NULL, "print this and exit"};
 
-/* What pbrt calls an option, where a command has it. --help does not list these. */
+/* pbrt's names of options, accepted where a command has the option. --help does not list them. */
 static const struct {
     const char *alias, *name;
 } ALIASES[] = {{"nthreads", "threads"}, {"outfile", "output"}, {"spp", "samples"}};
 
 #define ALIAS_COUNT (sizeof ALIASES / sizeof ALIASES[0])
 
-/* Option i, which is --help behind all others. */
+/* Option i; --help comes last. */
 static const OptionSpec *spec_at(const OptionTable *table, int i)
 {
     return i < table->count ? &table->specs[i] : &HELP;
 }
 
-/* getopt's two tables. */
+/* getopt_long's long and short options. */
 typedef struct GetoptTables {
     struct option longs[OPTION_SPECS_MAX + ALIAS_COUNT + 1];
     char letters[2 + 3 * OPTION_SPECS_MAX];
@@ -73,7 +73,7 @@ static int spec_index(const OptionTable *table, int code)
     return -1;
 }
 
-/* A long option that is none, or the beginning of several. */
+/* Reports a long option that is unknown or an ambiguous abbreviation. */
 static void name_refuse(const OptionTable *table, const char *word, Error *error)
 {
     const char *names[OPTION_SPECS_MAX];
@@ -103,7 +103,7 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
         error_fix(error, "see twinlight %s --help", table->command);
 }
 
-/* What getopt_long refused: `code` is its return value, `word` the argument it was reading. */
+/* Reports what getopt_long refused: `code` is its return value, `word` the argument it was reading. */
 static void options_refuse(const OptionTable *table, int code, const char *word, Error *error)
 {
     int index = optopt ? spec_index(table, optopt) : -1;
@@ -150,7 +150,7 @@ OptionsEnd options_parse(const OptionTable *table, int argc, char **argv, Option
     bool help = false;
     getopt_tables_fill(&tables, table);
     opterr = 0;
-    optind = 0; /* glibc: start afresh */
+    optind = 0; /* glibc: restart the scan */
     for (;;) {
         int code = getopt_long(argc, argv, tables.letters, tables.longs, NULL);
         if (code == -1)

@@ -1,18 +1,17 @@
-/* Options and operands of a command line, GNU style: long options (which may be shortened while they stay unique), a
- * few letters, operands anywhere, "--" ends the options. One table describes a command's options to the parser and to
- * --help, which every command has. */
+/* Command-line parsing, GNU style: long options (abbreviations allowed while unambiguous), a few letters, operands
+ * anywhere, "--" ends the options. One table per command drives both the parser and --help, which every command has. */
 #ifndef TWINLIGHT_BASE_OPTIONS_H
 #define TWINLIGHT_BASE_OPTIONS_H
 
 #include "base/error.h"
 
-/* Of one command, --help among them. */
+/* Maximum number of options of a command, --help included. */
 #define OPTION_SPECS_MAX 64
 
 typedef struct OptionSpec {
     const char *name; /* without dashes */
     char letter; /* 0: none */
-    const char *argument; /* what --help calls the value; NULL: takes none; "[FILE]": may be left out */
+    const char *argument; /* name of the value in --help; NULL: takes none; "[FILE]": optional */
     const char *help;
 } OptionSpec;
 
@@ -22,24 +21,24 @@ typedef struct OptionTable {
     const char *summary;
     const OptionSpec *specs;
     int count; /* < OPTION_SPECS_MAX */
-    const char *footer; /* NULL or text after the options */
+    const char *footer; /* text after the options, or NULL */
 } OptionTable;
 
-/* Takes option `index` of the table. `value` is NULL when none was given. */
+/* Sets option `index` of the table. `value` is NULL if none was given. */
 typedef bool (*OptionSetter)(void *context, int index, const char *value, Error *error);
 
 typedef enum OptionsEnd {
-    OPTIONS_WRONG, /* with an error */
+    OPTIONS_WRONG, /* failed, `error` filled */
     OPTIONS_READ,
-    OPTIONS_HELPED /* --help was among them and the help has been printed on standard output */
+    OPTIONS_HELPED /* --help was given and has been printed on standard output */
 } OptionsEnd;
 
-/* Calls `set` for every option of argv[1 ...] in order and moves the operands to the end of argv, from
- * *first_operand on. Stops at the first failure. Not thread-safe (getopt_long). */
+/* Calls `set` for every option of argv[1 ...] in order and moves the operands to the end of argv, where they begin at
+ * *first_operand. Stops at the first failure. Not thread-safe (getopt_long). */
 OptionsEnd options_parse(const OptionTable *table, int argc, char **argv, OptionSetter set, void *context,
                          int *first_operand, Error *error);
 
-/* The scene of a command that takes one: the only operand. */
+/* Gets the only operand of a command that takes one scene; fails if there are none or several. */
 bool options_scene(const OptionTable *table, int argc, char **argv, int first_operand, const char **scene,
                    Error *error);
 

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Where `path` leads: a rename replaces the file and not a symbolic link to it, whether the file is there or not. */
+/* Resolves symbolic links, whether or not the target exists: a rename must replace the file, not the link. */
 static bool target_set(OutputFile *file, const char *path, Error *error)
 {
     if (!path_target(path, file->path))
@@ -33,7 +33,7 @@ bool output_file_begin(OutputFile *file, const char *path, Error *error)
         return error_errno(error, "write", path);
     }
     if (exists && !S_ISREG(status.st_mode)) {
-        /* A device or pipe must be written to, not replaced. */
+        /* A device or pipe is written to, not replaced. */
         file->descriptor = open(file->path, O_WRONLY | O_CLOEXEC);
         return file->descriptor >= 0 || error_errno(error, "write", path);
     }
@@ -48,7 +48,7 @@ bool output_file_begin(OutputFile *file, const char *path, Error *error)
     return true;
 }
 
-/* Has the folder's entry for `path` survive a power failure. Where that is not supported, it is as safe as it gets. */
+/* Makes the new directory entry survive a power failure. Errors are ignored: not every file system supports this. */
 static void folder_synchronize(const char *path)
 {
     char folder[PATH_MAX];
@@ -60,8 +60,8 @@ static void folder_synchronize(const char *path)
     close(descriptor);
 }
 
-/* Synchronizes before it renames: else a power failure may leave the new name with nothing in it. Closes after it has
- * renamed: the lock keeps other processes from removing the file. What a close could report, fsync has. */
+/* fsync comes before rename: otherwise a power failure may leave an empty file under the new name. close comes after,
+ * because the lock keeps other processes from removing the file; fsync has already reported any error close could. */
 static bool temporary_commit(OutputFile *file)
 {
     if (fsync(file->descriptor) != 0 || rename(file->temporary, file->path) != 0)

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* As many as Linux follows. */
+/* Linux's own limit. */
 #define LINKS_MAX 40
 
 bool path_ends(const char *path, const char *ending)
@@ -32,7 +32,7 @@ void path_folder(const char *path, char folder[PATH_MAX])
         snprintf(folder, PATH_MAX, "%.*s", (int)(length > 1 ? length - 1 : 1), path);
 }
 
-/* path = FOLDER/NAME, false with errno when that is too long. */
+/* path = FOLDER/NAME; false with errno set if that is too long. */
 static bool path_join(char path[PATH_MAX], const char *folder, const char *name)
 {
     const char *slash = folder[0] && folder[strlen(folder) - 1] == '/' ? "" : "/";
@@ -43,7 +43,7 @@ static bool path_join(char path[PATH_MAX], const char *folder, const char *name)
     return false;
 }
 
-/* Puts where the symbolic link `path` leads in its place. */
+/* Replaces `path`, a symbolic link, by its target `link`. */
 static bool link_follow(char path[PATH_MAX], const char *link)
 {
     char folder[PATH_MAX];
@@ -55,7 +55,8 @@ static bool link_follow(char path[PATH_MAX], const char *link)
     return path_join(path, folder, link);
 }
 
-/* target = the name in its folder, where that is there. */
+/* For a file that does not exist: target = its name in its resolved folder, or the path unchanged if the folder does
+ * not exist either. */
 static bool missing_target(const char *path, char target[PATH_MAX])
 {
     char folder[PATH_MAX], real[PATH_MAX];

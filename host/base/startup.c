@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* Bytes of stack: what is asked for, and what it takes to render a scene. */
+/* Bytes of stack: requested, and the least that rendering a scene needs. */
 #define STACK_WANTED ((rlim_t)8 << 20)
 #define STACK_LEAST ((rlim_t)1 << 20)
 

@@ -1,12 +1,11 @@
-/* What the program needs of its process before anything else. */
+/* Prepares the process before anything else runs. */
 #ifndef TWINLIGHT_BASE_STARTUP_H
 #define TWINLIGHT_BASE_STARTUP_H
 
 #include "base/error.h"
 
-/* Opens standard streams that are closed on /dev/null, so that no message lands in a file that is opened later and gets
- * their number; gives the stack, and those of threads that libraries start, room to grow. False when the system does
- * not let it. */
+/* Opens closed standard streams on /dev/null, so that no file opened later gets their descriptors and, with them, the
+ * messages. Raises the stack limit, also for threads started by libraries. False if the system does not permit this. */
 bool startup_prepare(Error *error);
 
 #endif

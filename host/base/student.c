@@ -5,15 +5,15 @@
 #define STEPS_MAX 500
 #define TINY 1e-300
 #define PRECISION 1e-15
-#define BISECTIONS 64 /* more than a double has bits */
+#define BISECTIONS 64 /* more than the 53 bits of a double's significand */
 
-/* The continued fraction of the incomplete beta function (DLMF 8.17.22) by the modified method of Lentz, for
+/* Continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated by the modified Lentz method, for
  * x < (a + 1) / (a + b + 2), where it converges fast. */
 static double beta_fraction(double a, double b, double x)
 {
     double c = 1.0, d = 0.0, value = 1.0;
     for (int i = 0; i < STEPS_MAX; ++i) {
-        int pair = i / 2; /* every second term has a form of its own */
+        int pair = i / 2; /* even and odd terms have different formulas */
         double m = pair, numerator;
         if (i == 0)
             numerator = 1.0;
@@ -32,7 +32,8 @@ static double beta_fraction(double a, double b, double x)
     return value - 1.0;
 }
 
-/* I_x(a, b), the regularised incomplete beta function; y = 1 - x, which may be too small for a subtraction. */
+/* I_x(a, b), the regularised incomplete beta function. y = 1 - x is passed separately, because it may be too small to
+ * be computed by subtraction. */
 static double beta_regularised(double a, double b, double x, double y)
 {
     double front = exp(lgamma(a + b) - lgamma(a) - lgamma(b) + a * log(x) + b * log(y));

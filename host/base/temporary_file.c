@@ -14,15 +14,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Attempts at a name nobody has, or at a file that is not taken for a stray before it is locked. */
+/* Attempts to find an unused name and to lock the file before another process takes it for a stray. */
 #define ATTEMPTS_MAX 100
 
-/* Room for ".PROCESS-NUMBER~" behind a name. */
+/* Room for the suffix ".PROCESS-NUMBER~". */
 #define SUFFIX_MAX 32
 
-/* ---- what a signal unlinks --------------------------------------------------------------------------------------- */
+/* ---- files to unlink on a signal --------------------------------------------------------------------------------- */
 
-/* Files written at a time: image or PNG, and a list of bad chains. Beyond, files are left to the next process. */
+/* Files that may be open at a time: image or PNG, and a list of bad chains. A signal does not unlink further ones; they
+ * become strays. */
 #define NAMES_MAX 8
 
 typedef enum NameState { NAME_FREE, NAME_CHANGING, NAME_VALID } NameState;
@@ -78,9 +79,9 @@ static bool is_temporary_of(const char *entry, const char *name)
     return end > number && strcmp(end, "~") == 0;
 }
 
-/* Unlinks a file that nobody holds the lock of. A process number would say less: it may have been given to another
- * process since, or belong to another machine that writes to the same folder. The kernel drops a lock with its process,
- * and locks are shared by the machines of a network file system. Where a file system has none, strays stay. */
+/* Unlinks a file whose lock nobody holds. A process id would be less reliable: it may have been reused, or belong to
+ * another machine that writes to the same folder. The kernel releases locks when a process ends, and machines share the
+ * locks of a network file system. On a file system without locks, strays are kept. */
 static void stray_remove(int folder, const char *name)
 {
     struct stat status;
@@ -107,7 +108,7 @@ static void strays_remove(const char *path)
 
 /* ---- creation ---------------------------------------------------------------------------------------------------- */
 
-/* Locks a new file; false when another process took it for a stray before that. Without locks there are no strays. */
+/* Locks a new file; false if another process removed it as a stray first. On file systems without locks nobody does. */
 static bool lock_new(int descriptor)
 {
     struct stat status;
@@ -123,7 +124,7 @@ int temporary_file_create(const char *path, char name[PATH_MAX])
     for (int attempt = 0; attempt < ATTEMPTS_MAX; ++attempt) {
         snprintf(name, PATH_MAX, "%.*s.%ld-%u~", PATH_MAX - SUFFIX_MAX, path, (long)getpid(),
                  atomic_fetch_add(&counter, 1u));
-        name_keep(name); /* before it exists, for a signal may come at any time */
+        name_keep(name); /* before the file exists, because a signal may arrive at any time */
         int descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0 && lock_new(descriptor))
             return descriptor;

@@ -12,7 +12,7 @@ static int digit_of(char c)
     return c >= '0' && c <= '9' ? c - '0' : -1;
 }
 
-/* What a decimal number consists of: (-1)^negative mantissa 10^exponent, `exact` unless digits were left out. */
+/* A parsed decimal number: (-1)^negative mantissa 10^exponent; `exact` unless digits were dropped. */
 typedef struct Decimal {
     uint64_t mantissa;
     int exponent;
@@ -68,9 +68,9 @@ static bool decimal_scan(const char *text, size_t length, Decimal *d)
 static const double POWERS[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/* The decimal as a correctly rounded float by one rounding to double and one to float, or false where that may go
- * wrong: Clinger's fast path (W. D. Clinger, "How to Read Floating Point Numbers Accurately", PLDI 1990) needs
- * mantissa and power exact in double; the second rounding errs only when the double lies halfway between floats. */
+/* Correctly rounded float by one rounding to double and one to float; false where that might be wrong. Clinger's fast
+ * path (W. D. Clinger, "How to Read Floating Point Numbers Accurately", PLDI 1990) needs mantissa and power of ten
+ * exact in double; the second rounding can only be wrong if the double lies halfway between two floats. */
 static bool decimal_fast(const Decimal *d, float *value)
 {
     if (!d->exact || d->mantissa > (UINT64_C(1) << 53) || d->exponent < -22 || d->exponent > 22)
@@ -85,7 +85,7 @@ static bool decimal_fast(const Decimal *d, float *value)
     return true;
 }
 
-/* Any decimal; the C library rounds correctly but wants a terminated string. */
+/* Converts any decimal by strtof, which rounds correctly but needs a terminated string. */
 static NumberStatus decimal_slow(const char *text, size_t length, float *value)
 {
     char small[128];

@@ -1,4 +1,5 @@
-/* Numbers from text: exact, fast, and the same in every locale. */
+/* Parsing of numbers: correctly rounded and fast. Needs the C locale, which is in force because nothing calls
+ * setlocale. */
 #ifndef TWINLIGHT_BASE_TEXT_NUMBER_H
 #define TWINLIGHT_BASE_TEXT_NUMBER_H
 
@@ -6,14 +7,14 @@
 
 typedef enum NumberStatus {
     NUMBER_OK,
-    NUMBER_MALFORMED, /* something else than [+-] digits [. digits] [e [+-] digits], "nan" and "inf" among it */
-    NUMBER_OVERFLOW /* finite as written, but beyond the type's range */
+    NUMBER_MALFORMED, /* not [+-] digits [. digits] [e [+-] digits]; includes "nan" and "inf" */
+    NUMBER_OVERFLOW /* well-formed and finite, but beyond the type's range */
 } NumberStatus;
 
-/* All of text[0 .. length) as a float, correctly rounded. */
+/* Converts all of text[0 .. length) to a float, correctly rounded. NUMBER_MALFORMED also when out of memory. */
 NumberStatus number_float(const char *text, size_t length, float *value);
 
-/* All of text[0 .. length) as a 32-bit decimal integer. */
+/* Converts all of text[0 .. length) to a 32-bit integer. */
 NumberStatus number_integer(const char *text, size_t length, int *value);
 
 #endif

@@ -29,7 +29,7 @@ void text_window_close(TextWindow *window)
     *window = (TextWindow){.descriptor = -1};
 }
 
-/* Moves what is still wanted to the start of the buffer. */
+/* Moves the unread text to the start of the buffer and returns its length. */
 static size_t text_keep(TextWindow *window)
 {
     size_t kept = (size_t)(window->end - window->position);

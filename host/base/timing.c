@@ -15,5 +15,5 @@ uint64_t timing_peak_memory(void)
     struct rusage usage;
     if (getrusage(RUSAGE_SELF, &usage) != 0)
         return 0;
-    return (uint64_t)usage.ru_maxrss * 1024u; /* Linux counts in KiB */
+    return (uint64_t)usage.ru_maxrss * 1024u; /* Linux reports KiB */
 }

@@ -4,10 +4,10 @@
 
 #include <stdint.h>
 
-/* Seconds since some fixed moment; never runs backwards. */
+/* Monotonic time in seconds from an arbitrary origin. */
 double timing_now(void);
 
-/* Largest resident memory of this process so far, bytes. */
+/* Peak resident memory of this process, bytes. */
 uint64_t timing_peak_memory(void);
 
 #endif

@@ -25,8 +25,8 @@ void error_color(float relative, float rgb[3])
         rgb[1] = 0.0f;
         return;
     }
-    /* Three decades, 0.001 ... 1, to 0 ... 1. The first channel rises over the whole range, the second over its upper
-     * half, the third over its last quarter: black, red, yellow, white, or black, blue, cyan, white. */
+    /* Maps three decades, 0.001 ... 1, to [0, 1]. The first channel rises over the whole range, the second over its
+     * upper half, the third over its last quarter: black, red, yellow, white, or black, blue, cyan, white. */
     float t = fabsf(relative) > 1e-3f ? fminf(log10f(fabsf(relative)) / 3.0f + 1.0f, 1.0f) : 0.0f;
     float ramp[3] = {t, fmaxf(2.0f * t - 1.0f, 0.0f), 0.6f * fmaxf(4.0f * t - 3.0f, 0.0f)};
     for (int c = 0; c < 3; ++c)
@@ -35,7 +35,7 @@ void error_color(float relative, float rgb[3])
 
 void magnitude_color(float magnitude, float rgb[3])
 {
-    /* sRGB, with even steps of lightness. */
+    /* sRGB, in even steps of lightness */
     static const double STOPS[][3] = {
         {0.0, 0.0, 0.02}, {0.32, 0.07, 0.48}, {0.72, 0.22, 0.47}, {0.98, 0.54, 0.38}, {0.99, 0.99, 0.75}};
     const int last = (int)(sizeof STOPS / sizeof STOPS[0]) - 1;
@@ -50,7 +50,7 @@ static double pixel_mean(const float *rgb)
     return ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3.0;
 }
 
-/* out: one relative error a pixel. */
+/* Fills `out` with one relative error per pixel. */
 static void relative_fill(const float *image, const float *reference, size_t pixels, float *out)
 {
     double sum = 0.0;

@@ -1,4 +1,4 @@
-/* LDR-FLIP. Section and equation numbers are those of Andersson et al. 2020. */
+/* LDR-FLIP. Sections and equations are those of Andersson et al. 2020. */
 #include "compare/display_error.h"
 
 #include "image/plane_filter.h"
@@ -8,7 +8,8 @@
 
 #define PI 3.14159265358979323846
 
-/* Section 4.1 and table 1: contrast sensitivity as a sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees. */
+/* Section 4.1 and table 1: contrast sensitivity in the spatial domain, a sum of terms a sqrt(pi / b) exp(-pi^2 x^2 /
+ * b), x in degrees. */
 #define SENSITIVITY_B_MAX 0.04
 static const double SENSITIVITY[3][2][2] = {
     {{1.0, 0.0047}, {0.0, 1e-5}}, {{1.0, 0.0053}, {0.0, 1e-5}}, {{34.1, 0.04}, {13.5, 0.025}}};
@@ -17,21 +18,21 @@ static const double SENSITIVITY[3][2][2] = {
 #define COLOR_KNEE 0.4 /* p_c */
 #define COLOR_KNEE_ERROR 0.95 /* p_t */
 #define FEATURE_EXPONENT 0.5 /* q_f */
-#define FEATURE_DEGREES 0.082 /* w, width of edges that the eye finds */
+#define FEATURE_DEGREES 0.082 /* w, width of detected edges in degrees */
 
-/* What is kept of one picture. */
+/* Planes stored per image. */
 enum { LIGHTNESS, GREEN_RED, BLUE_YELLOW, ACHROMATIC, EDGES, POINTS, KEPT_PLANES };
 enum { SCRATCH_PLANES = 3 };
 
 typedef struct FlipImage {
     int width, height;
-    double *planes[KEPT_PLANES]; /* L*, a*, b* after filtering and Hunt's adjustment; lightness before; features */
+    double *planes[KEPT_PLANES]; /* filtered L*, a*, b* with Hunt's adjustment; unfiltered lightness; features */
     double *scratch[SCRATCH_PLANES];
 } FlipImage;
 
 /* ---- colour spaces ---------------------------------------------------------------------------------------------- */
 
-/* Linear sRGB to XYZ over the white point's; the matrix by rows, its sums the white point. */
+/* Linear sRGB to XYZ relative to the white point, which is the matrix's row sums. */
 static const double XYZ_FROM_RGB[3][3] = {{10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
                                           {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
                                           {1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0}};
@@ -44,7 +45,7 @@ static void rgb_to_relative_xyz(const double rgb[3], double xyz[3])
     }
 }
 
-/* By Cramer's rule. */
+/* Inverse of rgb_to_relative_xyz, by Cramer's rule. */
 static void relative_xyz_to_rgb(const double relative[3], double rgb[3])
 {
     const double(*m)[3] = XYZ_FROM_RGB;
@@ -60,7 +61,7 @@ static void relative_xyz_to_rgb(const double relative[3], double rgb[3])
         rgb[j] = (cofactor[0][j] * xyz[0] + cofactor[1][j] * xyz[1] + cofactor[2][j] * xyz[2]) / determinant;
 }
 
-/* YCxCz, an opponent space that is linear in light. */
+/* YCxCz, a linear opponent colour space. */
 static void rgb_to_opponent(const double rgb[3], double out[3])
 {
     double xyz[3];
@@ -77,7 +78,7 @@ static void opponent_to_rgb(const double in[3], double rgb[3])
     relative_xyz_to_rgb(xyz, rgb);
 }
 
-/* CIE 1976 L*a*b*, a* and b* times 0.01 L* (Hunt's effect: colours fade in the dark, equation 4). */
+/* CIE 1976 L*a*b* with a* and b* multiplied by 0.01 L* (Hunt effect: dark colours look less colourful; equation 4). */
 static void rgb_to_hunt_lab(const double rgb[3], double lab[3])
 {
     const double delta = 6.0 / 29.0;
@@ -90,15 +91,16 @@ static void rgb_to_hunt_lab(const double rgb[3], double lab[3])
     lab[2] = 0.01 * lab[0] * 200.0 * (f[1] - f[2]);
 }
 
-/* The HyAB distance (equation 5) to the power q_c. */
+/* HyAB distance (equation 5) to the power of q_c. */
 static double color_distance(const double a[3], const double b[3])
 {
     return pow(fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]), COLOR_EXPONENT);
 }
 
-/* ---- one picture ------------------------------------------------------------------------------------------------ */
+/* ---- one image --------------------------------------------------------------------------------------------------- */
 
-/* A channel as the eye resolves it at this distance; normalised over the taps within the radius. */
+/* Filters a channel by the contrast sensitivity at this viewing distance, normalised over the taps within the
+ * radius. */
 static void sensitivity_filter(FlipImage *image, int channel, double pixels_per_degree, double *plane)
 {
     int radius = (int)ceil(3.0 * sqrt(SENSITIVITY_B_MAX / (2.0 * PI * PI)) * pixels_per_degree);
@@ -122,7 +124,7 @@ static void sensitivity_filter(FlipImage *image, int channel, double pixels_per_
         plane[i] = sum[i] / weights;
 }
 
-/* Positive taps to a sum of 1, negative ones to -1. */
+/* Scales the positive taps to a sum of 1 and the negative ones to a sum of -1. */
 static void taps_balance(FilterTaps *filter)
 {
     double positive = 0.0, negative = 0.0;
@@ -132,7 +134,7 @@ static void taps_balance(FilterTaps *filter)
         filter->taps[i] /= filter->taps[i] > 0.0 ? positive : negative;
 }
 
-/* The length of the gradient that `along` finds in the lightness. */
+/* Magnitude of the gradient of the lightness, with derivative filter `along` and smoothing filter `across`. */
 static void gradient_fill(FlipImage *image, const FilterTaps *along, const FilterTaps *across, double *out)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -143,7 +145,7 @@ static void gradient_fill(FlipImage *image, const FilterTaps *along, const Filte
         out[i] = hypot(image->scratch[1][i], image->scratch[2][i]);
 }
 
-/* Section 4.2: edges by the first and points by the second derivative of a Gaussian. */
+/* Section 4.2: detects edges by the first and points by the second derivative of a Gaussian. */
 static void features_fill(FlipImage *image, double pixels_per_degree)
 {
     double sigma = 0.5 * FEATURE_DEGREES * pixels_per_degree;
@@ -187,9 +189,9 @@ static void colors_fill(FlipImage *image, const float *rgb, double pixels_per_de
     }
 }
 
-/* ---- two pictures ----------------------------------------------------------------------------------------------- */
+/* ---- two images -------------------------------------------------------------------------------------------------- */
 
-/* The largest distance that two colours of the display can have: green's and blue's. */
+/* Largest possible distance of two display colours: green to blue. */
 static double color_distance_max(void)
 {
     const double green[3] = {0.0, 1.0, 0.0}, blue[3] = {0.0, 0.0, 1.0};
@@ -199,7 +201,7 @@ static double color_distance_max(void)
     return color_distance(green_lab, blue_lab);
 }
 
-/* Section 4.1.4 (equation 6): small differences over most of 0 ... 1. */
+/* Section 4.1.4 (equation 6): maps small distances to most of [0, 1]. */
 static double color_error(double distance, double largest)
 {
     double knee = COLOR_KNEE * largest;
@@ -221,7 +223,7 @@ static double pixel_flip(const FlipImage *image, const FlipImage *reference, dou
     return pow(color_error(color_distance(a, b), largest), 1.0 - feature); /* equation 8 */
 }
 
-/* Cuts `memory` into the planes of both pictures. */
+/* Divides `memory` into the planes of both images. */
 static void images_lay_out(FlipImage images[2], int width, int height, double *memory)
 {
     size_t pixels = (size_t)width * (size_t)height;

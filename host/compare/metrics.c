@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RELATIVE_FLOOR 0.01 /* keeps relative errors of dark values finite */
-#define TRIMMED_SHARE 1000 /* one pixel in so many is left out */
+#define RELATIVE_FLOOR 0.01 /* keeps the relative error of dark values finite */
+#define TRIMMED_SHARE 1000 /* one in this many pixels is left out */
 
 typedef struct Pixel {
     double image[3], reference[3];
 } Pixel;
 
-/* Values that are not finite count as 0; returns whether there was one. */
+/* Replaces values that are not finite by 0; returns whether there were any. */
 static bool pixel_clean(const float *from, double out[3])
 {
     bool damaged = false;
@@ -52,7 +52,7 @@ static void metrics_add(Metrics *metrics, const Pixel *p)
     }
 }
 
-/* Sets both relMSEs from every pixel's; sorts the array. */
+/* Sets both relMSEs from the values of all pixels; sorts the array. */
 static void rel_mse_set(Metrics *metrics, double *values, size_t count)
 {
     size_t dropped = count / TRIMMED_SHARE;
@@ -70,7 +70,7 @@ int metrics_block_edge(int i, int n, int size)
     return (int)(whole + (twice_rest > n || (twice_rest == n && whole % 2 != 0)));
 }
 
-/* The mean of one block over pixels and channels. */
+/* Mean of a block over pixels and channels. */
 static double block_mean(const float *rgb, int width, int x0, int x1, int y0, int y1)
 {
     double sum = 0.0;
@@ -109,7 +109,7 @@ static bool blocks_compare(const float *image, const float *reference, int width
     floor_value = RELATIVE_FLOOR * fabs(floor_value / (double)count);
     for (size_t i = 0; i < count; ++i) {
         double difference = fabs(means[i] - means[count + i]);
-        /* A reference that is black throughout makes any difference infinite and none 0. */
+        /* for a reference that is black everywhere, equal blocks give 0 and others infinity */
         double relative = difference > 0.0 ? difference / (fabs(means[count + i]) + floor_value) : 0.0;
         metrics->block_mean += relative / (double)count;
         metrics->block_max = fmax(metrics->block_max, relative);
@@ -118,7 +118,7 @@ static bool blocks_compare(const float *image, const float *reference, int width
     return true;
 }
 
-/* Sums over all pixels become means. */
+/* Turns sums over all pixels into means. */
 static void metrics_divide(Metrics *metrics, size_t pixels)
 {
     double values = 3.0 * (double)pixels;

@@ -1,14 +1,14 @@
-/* Figures of error of one picture against a reference. All sums in double.
+/* Error metrics of an image against a reference, computed in double precision.
  *
- * I and R: linear RGB values of image and reference; a mean goes over all values (pixels x 3) unless it says blocks.
+ * I and R are linear RGB values of image and reference; means are over all values (pixels x 3), except for blocks.
  *   MSE     mean (I - R)^2
  *   relMSE  mean (I - R)^2 / (R^2 + 0.01)
- *   relMSE trimmed: the same without the floor(0.1 %) of the pixels (mean of the three channels) with the largest value
+ *   relMSE trimmed: the same without the floor(0.1 %) of pixels with the largest value (mean of the three channels)
  *   MAPE    mean |I - R| / (|R| + 0.01)
  *   SMAPE   mean |I - R| / ((|I| + |R|) / 2 + 0.01)
  *   blocks  N x N cells with edges round(i * size / N) (halves to even); with a and r the means of a cell over its
- *           pixels and channels and r0 the mean of all r: |a - r| / (|r| + 0.01 |r0|), largest and mean over the cells
- * Values that are not finite count as 0 and are counted. */
+ *           pixels and channels and r0 the mean of all r: |a - r| / (|r| + 0.01 |r0|), maximum and mean over the cells
+ * Values that are not finite count as 0, and pixels that have them are counted. */
 #ifndef TWINLIGHT_COMPARE_METRICS_H
 #define TWINLIGHT_COMPARE_METRICS_H
 
@@ -24,23 +24,23 @@ typedef struct Metrics {
     double smape;
     double mean, mean_reference; /* of all values */
     double mean_rgb[3], mean_reference_rgb[3];
-    int blocks; /* N used: no more than the shorter side */
+    int blocks; /* N used: at most the shorter side */
     double block_max, block_mean;
     size_t not_finite, not_finite_reference; /* pixels with a NaN or infinite channel */
 } Metrics;
 
-/* image, reference: width x height x 3 linear RGB. blocks >= 1. Fails when memory is out. */
+/* image, reference: width x height x 3 linear RGB. blocks >= 1. Fails when out of memory. */
 bool metrics_compute(const float *image, const float *reference, int width, int height, int blocks, Metrics *metrics,
                      Error *error);
 
-/* square / (reference^2 + 0.01): what relMSE is the mean of. */
+/* square / (reference^2 + 0.01), the term of relMSE. */
 double metrics_relative_square(double square, double reference);
 
-/* Where block i of n begins in `size` pixels: round(i size / n), halves to even. */
+/* First pixel of block i of n along a side of `size` pixels: round(i size / n), halves to even. */
 int metrics_block_edge(int i, int n, int size);
 
-/* means[j * n + i]: of block (i, j) of n x n of a picture of width x height x 3, over pixels and channels. n is no more
- * than the shorter side. */
+/* means[j * n + i] = mean over pixels and channels of block (i, j) of n x n, for an image of width x height x 3. n must
+ * not exceed the shorter side. */
 void metrics_block_means(const float *rgb, int width, int height, int n, double *means);
 
 #endif

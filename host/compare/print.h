@@ -1,4 +1,4 @@
-/* What `twinlight compare` prints. */
+/* Output of `twinlight compare`. */
 #ifndef TWINLIGHT_COMPARE_PRINT_H
 #define TWINLIGHT_COMPARE_PRINT_H
 
@@ -12,11 +12,11 @@ typedef struct Comparison {
     Metrics metrics;
     DisplaySettings display;
     DisplayError display_error;
-    bool tested; /* both have halves */
-    ZTest test; /* when they have */
+    bool tested; /* both renderings have half-images */
+    ZTest test; /* valid if `tested` */
 } Comparison;
 
-/* On standard output. */
+/* Print to standard output. */
 void comparison_print_text(const Comparison *comparison);
 void comparison_print_json(const Comparison *comparison);
 

@@ -11,7 +11,7 @@
 #define C1 (0.01 * 0.01)
 #define C2 (0.03 * 0.03)
 
-/* Local moments under the window, a plane each. */
+/* Planes of local moments under the window. */
 enum { MEAN_X, MEAN_Y, SQUARE_X, SQUARE_Y, PRODUCT, SCRATCH, PLANES };
 
 static double luma(const float *rgb)
@@ -23,7 +23,7 @@ static double luma(const float *rgb)
     return sum;
 }
 
-/* Equation 13 of the paper at one place. */
+/* Equation 13 of the paper for one pixel. */
 static double similarity(double *const planes[PLANES], size_t i)
 {
     double x = planes[MEAN_X][i], y = planes[MEAN_Y][i];

@@ -5,28 +5,28 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define NEIGHBOURS 2 /* tiles on either side whose correlation is averaged */
+#define NEIGHBOURS 2 /* tiles on each side over which the correlation is averaged */
 
-/* EXRs hold 24 bits: differences of that size are none. */
+/* Relative difference that is attributed to the rounding of files to 24 bits. */
 #define ROUNDING 0x1p-20
 
-/* Sums of x^2 and of x^4 over pixels. */
+/* Sums of x^2 and x^4 over pixels. */
 typedef struct Moments {
     double squares, fourths;
 } Moments;
 
-/* One channel of a tile of both renderings. */
+/* One channel of a tile in both renderings. */
 typedef struct TileValue {
     double mean[2];
     Moments halves; /* of d, over both renderings */
     Moments between; /* of the difference between the renderings */
-    double of_sums; /* sum over the renderings of (sum of d)^2 */
+    double of_sums; /* sum over both renderings of (sum of d)^2 */
     int pixels;
 } TileValue;
 
 typedef struct Tiles {
     int columns, rows;
-    TileValue *values; /* 3 a tile */
+    TileValue *values; /* 3 per tile */
 } Tiles;
 
 static double finite_or_zero(float x)
@@ -40,7 +40,7 @@ static void moments_add(Moments *moments, double x)
     moments->fourths += x * x * x * x;
 }
 
-/* Degrees of freedom of a sum of squares. */
+/* Estimated degrees of freedom of a sum of squares. */
 static double moments_freedom(const Moments *moments)
 {
     return moments->fourths > 0.0 ? 3.0 * moments->squares * moments->squares / moments->fourths - 2.0 : HUGE_VAL;
@@ -81,7 +81,7 @@ static void tiles_fill(Tiles *tiles, const float *const halves[2][2], int width,
     }
 }
 
-/* The mean of R around a tile. */
+/* Mean of R over the tiles around a tile. */
 static double tile_correlation(const Tiles *tiles, int column, int row)
 {
     double sum = 0.0;
@@ -102,7 +102,7 @@ static double tile_correlation(const Tiles *tiles, int column, int row)
     return count > 0 ? fmax(sum / count, 1.0) : 1.0;
 }
 
-/* The probability of a difference as large as the tile's; negative when there is nothing to test. */
+/* Probability of a difference at least as large as the tile's; negative if there is nothing to test. */
 static double tile_probability(const TileValue *tile, double neighbours)
 {
     double difference = tile->mean[0] - tile->mean[1], squares = tile->halves.squares;
@@ -116,7 +116,7 @@ static double tile_probability(const TileValue *tile, double neighbours)
     return student_two_sided(difference / sqrt(variance), fmin(fmax(freedom, 1.0), most));
 }
 
-/* Every tile's probabilities; returns how many were tested. */
+/* Computes the probabilities of all tiles; returns the number of values tested. */
 static size_t probabilities_fill(const Tiles *tiles, ZTest *test, double *probabilities)
 {
     size_t count = 0;

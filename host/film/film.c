@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Octaves between the mean radiance of the picture and one unit of a sum. All light of T samples is T times the mean,
- * and in the worst case one pixel or even one path has all of it; what is read of a sum is at most 2^62 units
- * (camera/film_sum.h). So nothing is too bright for a film of 2^(62 - 26) = 2^36 samples: 2^20 pixels of 65,536
- * samples, or two hours of 10^7 samples a second. At the other end a contribution vanishes below 2^-27 of the mean, and
- * rounding changes one of 2^-20 by less than 1 %. Where the pilot has missed light, so that the true mean is 2^k times
- * as bright, 2^(36 - k) samples are left to the brightest pixel that there could be. */
+/* Octaves from the mean radiance of the image down to the quantum. The contributions of T samples add up to T times the
+ * mean, in the worst case all in one pixel or even one path, and a sum shows at most 2^62 quanta (camera/film_sum.h).
+ * So no pixel is too bright for a film of 2^(62 - 26) = 2^36 samples: 2^20 pixels of 65,536 samples, or two hours of
+ * 10^7 samples per second. At the other end, a contribution vanishes below 2^-27 of the mean, and rounding changes one
+ * of 2^-20 by less than 1 %. If the pilot has missed light and the true mean is 2^k times as large, the brightest
+ * possible pixel has room for 2^(36 - k) samples. */
 #define QUANTUM_OCTAVES 26
 #define QUANTUM_EXPONENT_DEFAULT (-30)
 
@@ -43,7 +43,7 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
     return error_memory(error, pixels * (3 * sizeof *film->sums + sizeof *film->counts), "the film");
 }
 
-/* Three sums of zero for every pixel, where there are none yet. */
+/* Allocates three zero sums per pixel, unless already there. */
 static bool sums_reserve(const Film *film, int64_t **sums, const char *what, Error *error)
 {
     size_t bytes = film_pixels(film) * 3 * sizeof **sums;
@@ -110,7 +110,7 @@ void film_quantum_set(Film *film, double mean)
     film->quantum_exponent = exponent - 1 - QUANTUM_OCTAVES;
 }
 
-/* Whoever only reads may have one, too. */
+/* A film's view, also for reading a const film. */
 static FilmView film_view(const Film *film)
 {
     return (FilmView){.width = (uint)film->width,
@@ -134,20 +134,20 @@ static FilmView film_view(const Film *film)
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 {
     const FilmView view = film_view(film);
-    for (uint t = 0; t < count; ++t)
-        film_splat_add(&view, splats, stride, t);
+    for (uint item = 0; item < count; ++item)
+        film_splat_add(&view, splats, stride, item);
 }
 
-/* ---- sums from elsewhere ----------------------------------------------------------------------------------------- */
+/* ---- adding films ------------------------------------------------------------------------------------------------ */
 
-/* Most sums of a short pass are zero, and looking is faster than adding. */
+/* Most sums of a short pass are zero, and testing is cheaper than adding. */
 static void word_add(ulong *sum, ulong units)
 {
     if (units != 0)
         film_sum_add(sum, units);
 }
 
-/* The sums of every depth, of the kinds that both have. */
+/* Adds the sums per depth, of the kinds and depths that both films have. */
 static void depths_add(const FilmView *film, const FilmView *from, size_t pixels)
 {
     uint kinds = film->depth_kinds < from->depth_kinds ? film->depth_kinds : from->depth_kinds;
@@ -161,7 +161,7 @@ static void depths_add(const FilmView *film, const FilmView *from, size_t pixels
         }
 }
 
-/* Adds pixels [0, pixels) of another film. */
+/* Adds pixels [0, pixels) of another film, of the sums that both have. */
 static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
 {
     for (size_t i = 0; i < pixels; ++i) {
@@ -242,7 +242,7 @@ void film_clear(Film *film)
     film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
 }
 
-/* ---- what is read ------------------------------------------------------------------------------------------------ */
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 int64_t film_sum_shown(int64_t sum)
 {
@@ -258,7 +258,7 @@ int64_t film_sum_rounded(double units)
     return units < 0.0 ? -(int64_t)SUM_FULL : (int64_t)SUM_FULL;
 }
 
-/* Whether one of the pixel's three sums is full; none of sums that are not there. */
+/* Whether one of a pixel's three sums is full; false if `sums` is NULL. */
 static bool pixel_full(const int64_t *sums, size_t pixel)
 {
     for (size_t c = 3 * pixel; sums && c < 3 * pixel + 3; ++c)
@@ -284,7 +284,7 @@ size_t film_empty_pixels(const Film *film)
     return empty;
 }
 
-/* What a unit of the light's sums is worth. */
+/* Radiance per unit of the light sums. */
 static double light_unit_of(const Film *film, double unit)
 {
     size_t pixels = film_pixels(film);
@@ -300,7 +300,7 @@ FilmScale film_scale_of(const Film *film, float scale)
     return (FilmScale){unit, light_unit_of(film, unit)};
 }
 
-/* Value v, three a pixel, of a part of the film. */
+/* Resolves value v (3 per pixel) of a part of the film. */
 static float value_resolve(const Film *film, FilmPart part, FilmScale scale, size_t v)
 {
     uint32_t count = film->counts[v / 3];

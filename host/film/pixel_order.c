@@ -3,18 +3,18 @@
 #include <math.h>
 #include <stdint.h>
 
-/* 1 / p and 1 / p^2 of the plastic number p = 1.3247...: how much later in the order the next pixel is, and the one
- * below. */
+/* 1 / p and 1 / p^2 of the plastic number p = 1.3247...: distance in the order, as a fraction of n, from a pixel to its
+ * right neighbour and to the one below. */
 #define STEP_RIGHT 0.7548776662466927
 #define STEP_DOWN 0.5698402909980532
 
 /* 1 / golden ratio. */
 #define STEP_GOLDEN 0.6180339887498949
 
-/* Among so many numbers there is one without common factor with any of 32 bits. */
+/* This many consecutive numbers always include one coprime to any given 32-bit number. */
 #define CANDIDATES_LEAST 64u
 
-/* The inverse of a modulo n (extended Euclid), 0 < a < n; 0 when they have a common factor. */
+/* Inverse of a modulo n (extended Euclidean algorithm), 0 < a < n; 0 if they are not coprime. */
 static uint inverse(uint a, uint n)
 {
     int64_t before = 0, now = 1;
@@ -32,9 +32,9 @@ static uint inverse(uint a, uint n)
     return (uint)(now < 0 ? now + (int64_t)n : now);
 }
 
-/* Pixel p is visited as number p * t mod n, so t is how much later the next one is, and width * t the one below: t
- * begins at the right part of n and goes on until the latter is right, too, which takes no more than a number for every
- * row. */
+/* Pixel p is visited as number p * t mod n, so its right neighbour comes t and the one below width * t visits later.
+ * The candidates for t start at STEP_RIGHT * n; among them the one whose width * t is nearest to STEP_DOWN * n mod n
+ * wins. Consecutive t move width * t / n by 1 / height, so `height` candidates cover all its values. */
 uint pixel_order_stride(uint width, uint height)
 {
     uint n = width * height, candidates = height > CANDIDATES_LEAST ? height : CANDIDATES_LEAST, best = 1;

@@ -1,5 +1,5 @@
-/* Mean and variance of every pixel of a sequence of pictures of the same thing, each with a weight: the variance of a
- * pixel of picture g is sigma^2 / weight_g (West, "Updating Mean and Variance Estimates", 1979). */
+/* Weighted mean and variance of every pixel over a sequence of images of the same scene: a pixel of image g has
+ * variance sigma^2 / weight_g (West, "Updating Mean and Variance Estimates", 1979). */
 #ifndef TWINLIGHT_FILM_PIXEL_SERIES_H
 #define TWINLIGHT_FILM_PIXEL_SERIES_H
 
@@ -10,23 +10,25 @@
 
 typedef struct PixelSeries {
     size_t pixels;
-    int channels; /* values of a pixel, interleaved */
+    int channels; /* values per pixel, interleaved */
     float *mean; /* pixels x channels */
-    float *spread; /* sum of weight x squared distance from the mean, pixels x channels */
-    float *weight; /* sum, a pixel */
-    unsigned short *pictures; /* in which the pixel had a weight; stays at 65535 */
+    float *spread; /* sum of weight x squared deviation from the mean, pixels x channels */
+    float *weight; /* sum of weights, per pixel */
+    unsigned short *pictures; /* number of images in which the pixel had a weight; saturates at 65535 */
 } PixelSeries;
 
+/* An empty series; fails when out of memory. */
 bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error);
 void pixel_series_destroy(PixelSeries *series);
 
-/* Adds a picture. weights: of every pixel, 0 where it was not seen; NULL: 1. Each times `weight`, > 0. */
+/* Adds an image. `weights`: per pixel, 0 where it was not sampled; NULL: all 1. They are multiplied by `weight` > 0. */
 void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight);
 
-/* sigma^2 of a value of weight 1; 0 before a second picture. value: pixel x channels + channel. */
+/* Estimate of sigma^2, the variance of a value of weight 1; 0 before the second image. value: pixel x channels +
+ * channel. */
 double pixel_series_spread(const PixelSeries *series, size_t value);
 
-/* The estimated variance of a value's weighted mean. */
+/* Estimated variance of a value's weighted mean. */
 double pixel_series_variance(const PixelSeries *series, size_t value);
 
 #endif

@@ -14,16 +14,16 @@
 #define BLACKBODY_KELVIN_MIN 400.0
 #define SPECTRUM_NUMBERS_MAX (1 << 20)
 
-/* XYZ (of luminance 1 for white) to linear sRGB: the inverse of the matrix whose columns are the primaries of ITU-R
- * BT.709 scaled to add up to the white of the D65 table. */
+/* XYZ (white has Y = 1) to linear sRGB: inverse of the matrix whose columns are the ITU-R BT.709 primaries, scaled to
+ * add up to the white point of the D65 table. */
 static const double RGB_FROM_XYZ[3][3] = {{3.2404442914, -1.5371338305, -0.4985298910},
                                           {-0.9692667526, 1.8760122430, 0.0415560485},
                                           {0.0556435197, -0.2040262388, 1.0572268738}};
 
-/* Luminance of linear sRGB: the middle row of the inverse of the above. */
+/* Luminance of linear sRGB: the Y row of the inverse of RGB_FROM_XYZ. */
 static const double LUMINANCE[3] = {0.2126729, 0.7151522, 0.0721750};
 
-/* What the table holds at a whole wavelength: linear between its rows. */
+/* Table entry at an integer wavelength, interpolated linearly between rows. */
 static double cie_value(int nanometre, int column)
 {
     int row = (nanometre - CIE_FIRST) / CIE_STEP;
@@ -32,7 +32,7 @@ static double cie_value(int nanometre, int column)
     return t > 0.0 ? low + t * ((double)CIE_TABLE[row + 1][column] - low) : low;
 }
 
-/* How much channel c of linear sRGB sees of one nanometre. */
+/* Response of channel c of linear sRGB to 1 nm. */
 static double rgb_sensitivity(int nanometre, int c)
 {
     double sum = 0.0;
@@ -41,8 +41,8 @@ static double rgb_sensitivity(int nanometre, int c)
     return sum;
 }
 
-/* The colour of a surface that reflects `spectrum` (1 nm steps) under D65. Dividing by white's own integral makes 1
- * everywhere exactly (1, 1, 1). */
+/* The colour of a surface of reflectance `spectrum` (1 nm steps) under D65. Dividing by the response to white maps a
+ * reflectance of 1 everywhere to exactly (1, 1, 1). */
 static void spectrum_reflectance(const double *spectrum, double rgb[3])
 {
     for (int c = 0; c < 3; ++c) {
@@ -56,8 +56,8 @@ static void spectrum_reflectance(const double *spectrum, double rgb[3])
     }
 }
 
-/* The average that each channel sees under D65. The sensitivities' negative lobes are left out: an index is no light,
- * and an extrapolation would leave its range. */
+/* Average of the spectrum over each channel's response under D65. The negative lobes of the responses are clamped: an
+ * index is not a light, and negative weights would extrapolate beyond its range. */
 static void spectrum_index(const double *spectrum, double rgb[3])
 {
     for (int c = 0; c < 3; ++c) {
@@ -71,7 +71,7 @@ static void spectrum_index(const double *spectrum, double rgb[3])
     }
 }
 
-/* A light's colour at luminance 1, or false when it emits nothing that is seen. */
+/* A light's colour at luminance 1; false if the light emits nothing visible. */
 static bool spectrum_illuminant(const double *spectrum, double rgb[3])
 {
     double luminance = 0.0;
@@ -100,7 +100,8 @@ void color_blackbody(float kelvin, float rgb[3])
     double spectrum[SPECTRUM_SIZE], color[3];
     for (int i = 0; i < SPECTRUM_SIZE; ++i) {
         double micrometre = (CIE_FIRST + i) * 1e-3;
-        /* Relative to the longest wavelength, so that neither end of the range of temperatures over- or underflows. */
+        /* Relative to the longest wavelength, so that neither very low nor very high temperatures over- or
+         * underflow. */
         double x = C2 / (micrometre * 1e-6 * temperature), x_last = C2 / (CIE_LAST * 1e-9 * temperature);
         spectrum[i] = exp(x_last - x) * expm1(-x_last) / expm1(-x) / pow(micrometre, 5.0);
     }
@@ -134,7 +135,7 @@ static bool samples_check(const float *pairs, size_t n, Error *error)
     return true;
 }
 
-/* Samples every nanometre. `extend`: the ends go on outside the given range; else it is 0 there. */
+/* Resamples to 1 nm steps. Outside the given range: the first or last value if `extend`, else 0. */
 static void samples_resample(const float *pairs, size_t n, bool extend, double *spectrum)
 {
     size_t next = 0; /* first pair at or beyond the wavelength */
@@ -178,7 +179,7 @@ bool color_from_samples(const float *wavelength_value_pairs, size_t n, ColorRole
 
 #define SPACES " \t\r\n\f\v"
 
-/* The numbers of one line, whose comment begins with #. */
+/* Reads the numbers of one line; # begins a comment. */
 static bool line_read(char *line, SourcePlace place, Array *numbers, Error *error)
 {
     line[strcspn(line, "#")] = '\0';

@@ -1,15 +1,15 @@
-/* pbrt's named spectra as RGB, so that the measurements themselves need not be carried along.
+/* pbrt's named spectra as RGB constants, so that the measured spectra need not be shipped.
  *
  * The numbers were computed once, at 1 nm over 360-830 nm, from the measurements that pbrt-v4 distributes under these
  * names (illuminants of CIE 15:2004 and the ACES D60; metals' n and k; glasses' n from refractiveindex.info), by the
- * rules of image/color.h: index = average over what each channel sees, light = colour at luminance 1. The exception is
- * D50: the table under that name has the chromaticity (0.3368, 0.3540), not that of D50, (0.3457, 0.3585), so the CIE's
- * daylight formula at 5003 K was taken instead.
+ * rules of image/color.h: an index is averaged over each channel's response, a light has its colour at luminance 1. The
+ * exception is D50: pbrt's table of that name has chromaticity (0.3368, 0.3540) instead of D50's (0.3457, 0.3585), so
+ * the CIE daylight formula at 5003 K was used instead.
  *
- * Metals: with n and k averaged apart, the RGB reflectance would miss the metal's colour, which is what is seen of it.
- * So n is the average, and k solves F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2), where F0 is the colour under D65 of the
- * spectral reflectance at normal incidence, at most 0.999 (gold's red lies outside sRGB: 1.022). Where nothing absorbs
- * (k below 0.01: MgO, TiO2) k is 0 and n = (1 + sqrt F0) / (1 - sqrt F0). */
+ * Metals: averaging n and k separately would not reproduce the colour of the metal's reflectance. So n is the average,
+ * and k solves F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2), where F0 is the colour under D65 of the spectral reflectance
+ * at normal incidence, at most 0.999 (gold's red lies outside sRGB: 1.022). For materials without absorption (k below
+ * 0.01: MgO, TiO2) k is 0 and n = (1 + sqrt F0) / (1 - sqrt F0). */
 #include "image/color.h"
 
 #include <string.h>
@@ -65,7 +65,7 @@ static const NamedSpectrum NAMED_SPECTRA[] = {
 
 static const char *const ROLE_NAMES[] = {"reflectance", "light", "index of refraction"};
 
-/* The sensors that pbrt knows, told by how their names begin. */
+/* Camera sensors known to pbrt, recognised by the prefixes of their names. */
 static bool is_camera(const char *name)
 {
     static const char *const MAKERS[] = {"canon_", "nikon_",   "sony_",      "hasselblad_", "fujifilm_",

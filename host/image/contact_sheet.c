@@ -11,7 +11,7 @@
 #define BACKGROUND 0.03f
 #define INK 0.8f
 
-/* Rows of three pixels from the top, the left one the highest bit. */
+/* Rows of three pixels from top to bottom; the highest bit is the left pixel. */
 static const struct Glyph {
     char character;
     unsigned char rows[GLYPH_HEIGHT];

@@ -1,4 +1,4 @@
-/* OpenEXR through OpenEXRCore: part 0, scanlines or the finest level of tiles, any compression and pixel type. */
+/* OpenEXR decoder on OpenEXRCore: part 0, scanlines or the finest level of tiles, any compression and pixel type. */
 #include "image/decoders.h"
 #include "math/platform.h"
 
@@ -14,15 +14,15 @@
 
 typedef struct ExrReader {
     FILE *file;
-    char message[256]; /* the library's first complaint */
+    char message[256]; /* the library's first error message */
     exr_context_t context;
     exr_decode_pipeline_t decoder;
     bool decoding; /* `decoder` has been initialised */
-    float *chunk_first; /* where the first pixel of the chunk being decoded goes */
+    float *chunk_first; /* destination of the first pixel of the chunk being decoded */
     long long width, height; /* of the data window */
     int first_line;
-    const char *layer; /* whose channels are wanted: "halfA"; NULL: the picture's */
-    bool absent; /* there is no such layer */
+    const char *layer; /* layer to read, e.g. "halfA"; NULL: the main image */
+    bool absent; /* the file has no such layer */
     char layer_names[3][LAYER_NAME_MAX + 3];
     const char *names[4]; /* channels in the order of Image */
     int channels;
@@ -39,7 +39,7 @@ static void exr_message(exr_const_context_t context, exr_result_t code, const ch
                  message ? message : exr_get_default_error_message(code));
 }
 
-/* pread for the library. Fewer bytes than asked for are its business; `report` is left alone, see image/exr.c. */
+/* pread for the library, which handles short reads itself. `report` is not called, see image/exr.c. */
 static int64_t exr_read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                               exr_stream_error_func_ptr_t report)
 {
@@ -78,7 +78,7 @@ static bool exr_has(const exr_attr_chlist_t *list, const char *name)
     return false;
 }
 
-/* The channels of the layer that is wanted. */
+/* Chooses the channels of the requested layer. */
 static bool layer_choose(ExrReader *reader, const exr_attr_chlist_t *list, const char *path, Error *error)
 {
     for (int c = 0; c < 3; ++c) {
@@ -91,7 +91,7 @@ static bool layer_choose(ExrReader *reader, const exr_attr_chlist_t *list, const
     return !reader->absent || image_error(error, path, "it lacks a layer");
 }
 
-/* Which channels make the picture. */
+/* Chooses the channels of the main image. */
 static bool channels_choose(ExrReader *reader, const char *path, Error *error)
 {
     const exr_attr_chlist_t *list = NULL;
@@ -131,7 +131,7 @@ static bool header_read(ExrReader *reader, const char *path, Error *error)
     return channels_choose(reader, path, error);
 }
 
-/* Which channel of the image that of the file is; -1: none. */
+/* Index in Image of the file's channel `name`; -1: not read. */
 static int channel_index(const ExrReader *reader, const char *name)
 {
     for (int c = 0; c < reader->channels; ++c)
@@ -140,7 +140,7 @@ static int channel_index(const ExrReader *reader, const char *name)
     return -1;
 }
 
-/* `count` samples of the file to every `stride`th float. */
+/* Converts `count` samples of the file to floats, `stride` floats apart. */
 static void samples_convert(const uint8_t *in, exr_pixel_type_t type, int count, int stride, float *out)
 {
     for (int i = 0; i < count; ++i, out += stride) {
@@ -154,9 +154,9 @@ static void samples_convert(const uint8_t *in, exr_pixel_type_t type, int count,
     }
 }
 
-/* A decompressed chunk, line by line the lines of its channels, to the image. In place of the library's own function,
- * which in 3.1 takes R for A, G for B of four channels of 16 bits, and crashes where some of three or four are not
- * wanted. */
+/* Copies a decompressed chunk to the image: its lines in order, in each the channels in order. Replaces the library's
+ * own function, which in version 3.1 swaps R with A and G with B for four 16-bit channels, and crashes if some of three
+ * or four channels are not requested. */
 static exr_result_t chunk_unpack(exr_decode_pipeline_t *decoder)
 {
     const ExrReader *reader = decoder->decoding_user_data;
@@ -181,7 +181,7 @@ static exr_result_t chunk_unpack(exr_decode_pipeline_t *decoder)
     return EXR_ERR_SUCCESS;
 }
 
-/* Decodes one chunk whose first pixel is (x, y) of the image. */
+/* Decodes a chunk whose first pixel is (x, y) of the image. */
 static exr_result_t chunk_read(ExrReader *reader, const exr_chunk_info_t *chunk, Image *image, long long x, long long y)
 {
     exr_decode_pipeline_t *decoder = &reader->decoder;
@@ -233,7 +233,8 @@ static exr_result_t tiles_read(ExrReader *reader, Image *image)
     return result;
 }
 
-/* The one compression that the library knows and cannot undo; the other reader finds R G B [A] and Y only. */
+/* Whether the file has DWA compression, which OpenEXRCore 3.1 cannot decode, and the fallback decoder (R G B [A] or Y
+ * only) can read it. */
 static bool is_dwa(const ExrReader *reader)
 {
     exr_compression_t compression = EXR_COMPRESSION_NONE;
@@ -247,8 +248,8 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
     exr_storage_t storage = EXR_STORAGE_SCANLINE;
     if (!header_read(reader, path, error))
         return false;
-    /* Deflate makes 1032 bytes of one at most, of half a pixel each; what DWA makes of a block of 64 pixels it
-     * deflates. */
+    /* Deflate expands at most 1032-fold, and a byte is at most half a pixel (one 16-bit channel). DWA deflates as
+     * little as one such value per block of 64 pixels. */
     const ImageSize size = {reader->width, reader->height, is_dwa(reader) ? 64 * 516 : 516};
     if (!image_allocate_float(reader->file, path, size, reader->channels, image, error))
         return false;
@@ -261,7 +262,7 @@ static bool part_read(ExrReader *reader, const char *path, Image *image, Error *
     return image_error(error, path, reader->message[0] ? reader->message : exr_get_default_error_message(result));
 }
 
-/* Opens the file with the library, reads the channels that reader->layer asks for, and closes it. */
+/* Opens the file with the library, reads the channels of reader->layer, and closes it. */
 static bool exr_read(ExrReader *reader, const char *path, Image *image, Error *error)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;

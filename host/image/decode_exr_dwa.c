@@ -1,12 +1,12 @@
-/* EXR files with DWAA or DWAB compression, which OpenEXRCore 3.1 cannot decode yet: read through the C interface of
- * the C++ library, as 16-bit RGBA. (The compression is lossy; 16 bits are what it is made for.) */
+/* EXR files with DWAA or DWAB compression, which OpenEXRCore 3.1 cannot decode: read as 16-bit RGBA through the C
+ * interface of the C++ library. The compression is lossy and meant for 16-bit data. */
 #include "image/decoders.h"
 
 #include <ImfCRgbaFile.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-/* Where pixel (0, 0) would lie so that (x, y) of the data window lies inside `pixels`. It need not be a real place. */
+/* Base address for which pixel (x, y) of the data window is at `pixels`. The address itself need not be valid. */
 static ImfRgba *frame_origin(ImfRgba *pixels, int x, int y, int width)
 {
     intptr_t offset = ((intptr_t)y * width + x) * (intptr_t)sizeof *pixels;

@@ -1,5 +1,5 @@
-/* Portable float maps: "PF" (RGB) or "Pf" (grey), width, height, a scale whose sign gives the byte order (below 0:
- * little-endian), one white space, then 32-bit floats with the bottom row first. */
+/* Portable float maps: "PF" (RGB) or "Pf" (grey), width, height, a scale whose sign gives the byte order (negative:
+ * little-endian), one whitespace character, then 32-bit floats, bottom row first. */
 #include "image/decoders.h"
 
 #include <math.h>
@@ -37,7 +37,8 @@ bool image_read_pfm(FILE *file, const char *path, Image *image, Error *error)
     char kind = 0, after = 0;
     ImageSize size = {.density = 1};
     double scale = 0.0;
-    /* At most 9 digits a side, so that neither the numbers nor their product overflow. NOLINTNEXTLINE(cert-err34-c) */
+    /* At most 9 digits per side, so that neither the numbers nor their product overflow.
+     * NOLINTNEXTLINE(cert-err34-c) */
     if (fscanf(file, "P%c%9lld%9lld%31lf%c", &kind, &size.width, &size.height, &scale, &after) != 5 ||
         !isfinite(scale) || scale == 0.0)
         return image_error(error, path, "its PFM header is damaged");

@@ -1,4 +1,5 @@
-/* PNG, JPEG, TGA and HDR. image_read has looked at the signature, so none of stb_image's other decoders is reached. */
+/* PNG, JPEG, TGA and HDR decoders of stb_image. image_read has checked the signature, so its other decoders are
+ * unreachable. */
 #include "image/decoders.h"
 
 #include <stb_image.h>
@@ -6,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* stb_image takes a file's end for a run of zeros in places; a read that gets nothing tells a truncated file. Its HDR
- * decoder would then never end: it waits for a header's empty line, and zeros are runs of length 0. Newlines without
- * end finish both. */
+/* stb_image sometimes reads the end of a file as zeros; a read that returns nothing identifies a truncated file. Its
+ * HDR decoder would then loop forever, waiting for the header's empty line or decoding zeros as runs of length 0;
+ * feeding it newlines ends both loops. */
 typedef struct StbSource {
     FILE *file;
     StbKind kind;
@@ -78,7 +79,7 @@ static bool pixels_read(StbSource *source, StbKind kind, bool sixteen_bits, Imag
     return image->data != NULL;
 }
 
-/* What stb_image is asked to give of the channels present: grey without alpha, TGA without alpha (as pbrt). */
+/* Channels to request from stb_image: grey without alpha, TGA without alpha (as pbrt). */
 static int channels_wanted(StbKind kind, int present)
 {
     if (present <= 2)
@@ -86,8 +87,9 @@ static int channels_wanted(StbKind kind, int present)
     return kind == STB_TGA ? 3 : present;
 }
 
-/* PNG: deflate makes 1032 bytes of one at most, each of them eight pixels. JPEG: a bit for a block of 64 pixels at
- * least, 9 for the 1024 of the thinnest sampling. TGA and HDR: runs of 128 in two bytes. */
+/* Upper bound of pixels per byte of a file. PNG: deflate expands at most 1032-fold, to bytes of at most eight pixels.
+ * JPEG: at least one bit per 8 x 8 block, and at least 9 blocks per 1024 pixels for the sparsest sampling factors. TGA
+ * and HDR: runs of at most 128 pixels in two bytes. */
 static long long density(StbKind kind)
 {
     return kind == STB_PNG ? 8 * 1032 : kind == STB_JPEG ? 1024 : 64;

@@ -11,7 +11,7 @@ static float luminance(const float *pixel)
     return rgb_luminance(vec3(pixel[0], pixel[1], pixel[2]));
 }
 
-/* The pixel around (x, y) of median luminance, the lower one of an even number. */
+/* The pixel of median luminance among the 3 x 3 around (x, y), the lower median of an even number. */
 static const float *median_around(const float *rgb, int width, int height, int x, int y)
 {
     const float *sorted[9] = {rgb};

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The library's default; named so that a change of its default does not change our bytes. */
+/* The library's default, set explicitly so that files do not change if the default does. */
 #define EXR_ZIP_LEVEL 4
 
 typedef struct ExrWriter {
@@ -19,8 +19,8 @@ typedef struct ExrWriter {
     const ExrPicture *picture;
     const ExrChannel **channels; /* sorted by name */
     int width, height; /* of the data window */
-    int write_errno; /* of the first write that failed, else 0 */
-    char message[256]; /* the library's last complaint */
+    int write_errno; /* errno of the first failed write; 0: none */
+    char message[256]; /* the library's last error message */
 } ExrWriter;
 
 static void exr_message(exr_const_context_t context, exr_result_t code, const char *message)
@@ -33,8 +33,8 @@ static void exr_message(exr_const_context_t context, exr_result_t code, const ch
     }
 }
 
-/* pwrite for the library, all of it or -1. `report` is not called: the library holds its own lock while it writes the
- * header, and reporting takes that lock again. */
+/* pwrite for the library: writes everything or returns -1. `report` is not called: the library holds its lock while it
+ * writes the header, and reporting would take the lock again. */
 static int64_t exr_write_bytes(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
                                uint64_t offset, exr_stream_error_func_ptr_t report)
 {
@@ -60,7 +60,7 @@ static int channel_compare(const void *a, const void *b)
     return strcmp((*(const ExrChannel *const *)a)->name, (*(const ExrChannel *const *)b)->name);
 }
 
-/* x0 <= x < x1 as EXR's box, whose ends are inside. */
+/* x0 <= x < x1, y0 <= y < y1 as an EXR box, which includes its maximum. */
 static exr_attr_box2i_t box_make(int x0, int y0, int x1, int y1)
 {
     exr_attr_box2i_t box;
@@ -113,7 +113,7 @@ static exr_result_t attribute_set(exr_context_t context, int part, const ExrAttr
     }
 }
 
-/* Those of Rec. 709 and sRGB. */
+/* Primaries and white of Rec. 709 and sRGB. */
 static exr_result_t chromaticities_set(exr_context_t context, int part)
 {
     const exr_attr_chromaticities_t srgb = {.red_x = 0.64f,
@@ -152,15 +152,15 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
 }
 
-/* The largest finite half instead of infinity. */
+/* Clamps to the range of finite half floats; NaN stays. */
 static float half_range(float x)
 {
     const float HALF_MAX = 65504.0f;
     return x > HALF_MAX ? HALF_MAX : x < -HALF_MAX ? -HALF_MAX : x;
 }
 
-/* Points the encoder's channels at lines y ... of the picture. The packing routine takes contiguous planes only, so
- * the lines are gathered into `plane` first. */
+/* Gathers the lines from y on of every channel into `plane` and points the encoder at them: the library's packing
+ * routine only takes contiguous planes. */
 static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder, float *plane, int y, int lines)
 {
     const ExrPicture *picture = writer->picture;
@@ -185,8 +185,8 @@ static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder
 
 typedef exr_result_t (*CompressFunction)(exr_encode_pipeline_t *encoder);
 
-/* A chunk whose size compression does not lower must be stored as it is, for that is how readers tell the two apart.
- * OpenEXR before 3.4.8 stores the compressed bytes when both sizes are equal, which readers take for pixels
+/* A chunk that compression does not shrink must be stored uncompressed, which readers recognise by its size. OpenEXR
+ * before 3.4.8 stores the compressed bytes if both sizes are equal, and readers then misread them as pixels
  * (AcademySoftwareFoundation/openexr issue 2306). */
 static exr_result_t chunk_compress(exr_encode_pipeline_t *encoder)
 {

@@ -56,7 +56,7 @@ float image_value(const Image *image, size_t i)
 bool image_linear_rgb(const Image *image, float **rgb, Error *error)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
-    assert(pixels > 0); /* no empty picture is read: image_size_check */
+    assert(pixels > 0); /* image_size_check refuses empty images */
     float *out = malloc(pixels * 3 * sizeof *out);
     if (!out)
         return error_memory(error, pixels * 3 * sizeof *out, "an image");

@@ -1,10 +1,10 @@
-/* Separable filters over one channel of a picture, in double; beyond its edges the picture repeats its last pixels. */
+/* Separable filters over one channel of an image, in double precision. Edge pixels are repeated beyond the border. */
 #ifndef TWINLIGHT_IMAGE_PLANE_FILTER_H
 #define TWINLIGHT_IMAGE_PLANE_FILTER_H
 
 #define FILTER_RADIUS_MAX 160
 
-/* Taps at -radius ... radius: taps[radius + i] is that of offset i. */
+/* Taps for offsets -radius ... radius: taps[radius + i] belongs to offset i. */
 typedef struct FilterTaps {
     int radius; /* <= FILTER_RADIUS_MAX */
     double taps[2 * FILTER_RADIUS_MAX + 1];
@@ -13,7 +13,7 @@ typedef struct FilterTaps {
 /* taps[radius + i] = exp(-exponent i^2), not normalised. */
 void filter_gaussian(FilterTaps *filter, int radius, double exponent);
 
-/* All taps times `factor`. */
+/* Multiplies all taps by `factor`. */
 void filter_scale(FilterTaps *filter, double factor);
 
 double filter_sum(const FilterTaps *filter);

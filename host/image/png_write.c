@@ -11,16 +11,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The file that is made: on disk or in memory. */
+/* Destination: a file or memory. */
 typedef struct PngWriter {
     OutputFile *file; /* NULL: in memory */
-    int write_errno; /* of a write that failed, else 0 */
+    int write_errno; /* errno of a failed write; 0: none */
     unsigned char *bytes;
     size_t size, capacity;
-    char message[256]; /* why it failed */
+    char message[256]; /* reason of the failure */
 } PngWriter;
 
-/* What it is made from. */
+/* Source of the pixels. */
 typedef struct PngPicture {
     int width, height;
     double exposure; /* factor */
@@ -69,7 +69,7 @@ static void png_flush_nothing(png_structp png)
     (void)png;
 }
 
-/* One linear value to a byte: the code nearest to it; NaN and what is below 0 are 0. */
+/* Nearest sRGB byte of a linear value; NaN and negative values become 0. */
 static unsigned char byte_encode(float linear, double exposure)
 {
     double x = (double)linear * exposure;
@@ -78,7 +78,7 @@ static unsigned char byte_encode(float linear, double exposure)
     return (unsigned char)(color_srgb_encode(x < 1.0 ? x : 1.0) * 255.0 + 0.5);
 }
 
-/* Everything between a png_struct and its end; longjmps out on failure, so it owns no resources. */
+/* Everything between creating and destroying the png_struct. Longjmps out on failure, so it owns no resources. */
 static void png_rows_write(png_structp png, png_infop info, unsigned char *bytes, const PngPicture *picture)
 {
     png_set_IHDR(png, info, (png_uint_32)picture->width, (png_uint_32)picture->height, 8, PNG_COLOR_TYPE_RGB,
@@ -113,7 +113,7 @@ static bool png_encode(PngWriter *writer, const PngPicture *picture)
     return good;
 }
 
-/* ---- whole pictures ---------------------------------------------------------------------------------------------- */
+/* ---- images in memory -------------------------------------------------------------------------------------------- */
 
 typedef struct WholePicture {
     const float *rgb;

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define HEADER_SIZE 26 /* enough for every signature, and for PNG's bit depth at byte 24 */
+#define HEADER_SIZE 26 /* covers every signature, and PNG's bit depth at byte 24 */
 
-/* TGA has no signature: what its header must fulfil. Every other format that stb_image knows fails this. */
+/* TGA has no signature, so its header is checked for plausibility. No other format that stb_image knows passes. */
 static bool is_tga(const unsigned char *header, size_t size)
 {
     return size >= 18 && header[1] <= 1 && ((header[2] >= 1 && header[2] <= 3) || (header[2] >= 9 && header[2] <= 11));
@@ -39,7 +39,7 @@ static bool image_read_kind(FILE *file, const char *path, const unsigned char *h
     return error_fix(error, "use PNG, JPEG, TGA, HDR, EXR or PFM");
 }
 
-/* Opens a regular file and reads its first bytes, of which there are *size. */
+/* Opens a regular file and reads its first *size <= HEADER_SIZE bytes. */
 static FILE *image_open(const char *path, unsigned char header[HEADER_SIZE], size_t *size, Error *error)
 {
     struct stat status;

@@ -1,22 +1,22 @@
-/* Pictures read from files: PNG (8 and 16 bit), JPEG, TGA and Radiance HDR by stb_image, OpenEXR by OpenEXRCore, PFM by
- * hand. */
+/* Reads image files: PNG (8 and 16 bit), JPEG, TGA and Radiance HDR by stb_image, OpenEXR by OpenEXRCore, PFM by own
+ * code. */
 #ifndef TWINLIGHT_IMAGE_READ_H
 #define TWINLIGHT_IMAGE_READ_H
 
 #include "image/image.h"
 
-/* Reads `path`; the kind of file is told by its content, TGA (which has no signature) by its ending. Of an EXR the
+/* Reads `path`. The format is recognised by content, TGA (which has no signature) also by its file name. Of an EXR, the
  * first part's data window and the channels R G B [A] or Y (or the only channel) are read. As in pbrt, the alpha of TGA
- * and of grey pictures is dropped. Fails, naming the path, for what cannot be opened, is damaged, truncated, too large
- * or of another kind. */
+ * and of grey images is dropped. Fails, naming the path, if the file cannot be opened, is damaged, truncated, too large
+ * or of another format. */
 bool image_read(const char *path, Image *image, Error *error);
 
-/* Reads the channels LAYER.R, LAYER.G and LAYER.B of an EXR, layers as `twinlight render` writes them
- * (render/layers.h). *found: whether it has them; false, with an empty image, for every other kind of file. */
+/* Reads the channels LAYER.R, LAYER.G and LAYER.B of an EXR, named as `twinlight render` writes layers
+ * (render/layers.h). Without them, or for another format, *found is false, `image` is empty and the result is true. */
 bool image_read_layer(const char *path, const char *layer, Image *image, bool *found, Error *error);
 
-/* image_read and image_linear_rgb: the file's pixels as linear RGB, *width x *height x 3, in a new array that the
- * caller frees. On failure *rgb is NULL. */
+/* image_read, then image_linear_rgb: *width x *height x 3 floats of linear RGB in a new array that the caller frees. On
+ * failure *rgb is NULL. */
 bool image_read_rgb(const char *path, float **rgb, int *width, int *height, Error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* What the parts of the pbrt importer share while a file is read. */
+/* State shared by the parts of the pbrt importer while a file is read. */
 #ifndef TWINLIGHT_PBRT_CONTEXT_H
 #define TWINLIGHT_PBRT_CONTEXT_H
 
@@ -12,22 +12,21 @@
 
 #include <sys/types.h>
 
-/* Limits that keep hostile files from exhausting memory or stack; no scene met so far comes near them. */
-#define IMPORT_NESTING_MAX 65536 /* AttributeBegin and ObjectBegin */
-#define IMPORT_INCLUDE_MAX 64 /* Include and Import inside each other */
-#define IMPORT_FILES_MAX 65536 /* Include and Import in all */
-#define IMPORT_FILE_BYTES_MAX 0x7ffffffe /* of one file: lines and columns are ints */
-#define IMPORT_ATTRIBUTES_MAX                                                                                          \
-    1024 /* parameters of Attribute directives in force at once: every directive looks at all */
+/* Limits that keep hostile files from exhausting memory or stack; no known scene comes near them. */
+#define IMPORT_NESTING_MAX 65536 /* open scopes: AttributeBegin, ObjectBegin, Import */
+#define IMPORT_INCLUDE_MAX 64 /* depth of Include and Import */
+#define IMPORT_FILES_MAX 65536 /* number of Include and Import */
+#define IMPORT_FILE_BYTES_MAX 0x7ffffffe /* per file: lines and columns are ints */
+#define IMPORT_ATTRIBUTES_MAX 1024 /* parameters of Attribute directives in force; each directive searches all */
 #define IMPORT_COORDINATE_SYSTEMS_MAX 65536
-#define IMPORT_LIGHTS_MAX (1u << 24) /* area lights by instances of emissive objects */
-#define IMPORT_COPIES_MAX (1u << 26) /* vertices of these instances, of which each has its own */
-#define IMPORT_DEPTH_MAX 65536 /* maxdepth, clamped */
+#define IMPORT_LIGHTS_MAX (1u << 24) /* area lights created by instances of emissive objects */
+#define IMPORT_COPIES_MAX (1u << 26) /* vertices of these instances, which each have their own copy */
+#define IMPORT_DEPTH_MAX 65536 /* maxdepth is clamped to this */
 #define IMPORT_COORDINATE_MAX 1e12 /* of a point in world space: products of three must fit a float */
-#define IMPORT_ERRORS_MAX 20 /* of a scene, shown in one run */
-#define IMPORT_FILM_MAX 65535 /* pixels of a film's side */
+#define IMPORT_ERRORS_MAX 20 /* errors of a scene shown in one run */
+#define IMPORT_FILM_MAX 65535 /* width and height of the film, pixels */
 
-/* Instead of an index of a material. */
+/* Used instead of a material index. */
 #define MATERIAL_INTERFACE 0xfffffffeu /* no material: the shape is invisible */
 
 /* Targets of the Attribute directive. */
@@ -37,17 +36,17 @@ enum { ATTRIBUTE_SHAPE, ATTRIBUTE_LIGHT, ATTRIBUTE_MATERIAL, ATTRIBUTE_MEDIUM, A
 typedef struct AreaLightSource {
     const char *kind;
     SourcePlace place;
-    const ParamSet *params; /* its own */
+    const ParamSet *params; /* of AreaLightSource itself */
     const ParamSet *attributes; /* of Attribute "light" */
 } AreaLightSource;
 
-/* What AttributeBegin saves. Pointers lead into the importer's arena. */
+/* What AttributeBegin saves. Pointers refer to the importer's arena. */
 typedef struct GraphicsState {
-    Matrix ctm[2]; /* at the start and the end of the shutter's time */
-    unsigned active_transforms; /* bit i: ctm[i] takes part in transform directives */
+    Matrix ctm[2]; /* at the start and end of the shutter interval */
+    unsigned active_transforms; /* bit i: transform directives apply to ctm[i] */
     bool reverse_orientation;
-    uint material; /* of the scene, MATERIAL_INTERFACE, or NONE: pbrt's default */
-    const char *material_name; /* of NamedMaterial, looked up when a shape uses it; NULL: `material` holds */
+    uint material; /* index in the scene, MATERIAL_INTERFACE, or NONE: pbrt's default */
+    const char *material_name; /* of NamedMaterial, resolved when a shape uses it; NULL: `material` is valid */
     SourcePlace material_place;
     const AreaLightSource *area_light;
     const ParamSet *attributes[ATTRIBUTE_COUNT];
@@ -63,22 +62,22 @@ typedef struct StateSave {
 typedef struct ImportTexture {
     TextureOp *ops;
     uint count;
-    uint program; /* in the scene once used, else NONE */
+    uint program; /* index in the scene once used, else NONE */
 } ImportTexture;
 
-/* Radiance of an area light, or the power that gives it. */
+/* Radiance of an area light, or the power that determines it. */
 typedef struct AreaEmission {
-    float radiance[3]; /* at unit power when by_power */
-    bool by_power; /* radiance of each primitive is divided by pi area (2 pi area when two-sided) */
+    float radiance[3]; /* at unit power if by_power */
+    bool by_power; /* the radiance of each primitive is divided by pi area (2 pi area if two-sided) */
     uint flags; /* LIGHT_TWO_SIDED */
 } AreaEmission;
 
-/* A shape of an object definition that emits light: it joins the world at every instance. */
+/* An emissive shape of an object definition: every instance adds a copy of it to the world. */
 typedef struct EmissiveShape {
     uint kind; /* PRIMITIVE_* */
-    MeshData mesh; /* copies in the arena, in the space of the definition */
+    MeshData mesh; /* copies in the arena, in the definition's space */
     Quadric quadric;
-    Matrix matrix; /* of a quadric */
+    Matrix matrix; /* for a quadric */
     Shape shape;
     AreaEmission emission;
     SourcePlace place;
@@ -86,29 +85,29 @@ typedef struct EmissiveShape {
 } EmissiveShape;
 
 typedef struct ImportObject {
-    uint object; /* of the scene */
-    bool empty; /* nothing but emissive shapes */
-    EmissiveShape *emissive, *last_emissive; /* in the order of the file */
-    Box box; /* of the others */
+    uint object; /* index in the scene */
+    bool empty; /* has only emissive shapes */
+    EmissiveShape *emissive, *last_emissive; /* in file order */
+    Box box; /* bounds of the shapes that do not emit */
 } ImportObject;
 
-/* A file being read, or the text that pbrt_import_text was given. */
+/* An open file, or the text given to pbrt_import_text. */
 typedef struct SourceFile {
     Lexer lexer;
-    bool is_file; /* and not text in memory */
+    bool is_file; /* false for a text in memory */
     dev_t device;
     ino_t inode;
-    bool is_import; /* ends a scope of its own */
-    size_t nesting; /* open AttributeBegin when it began */
+    bool is_import; /* has a scope of its own */
+    size_t nesting; /* number of open AttributeBegin at its start */
 } SourceFile;
 
-/* What has gone wrong so far (pbrt/errors.h). */
+/* Errors so far (pbrt/errors.h). */
 typedef struct ImportErrors {
     Error latest; /* not printed yet */
     int count;
-    bool definition_failed; /* so that what is missing may be a consequence */
-    bool missing; /* the error on its way is about something that is missing */
-    bool world_order; /* a directive stood on the wrong side of WorldBegin: said once */
+    bool definition_failed; /* a later error may be a consequence */
+    bool missing; /* the current error is about something missing */
+    bool world_order; /* a directive was on the wrong side of WorldBegin; reported once */
 } ImportErrors;
 
 typedef struct PbrtImport {
@@ -116,16 +115,16 @@ typedef struct PbrtImport {
     ImportOptions options;
     Error *error;
     ImportErrors errors;
-    Vec3 offset; /* taken off all places in the world before they are rounded (scene/center.h); first 0 */
-    Box world; /* of all shapes there, less the offset */
-    Arena arena; /* names, textures, area lights: until the import ends */
+    Vec3 offset; /* subtracted from world positions before they are rounded (scene/center.h); 0 on the first reading */
+    Box world; /* bounds of the world's shapes, after subtracting the offset */
+    Arena arena; /* names, textures, area lights; lives until the import ends */
     const char *directory;
 
     /* tokens */
     SourceFile files[IMPORT_INCLUDE_MAX];
     int file_count;
     unsigned files_opened;
-    Token pending; /* put back */
+    Token pending; /* put back by parser_put_back */
     bool has_pending;
     ParamBuffer params; /* of the current directive */
     SourcePlace place; /* of the current directive */
@@ -139,27 +138,29 @@ typedef struct PbrtImport {
     Array coordinate_matrices; /* Matrix[2] */
     NameTable objects; /* index into object_definitions */
     Array object_definitions; /* ImportObject */
-    int open_object; /* index into object_definitions, -1 outside */
+    int open_object; /* index into object_definitions, -1 outside a definition */
     size_t object_first_primitive;
     size_t copied_vertices; /* by instances of emissive objects */
 
     /* named things */
-    NameTable materials; /* scene's material or MATERIAL_INTERFACE */
+    NameTable materials; /* index in the scene, or MATERIAL_INTERFACE */
     NameTable float_textures, spectrum_textures; /* index into textures */
     Array textures; /* ImportTexture */
     TextureCache images;
-    uint default_material; /* NONE until used */
+    uint default_material; /* NONE until first used */
 
     /* film and camera, until WorldBegin */
     float iso;
-    float exposure_time; /* of the film, 0: the camera's shutter */
+    float exposure_time; /* of the film; 0: the camera's shutter time */
     float shutter_open, shutter_close;
 } PbrtImport;
 
-/* A file name of the scene as a path: as it is when absolute, else inside the scene's directory. NULL on no memory. */
+/* Path of a file named in the scene: unchanged if absolute, else relative to the scene's folder. NULL when out of
+ * memory. */
 const char *import_path(PbrtImport *im, const char *name);
 
-/* The list of the current directive: its parameters, then the attributes of `target` (-1: none). */
+/* Sets up the parameter list of the current directive: its own parameters, then the attributes of `target` (-1:
+ * none). */
 void import_list(PbrtImport *im, ParamList *list, const char *owner, int target);
 
 #endif

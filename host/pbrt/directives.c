@@ -8,11 +8,10 @@
 
 #include <string.h>
 
-/* Where a directive may stand. */
+/* Where a directive is allowed. */
 enum { ANYWHERE, BEFORE_WORLD, IN_WORLD };
 
-/* A directive has one of three forms: its name alone or with arguments of its own (`plain`), or a string and
- * parameters (`named`). */
+/* A directive is either its name with fixed arguments (`plain`), or its name, a string and parameters (`named`). */
 typedef struct Directive {
     const char *name;
     int where;
@@ -135,7 +134,7 @@ static bool directive_attribute_end(PbrtImport *im)
     return state_pop(im, "AttributeBegin", "AttributeEnd");
 }
 
-/* pbrt-v4 reads them as AttributeBegin and AttributeEnd. */
+/* pbrt-v4 treats them as AttributeBegin and AttributeEnd. */
 static bool directive_transform_begin(PbrtImport *im)
 {
     if (!im->warned_transform_begin)
@@ -178,7 +177,7 @@ static bool directive_color_space(PbrtImport *im)
 static bool directive_world_begin(PbrtImport *im)
 {
     Matrix world[2] = {matrix_identity(), matrix_identity()};
-    im->in_world = true; /* whatever is wrong: what follows belongs to the world */
+    im->in_world = true; /* even after an error: what follows belongs to the world */
     if (!import_settings_finish(im) || !state_coordinate_system(im, "world", world))
         return false;
     memcpy(im->state.ctm, world, sizeof world);
@@ -262,7 +261,7 @@ static bool directive_include(PbrtImport *im)
     return parser_string(im, "the name of a file", &name, &place) && parser_open_file(im, name, place, false);
 }
 
-/* An imported file has a graphics state of its own, and what it names is known afterwards. */
+/* An imported file has a graphics state of its own, but the names that it defines stay known afterwards. */
 static bool directive_import(PbrtImport *im)
 {
     const char *name;
@@ -368,7 +367,7 @@ static const Directive *directive_find(const Token *token)
     return NULL;
 }
 
-/* Whether later directives may refer to what this one makes. */
+/* Whether later directives may depend on this one. */
 static bool directive_defines(const Directive *directive)
 {
     static const char *const NAMES[] = {"AttributeBegin", "CoordinateSystem",  "Import",
@@ -380,7 +379,7 @@ static bool directive_defines(const Directive *directive)
     return false;
 }
 
-/* Drops tokens up to the next directive, or to the end of a file. */
+/* Skips tokens up to the next directive or the end of a file. */
 static bool directive_skip(PbrtImport *im)
 {
     Token token;
@@ -394,7 +393,7 @@ static bool directive_skip(PbrtImport *im)
     return true;
 }
 
-/* False when reading is to end. */
+/* Reads a directive; false if reading must end. */
 static bool directive_read(PbrtImport *im, const Token *token)
 {
     const Directive *directive = directive_find(token);
@@ -405,7 +404,7 @@ static bool directive_read(PbrtImport *im, const Token *token)
     return errors_note(im, !directive || directive_defines(directive) || im->errors.world_order) && directive_skip(im);
 }
 
-/* At the end of an imported file, whose scope ends, or of the scene. */
+/* Handles the end of an imported file, which ends its scope, or of the scene. */
 static bool file_end(PbrtImport *im)
 {
     const SourceFile *file = &im->files[im->file_count - 1];

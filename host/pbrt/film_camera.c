@@ -33,7 +33,7 @@ static bool crop_check(ParamList *list, const char *name, const int crop[4])
     return false;
 }
 
-/* x0 x1 y0 y1 in pixels, clamped to the film. */
+/* Reads x0 x1 y0 y1 in pixels, clamped to the film. */
 static void pixel_bounds_read(ParamList *list, const SceneSettings *film, int crop[4])
 {
     size_t count;
@@ -56,7 +56,7 @@ static void pixel_bounds_read(ParamList *list, const SceneSettings *film, int cr
     crop_check(list, "pixelbounds", crop);
 }
 
-/* x0 x1 y0 y1 from 0 to 1; wins over pixelbounds, as in pbrt. */
+/* Reads x0 x1 y0 y1 in [0, 1]; overrides pixelbounds, as in pbrt. */
 static void crop_window_read(ParamList *list, const SceneSettings *film, int crop[4])
 {
     size_t count;
@@ -99,7 +99,7 @@ static void sensor_read(PbrtImport *im, ParamList *list)
 static void kind_params_ignore(ParamList *list, const char *kind)
 {
     param_ignore(list, "savefp16");
-    param_ignore(list, "diagonal"); /* of pbrt's realistic camera */
+    param_ignore(list, "diagonal"); /* for pbrt's realistic camera */
     if (strcmp(kind, "gbuffer") == 0)
         param_ignore(list, "coordinatesystem");
     if (strcmp(kind, "spectral") == 0) {
@@ -166,7 +166,7 @@ static float radius_read(ParamList *list, const char *name, float fallback)
     return radius;
 }
 
-/* Parameters that leave nothing of the filter are found here, where the place is known. */
+/* Reports parameters for which the filter's integral is not positive, while their place is known. */
 static void filter_check(ParamList *list, const FilterSettings *filter)
 {
     Error error = {{0}, {0}};
@@ -247,7 +247,7 @@ static void shutter_read(PbrtImport *im, ParamList *list)
                     "the shutter closes before it opens: the image would be black");
 }
 
-/* pbrt's other cameras. */
+/* Handles cameras of pbrt that are not supported. */
 static bool camera_other(PbrtImport *im, const char *kind, bool *substitute)
 {
     static const char *const KNOWN[] = {"perspective", "orthographic"};
@@ -302,7 +302,8 @@ bool import_camera(PbrtImport *im, const char *kind)
     return list_end(im, &list);
 }
 
-/* pbrt's imaging ratio: exposure time x ISO / 100. The shutter is the camera's. */
+/* Sets the film's scale to pbrt's imaging ratio, exposure time x ISO / 100; by default the exposure time is the
+ * camera's shutter time. */
 bool import_settings_finish(PbrtImport *im)
 {
     float time = im->exposure_time > 0.0f ? im->exposure_time : im->shutter_close - im->shutter_open;

@@ -66,7 +66,7 @@ static void counts_report(const Scene *scene)
         log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
 }
 
-/* A scene file, or (text) one in memory. */
+/* A scene file or, if `path` is NULL, a text in memory. */
 typedef struct ImportSource {
     const char *path, *text;
     size_t length;
@@ -87,7 +87,7 @@ static bool source_open(PbrtImport *im, const ImportSource *source)
     return im->directory && parser_open_file(im, source->path, (SourcePlace){0}, false);
 }
 
-/* Reads it less *offset. *offset becomes what is to be taken off it yet. */
+/* Reads the scene with *offset subtracted. *offset becomes the offset that should be subtracted; 0: none. */
 static bool source_read(const ImportSource *source, const ImportOptions *options, Vec3 *offset, Scene *scene,
                         Error *error)
 {
@@ -103,7 +103,8 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     return good;
 }
 
-/* Where a world lies is known when all of it is read. One that is far away is read again, and nothing said twice. */
+/* The world's position is known only after reading. A world far from the origin is read again, without repeating
+ * messages. */
 static bool source_import(const ImportSource *source, const ImportOptions *options, Scene *scene, Error *error)
 {
     Vec3 offset = vec3_splat(0.0f);

@@ -1,12 +1,12 @@
-/* How a scene is to be read. */
+/* Options of reading a scene. */
 #ifndef TWINLIGHT_PBRT_IMPORT_OPTIONS_H
 #define TWINLIGHT_PBRT_IMPORT_OPTIONS_H
 
 #include <stdbool.h>
 
 typedef struct ImportOptions {
-    bool lenient; /* what is not supported is replaced, with a warning that says by what, instead of refused */
-    bool all_errors; /* goes on behind errors, up to IMPORT_ERRORS_MAX, and prints all but the last */
+    bool lenient; /* replace unsupported features, with a warning that names the substitute, instead of failing */
+    bool all_errors; /* go on after errors, up to IMPORT_ERRORS_MAX, and print all but the last */
 } ImportOptions;
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* How much of a token an error message shows. */
+/* Characters of a token shown in an error message. */
 #define TOKEN_SHOWN 40
 
 bool lexer_init(Lexer *lexer, const TextWindow *window, const char *file, Error *error)
@@ -30,7 +30,7 @@ void lexer_destroy(Lexer *lexer)
     text_window_close(&lexer->window);
 }
 
-/* Up to the next token, or the end of what can be read. */
+/* Skips to the next token, or to the end of the readable text. */
 static void space_skip(Lexer *lexer)
 {
     TextWindow *window = &lexer->window;
@@ -57,7 +57,7 @@ static bool ends_word(char c)
     return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '"' || c == '[' || c == ']';
 }
 
-/* The length of the word at the lexer's position. */
+/* Length of the word at the current position. */
 static size_t word_length(Lexer *lexer)
 {
     TextWindow *window = &lexer->window;
@@ -67,8 +67,8 @@ static size_t word_length(Lexer *lexer)
     return n;
 }
 
-/* The length of the string at the lexer's position with its opening quote, up to the closing quote or to where one is
- * missing. */
+/* Length of the string at the current position, from the opening quote up to (not including) the closing quote, or up
+ * to where one is missing. */
 static size_t string_length(Lexer *lexer)
 {
     TextWindow *window = &lexer->window;
@@ -91,7 +91,7 @@ static bool string_end_check(Lexer *lexer, const Token *token, size_t length, Er
     return error_fix(error, "close it with \" on the same line");
 }
 
-/* What ended the text before its time. */
+/* Reports a read error that ended the text early. */
 static bool failure_report(const Lexer *lexer, SourcePlace place, Error *error)
 {
     int failure = lexer->window.failure;
@@ -132,7 +132,7 @@ bool token_is(const Token *token, const char *word)
     return token->kind == TOKEN_WORD && token->length == length && memcmp(token->text, word, length) == 0;
 }
 
-/* The character that backslash and `c` stand for, or 0. */
+/* The character for backslash `c`, or 0 if there is no such escape. */
 static char escape_decode(char c)
 {
     static const char NAMES[] = "bfnrt\\'\"", VALUES[] = "\b\f\n\r\t\\'\"";

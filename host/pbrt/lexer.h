@@ -1,53 +1,54 @@
-/* Tokens of pbrt-v4's text format, with their places. */
+/* Lexer of pbrt-v4's text format. */
 #ifndef TWINLIGHT_PBRT_LEXER_H
 #define TWINLIGHT_PBRT_LEXER_H
 
 #include "base/arena.h"
 #include "base/text_window.h"
 
-/* Characters of a word or of a string: no scene met so far comes near, and memory for a token is bounded. */
+/* Maximum length of a word or string, which bounds the memory of a token; no known scene comes near it. */
 #define TOKEN_LENGTH_MAX 65536
 
 typedef enum TokenKind {
     TOKEN_END,
     TOKEN_WORD, /* a directive, a number, true, false */
-    TOKEN_STRING, /* text without its quotes, escapes not yet decoded */
+    TOKEN_STRING, /* text without quotes, escapes not yet decoded */
     TOKEN_OPEN, /* [ */
     TOKEN_CLOSE /* ] */
 } TokenKind;
 
 typedef struct Token {
     TokenKind kind;
-    const char *text; /* borrowed from the lexer until its next token; the text's own when that lies in memory */
+    const char *text; /* borrowed from the lexer until the next token; for a text in memory, as long as that exists */
     size_t length;
     SourcePlace place;
 } Token;
 
 typedef struct Lexer {
     TextWindow window;
-    size_t line_start; /* offset in the text */
+    size_t line_start; /* offset in the text, bytes */
     const char *file;
     int line;
 } Lexer;
 
-/* The lexer takes the window, of fewer than INT_MAX bytes, and closes it when it fails: on UTF-16. `file`, a name for
- * messages, is borrowed for as long as the lexer and its tokens are used. */
+/* Takes ownership of the window (fewer than INT_MAX bytes) and closes it on failure, which is a file in UTF-16. `file`,
+ * a name for messages, must outlive the lexer and its tokens. */
 bool lexer_init(Lexer *lexer, const TextWindow *window, const char *file, Error *error);
 void lexer_destroy(Lexer *lexer);
 
-/* Reads the next token; comments (# to the end of the line) are skipped. */
+/* Reads the next token, skipping comments (# to the end of the line). */
 bool lexer_next(Lexer *lexer, Token *token, Error *error);
 
-/* Is this the word `word`? */
+/* Whether the token is the word `word`. */
 bool token_is(const Token *token, const char *word);
 
-/* The token's text, NUL-terminated in `arena`; escapes (\b \f \n \r \t \\ \' \") of a string decoded. NULL on error. */
+/* The token's text, NUL-terminated in `arena`, with the escapes of a string (\b \f \n \r \t \\ \' \") decoded. NULL
+ * with `error` filled on failure. */
 const char *token_text(const Token *token, Arena *arena, Error *error);
 
-/* "error: expected WANTED, found TOKEN" at the token. Returns false. */
+/* "error: expected WANTED, found TOKEN" at the token's place. Returns false. */
 bool token_unexpected(const Token *token, const char *wanted, Error *error);
 
-/* The token as a number, an error at its place when it is none. */
+/* The token as a number, or an error at its place. */
 bool token_float(const Token *token, float *value, Error *error);
 bool token_integer(const Token *token, int *value, Error *error);
 

@@ -1,6 +1,6 @@
-/* LightSource and AreaLightSource. Scales as in pbrt-v4: a light's spectrum counts as if its luminance were 1 (an rgb
- * value: as if that of its illuminant were), so that an rgb of 1 1 1 gives pixels of 1 1 1, and everything else is
- * brought to luminance 1 before "scale", "power" or "illuminance" apply. */
+/* LightSource and AreaLightSource. Scales follow pbrt-v4: before "scale", "power" or "illuminance" apply, a light's
+ * spectrum is normalised to luminance 1; for an rgb value its illuminant is, so that rgb 1 1 1 gives pixels of 1 1
+ * 1. */
 #include "base/log.h"
 #include "math/warp.h"
 #include "pbrt/errors.h"
@@ -31,7 +31,7 @@ static float scale_read(ParamList *list)
     return scale;
 }
 
-/* rgb x scale, checked for what does not fit a float. */
+/* rgb x scale; an error if it overflows a float. */
 static Vec3 emission_make(ParamList *list, const float rgb[3], double scale)
 {
     Vec3 emission =
@@ -57,7 +57,7 @@ static void position_set(LightReader *r, const float from[3])
         param_error(r->list, "from", "the position of %s is not finite", r->list->owner);
 }
 
-/* The unit vector from `from` to `to` in world space. */
+/* Sets the unit vector from `from` to `to` in world space. */
 static void direction_set(LightReader *r, const float from[3], const float to[3])
 {
     double a[3], b[3];
@@ -87,7 +87,7 @@ static void point_read(LightReader *r)
     position_set(r, from);
 }
 
-/* With coneangle t and conedeltaangle d the light is full inside t - d and none outside t. */
+/* With coneangle t and conedeltaangle d, the intensity is full within t - d and zero beyond t. */
 static void spot_read(LightReader *r)
 {
     float intensity[3] = {1.0f, 1.0f, 1.0f}, from[3] = {0.0f, 0.0f, 0.0f}, to[3] = {0.0f, 0.0f, 1.0f};
@@ -113,7 +113,7 @@ static void spot_read(LightReader *r)
     direction_set(r, from, to);
 }
 
-/* L is the irradiance on a surface that faces the light. */
+/* L is the irradiance on a surface perpendicular to the light. */
 static void distant_read(LightReader *r)
 {
     float radiance[3] = {1.0f, 1.0f, 1.0f}, from[3] = {0.0f, 0.0f, 0.0f}, to[3] = {0.0f, 0.0f, 1.0f};
@@ -129,8 +129,8 @@ static void distant_read(LightReader *r)
     direction_set(r, from, to);
 }
 
-/* Illuminance by the upper half of an octahedral map on a plane that faces up: the mean over the sphere's equal areas
- * of luminance times cosine, times 4 pi. */
+/* Illuminance of an upward-facing plane by the upper half of an octahedral map: 4 pi times the mean of luminance times
+ * cosine, because its texels have equal solid angles. */
 static double map_illuminance(const Image *image, const float *rgb)
 {
     double sum = 0.0;
@@ -145,8 +145,7 @@ static double map_illuminance(const Image *image, const float *rgb)
     return 4.0 * M_PI * sum / ((double)image->width * (double)image->height);
 }
 
-/* pbrt multiplies by 2 pi where the integral over the sphere asks for 4 pi; the same here, so that both give the same
- * picture. */
+/* pbrt multiplies by 2 pi where the integral over the sphere requires 4 pi; so does this, to give the same image. */
 static double illuminance_scale(const Image *image, const float *rgb, float wanted)
 {
     double found = 0.5 * map_illuminance(image, rgb);
@@ -173,7 +172,7 @@ static bool map_check(LightReader *r, const Image *image, const char *path)
     return true;
 }
 
-/* Values that are not finite would make the whole light so. */
+/* A single value that is not finite would make the light's power not finite. */
 static bool map_finite(LightReader *r, const float *rgb, size_t pixels, const char *path)
 {
     for (size_t i = 0; i < 3 * pixels; ++i)
@@ -228,7 +227,7 @@ static void map_read(LightReader *r, const char *file, float illuminance, double
     image_destroy(&image);
 }
 
-/* Only directions matter, so the scale of the transform is free: sampling takes it for 1 (light/infinite.h). */
+/* Only directions matter, so the transform may be rescaled; sampling assumes a scale of 1 (light/infinite.h). */
 static void infinite_transform_set(LightReader *r)
 {
     double scale = cbrt(fabs(matrix_determinant(&r->ctm)));

@@ -1,4 +1,4 @@
-/* Material, MakeNamedMaterial, and the material in force for a shape. */
+/* Material, MakeNamedMaterial, and the current material of a shape. */
 #include "base/log.h"
 #include "pbrt/errors.h"
 #include "pbrt/readers.h"
@@ -46,7 +46,7 @@ static void roughness_check(MaterialReader *r, const char *name, const FloatPara
         param_error(r->list, name, "\"%s\" is negative", name);
 }
 
-/* names: roughness, uroughness, vroughness; the latter two fall back to the first. */
+/* names: roughness, uroughness, vroughness; the latter two default to the first. */
 static void roughness_read(MaterialReader *r, const char *const names[3])
 {
     Material *m = &r->material;
@@ -66,7 +66,7 @@ static const char *const ROUGHNESS[] = {"roughness", "uroughness", "vroughness"}
 static const char *const CONDUCTOR_ROUGHNESS[] = {"conductor.roughness", "conductor.uroughness",
                                                   "conductor.vroughness"};
 
-/* A normal map wins over displacement, as in pbrt. */
+/* A normal map overrides displacement, as in pbrt. */
 static void relief_read(MaterialReader *r)
 {
     Material *m = &r->material;
@@ -116,7 +116,7 @@ static void coated_diffuse_read(MaterialReader *r)
                                               "a clear coat", NULL);
 }
 
-/* eta and k, or reflectance; copper when nothing is given. Names differ for the inner layer of a coated conductor. */
+/* Reads eta and k, or reflectance; copper by default. Names differ for the inner layer of a coated conductor. */
 static void conductor_colors_read(MaterialReader *r, const char *eta_name, const char *k_name)
 {
     Material *m = &r->material;
@@ -170,7 +170,7 @@ static void diffuse_transmission_read(MaterialReader *r)
                        "makes light");
 }
 
-/* One of the two materials that a mix names. */
+/* Resolves one of the two materials named by a mix. */
 static uint mix_part(MaterialReader *r, const Param *param, size_t i)
 {
     const char *name = param->strings[i];
@@ -208,16 +208,14 @@ static const struct {
     uint kind;
     void (*read)(MaterialReader *r);
     bool relief; /* takes normalmap and displacement */
-} KINDS[] = {{"diffuse", MATERIAL_DIFFUSE, diffuse_read, true},
-             {"conductor", MATERIAL_CONDUCTOR, conductor_read, true},
-             {"dielectric", MATERIAL_DIELECTRIC, dielectric_read, true},
-             {"thindielectric", MATERIAL_THIN_DIELECTRIC, thin_dielectric_read, true},
-             {"coateddiffuse", MATERIAL_COATED_DIFFUSE, coated_diffuse_read, true},
-             {"diffusetransmission", MATERIAL_DIFFUSE_TRANSMISSION, diffuse_transmission_read, true},
-             {"mix", MATERIAL_MIX, mix_read, false}};
+} KINDS[] = {
+#define KIND(NAME, name, text, traits) {text, MATERIAL_##NAME, name##_read, MATERIAL_##NAME != MATERIAL_MIX},
+    MATERIAL_LIST(KIND)
+#undef KIND
+};
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
-/* --lenient: what comes nearest to a material that is not there. */
+/* Substitutes for unsupported materials with --lenient. */
 static void coated_conductor_substitute(MaterialReader *r)
 {
     r->material = material_blank(MATERIAL_CONDUCTOR);
@@ -274,7 +272,7 @@ static bool material_read(MaterialReader *r, const char *kind, SourcePlace place
     return material_unknown(im, place, kind);
 }
 
-/* Adds the material of `list` to the scene. */
+/* Adds the material described by `list` to the scene. */
 static bool material_add(PbrtImport *im, ParamList *list, const char *kind, SourcePlace place, uint *index)
 {
     MaterialReader reader = {.im = im, .list = list};

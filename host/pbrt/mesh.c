@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Vertices and indices as the parameters give them. */
+/* Vertices and indices as given in the parameters. */
 typedef struct MeshParams {
     const float *positions, *normals, *uvs;
     const int *indices;
     size_t vertex_count, index_count;
 } MeshParams;
 
-/* An array of per-vertex values must have one for each vertex. */
+/* Reads an array that must have one item per vertex. */
 static const float *per_vertex(ParamList *list, const char *name, ParamType type, size_t per_item, size_t vertex_count)
 {
     size_t count;
@@ -38,7 +38,7 @@ static void params_read(ParamList *list, MeshParams *mesh)
     param_ignore(list, "faceIndices");
 }
 
-/* The indices of `corners` a face, checked; with none given, one face of all vertices if their number fits. */
+/* Reads and checks the indices, `corners` per face; by default a single face of all vertices, if their number fits. */
 static uint *indices_make(ParamList *list, MeshParams *mesh, size_t corners)
 {
     bool given = mesh->indices != NULL;
@@ -95,7 +95,7 @@ static bool params_add(PbrtImport *im, const ShapeContext *context, uint kind, c
     return good;
 }
 
-/* trianglemesh and bilinearmesh. */
+/* Reads trianglemesh and bilinearmesh. */
 static bool params_mesh_read(PbrtImport *im, ParamList *list, const ShapeContext *context, uint kind)
 {
     MeshParams params = {0};
@@ -124,8 +124,8 @@ static bool polygons_report(PbrtImport *im, SourcePlace place, const PlyMesh *pl
     return import_unsupported(im, place, what, "these faces are left out", "triangulate the mesh");
 }
 
-/* Triangles and bilinear patches of one file become two shapes, as in pbrt. A quad's vertices go around the face; a
- * patch's are (0,0) (1,0) (0,1) (1,1). */
+/* Triangles and bilinear patches of a file become two shapes, as in pbrt. The vertices of a quad go around the face;
+ * those of a patch are (0,0) (1,0) (0,1) (1,1). */
 static bool ply_add(PbrtImport *im, const ShapeContext *context, PlyMesh *ply)
 {
     MeshData mesh = {.uvs = ply->uvs, .vertex_count = ply->vertex_count};

@@ -4,7 +4,7 @@
 
 #include "pbrt/shape_add.h"
 
-/* Reads the mesh's parameters from `list`, finishes the list and adds the mesh. */
+/* Reads the parameters of the mesh from `list`, finishes the list and adds the mesh. */
 bool mesh_read(PbrtImport *im, const char *kind, ParamList *list, const ShapeContext *context);
 
 #endif

@@ -1,5 +1,5 @@
-/* Integrator, Sampler, Accelerator and Option: Twinlight reads depth and number of samples from them, and says what it
- * does not use. */
+/* Integrator, Sampler, Accelerator and Option: Twinlight takes depth and number of samples from them and reports what
+ * it does not use. */
 #include "base/log.h"
 #include "pbrt/context.h"
 #include "pbrt/errors.h"
@@ -8,7 +8,7 @@
 #include <ctype.h>
 #include <string.h>
 
-/* One line for each parameter that is accepted without effect. */
+/* Reports each parameter that is accepted without effect. */
 static void unused_report(const ParamList *list, const char *directive, const char *kind)
 {
     for (size_t i = 0; i < list->entries.count; ++i) {
@@ -88,7 +88,7 @@ bool import_accelerator(PbrtImport *im, const char *kind)
     return unused_end(&list, "the accelerator", kind);
 }
 
-/* pbrt compares option names without case, '_' and '-'. */
+/* pbrt compares option names ignoring case, '_' and '-'. */
 static void option_normalize(const char *name, char *out, size_t size)
 {
     size_t n = 0;

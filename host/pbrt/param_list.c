@@ -1,4 +1,4 @@
-/* The consumers' side of pbrt/params.h. */
+/* ParamList of pbrt/params.h: the consumers' side. */
 #include "pbrt/params.h"
 
 #include "base/log.h"
@@ -50,7 +50,7 @@ static void asked_note(ParamList *list, const char *name)
         list->asked[list->asked_count++] = name;
 }
 
-/* Marks all of that name as used and returns the one that wins. */
+/* Marks all entries of that name as used and returns the one that takes precedence. */
 static const Param *entry_use(ParamList *list, const char *name)
 {
     const Param *found = NULL;
@@ -90,7 +90,7 @@ const Param *param_find(ParamList *list, const char *name, unsigned types)
     return NULL;
 }
 
-/* A parameter with exactly `count` values. */
+/* Finds a parameter that must have exactly `count` values. */
 static const Param *find_counted(ParamList *list, const char *name, unsigned types, size_t count)
 {
     const Param *param = param_find(list, name, types);

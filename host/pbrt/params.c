@@ -6,7 +6,7 @@
 
 typedef struct TypeInfo {
     const char *name;
-    unsigned per_item; /* values of one item */
+    unsigned per_item; /* values per item */
 } TypeInfo;
 
 static const TypeInfo TYPES[PARAM_TYPE_COUNT] = {
@@ -17,7 +17,7 @@ static const TypeInfo TYPES[PARAM_TYPE_COUNT] = {
     [PARAM_TEXTURE] = {"texture", 1},
 };
 
-/* pbrt-v3's names, which its converter replaces. */
+/* pbrt-v3's names, which pbrt's --upgrade replaces. */
 static const struct {
     const char *name;
     ParamType type;
@@ -118,7 +118,7 @@ bool param_declare(ParamBuffer *buffer, const Token *declaration, Error *error)
     return true;
 }
 
-/* The array of the buffer that holds the parameter's values. */
+/* The array of the buffer for the parameter's values. */
 static Array *values_array(ParamBuffer *buffer, const Param *param)
 {
     if (param->is_text)
@@ -152,7 +152,7 @@ static bool bool_add(ParamBuffer *buffer, const Token *value, Error *error)
     return true;
 }
 
-/* Numbers come by the million: no clearing, no call per value but this. */
+/* Called for millions of numbers, so it does nothing else. */
 static bool float_add(ParamBuffer *buffer, const Token *value, Error *error)
 {
     float number;

@@ -1,10 +1,10 @@
-/* Typed parameter lists ("float radius" 2) and their consumers' view of them.
+/* Typed parameter lists ("float radius" 2), and the view of their consumers.
  *
- * A ParamBuffer holds the parameters of the directive being read; a ParamSet is a permanent copy (of Attribute and
+ * A ParamBuffer holds the parameters of the directive being read; a ParamSet is a permanent copy (for Attribute and
  * AreaLightSource). A ParamList is what one consumer (a sphere, a material) sees: the directive's own parameters first,
- * then those of the Attribute directives in force; the last of equal ones wins, as in pbrt. The consumer asks for
- * everything that it knows, then calls param_list_finish, which reports what nobody asked for. The first error sticks:
- * getters return their fallback after it, and param_list_finish returns false. */
+ * then those of the Attribute directives in force; within these, the last of equal names takes precedence, as in pbrt.
+ * The consumer asks for every parameter that it knows, then calls param_list_finish, which reports those never asked
+ * for. The first error sticks: afterwards getters return their fallback, and param_list_finish returns false. */
 #ifndef TWINLIGHT_PBRT_PARAMS_H
 #define TWINLIGHT_PBRT_PARAMS_H
 
@@ -28,7 +28,7 @@ typedef enum ParamType {
     PARAM_TYPE_COUNT
 } ParamType;
 
-/* A set of types, for getters that take several. */
+/* Set of types, for getters that accept several. */
 #define PARAM_BIT(type) (1u << (type))
 #define PARAM_COLORS (PARAM_BIT(PARAM_RGB) | PARAM_BIT(PARAM_BLACKBODY) | PARAM_BIT(PARAM_SPECTRUM))
 
@@ -36,9 +36,9 @@ typedef struct Param {
     ParamType type;
     const char *name;
     SourcePlace place; /* of the quoted declaration */
-    size_t count; /* values; three a point3 */
-    size_t first; /* while being read: of the buffer's array */
-    bool is_text; /* the values are strings, though the type may be spectrum */
+    size_t count; /* number of values; three per point3 */
+    size_t first; /* while being read: index in the buffer's array */
+    bool is_text; /* values are strings, even if the type is spectrum */
     const float *floats;
     const int *integers;
     const char *const *strings;
@@ -51,38 +51,38 @@ typedef struct ParamBuffer {
     Arena texts;
 } ParamBuffer;
 
-/* Limits of one directive, far beyond what any takes: parameters and strings are several times larger in memory than in
- * the file. Numbers may be as many as the file holds. */
+/* Limits per directive, far beyond any real use: parameters and strings take several times more memory than in the
+ * file. Numbers are limited only by the file's size. */
 #define PARAMS_MAX 1024
 #define PARAM_STRINGS_MAX 1024
 
 void param_buffer_init(ParamBuffer *buffer);
 void param_buffer_destroy(ParamBuffer *buffer);
 
-/* Forgets the parameters, keeps the memory. */
+/* Removes all parameters but keeps the memory. */
 void param_buffer_clear(ParamBuffer *buffer);
 
-/* Begins a parameter from its declaration, a string token such as "float radius". */
+/* Starts a parameter from its declaration, a string token such as "float radius". */
 bool param_declare(ParamBuffer *buffer, const Token *declaration, Error *error);
 
-/* Adds one value to the parameter begun last. */
+/* Adds a value to the latest parameter. */
 bool param_value_add(ParamBuffer *buffer, const Token *value, Error *error);
 
-/* Ends the parameter begun last: right number and kind of values. */
+/* Ends the latest parameter and checks the number of its values. */
 bool param_end(ParamBuffer *buffer, Error *error);
 
 /* Sets the pointers of all parameters; no more may be added. */
 void param_buffer_seal(ParamBuffer *buffer);
 
-/* A permanent list of parameters; `older` leads to those of earlier directives. */
+/* A permanent list of parameters; `older` links to those of earlier directives. */
 typedef struct ParamSet {
     const Param *params;
     size_t count;
     const struct ParamSet *older;
-    size_t total; /* parameters in the chain, this set's included */
+    size_t total; /* number of parameters in the chain, including this set */
 } ParamSet;
 
-/* A copy of the buffer's parameters in `arena`, before `older`. NULL when memory is out. */
+/* Copies the buffer's parameters into `arena`, in front of `older`. NULL when out of memory. */
 const ParamSet *param_set_make(const ParamBuffer *buffer, const ParamSet *older, Arena *arena, Error *error);
 
 #define PARAM_ASKED_MAX 64
@@ -90,11 +90,11 @@ const ParamSet *param_set_make(const ParamBuffer *buffer, const ParamSet *older,
 typedef struct ParamEntry {
     const Param *param;
     bool used;
-    bool optional; /* of an Attribute: may stay unused */
+    bool optional; /* from an Attribute: may stay unused */
 } ParamEntry;
 
 typedef struct ParamList {
-    Array entries; /* ParamEntry, those that win first */
+    Array entries; /* ParamEntry, in order of precedence */
     char owner[96]; /* "sphere", "material "glass"", for messages */
     SourcePlace place; /* of the directive */
     const char *asked[PARAM_ASKED_MAX];
@@ -103,38 +103,39 @@ typedef struct ParamList {
     bool failed;
 } ParamList;
 
+/* `owner` names the consumer in messages. */
 void param_list_init(ParamList *list, const char *owner, SourcePlace place, Error *error);
 void param_list_destroy(ParamList *list);
 
-/* Adds parameters behind those that are there. */
+/* Appends parameters, which have lower precedence than those already there. */
 void param_list_add_buffer(ParamList *list, const ParamBuffer *buffer);
 void param_list_add_set(ParamList *list, const ParamSet *set, bool optional);
 
-/* The parameter of that name if it has one of the types; NULL when there is none. Another type is an error. */
+/* The parameter of that name if it has one of the types; NULL if there is none. Another type is an error. */
 const Param *param_find(ParamList *list, const char *name, unsigned types);
 
-/* Single values. */
+/* Single values; `fallback` if the parameter is absent or the list has failed. */
 float param_float(ParamList *list, const char *name, float fallback);
 int param_integer(ParamList *list, const char *name, int fallback);
 bool param_bool(ParamList *list, const char *name, bool fallback);
 const char *param_string(ParamList *list, const char *name, const char *fallback);
-/* out keeps its values when the parameter is absent. Returns whether it is present. */
+/* `out` is unchanged if the parameter is absent. Returns whether it is present. */
 bool param_vector(ParamList *list, const char *name, ParamType type, float out[3]);
 
-/* Arrays: `*count` numbers (three a point), NULL and 0 when absent. */
+/* Arrays: `*count` numbers (three per point); NULL and 0 if absent. */
 const float *param_floats(ParamList *list, const char *name, ParamType type, size_t *count);
 const int *param_integers(ParamList *list, const char *name, size_t *count);
 
-/* Accepts a parameter of any type without using it; returns it, or NULL. */
+/* Accepts a parameter of any type; returns it, or NULL. */
 const Param *param_ignore(ParamList *list, const char *name);
 
-/* Error at the place of the named parameter (of the directive when absent). The list has failed afterwards. */
+/* Sets an error at the place of the named parameter (of the directive if absent). The list has then failed. */
 void param_error(ParamList *list, const char *name, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Place of the named parameter, of the directive when absent. */
+/* Place of the named parameter (of the directive if absent). */
 SourcePlace param_place(const ParamList *list, const char *name);
 
-/* Reports the first parameter that nobody asked for (a warning when `lenient`) and whether anything failed. */
+/* Reports the first parameter that was never asked for (`lenient`: each, as a warning). False if anything failed. */
 bool param_list_finish(ParamList *list, bool lenient);
 
 const char *param_type_name(ParamType type);

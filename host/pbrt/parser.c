@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A scene that is none is told by its first bytes. */
+/* Recognises other file formats by their first bytes. */
 static bool format_check(TextWindow *window, const char *name, Error *error)
 {
     const char *fix, *other;

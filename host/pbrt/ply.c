@@ -9,7 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* The body, while it is read. */
+/* State of reading the body. */
 typedef struct Cursor {
     const PlySource *source;
     const PlyHeader *header;
@@ -31,7 +31,7 @@ static uint64_t bytes_integer(const char *p, size_t size, bool little)
     return value;
 }
 
-/* An integer of any type; negative ones come as huge. */
+/* Decodes an integer of any type; negative ones become huge. */
 static uint64_t integer_decode(const char *p, PlyType type, bool little)
 {
     uint64_t raw = bytes_integer(p, ply_type_size(type), little);
@@ -60,7 +60,7 @@ static float float_decode(const char *p, PlyType type, bool little)
     return (float)(int64_t)integer_decode(p, type, little);
 }
 
-/* The next word of an ascii body. */
+/* Reads the next word of an ascii body. */
 static bool word_next(Cursor *c, const char **word, size_t *length)
 {
     while (c->p < c->end && (*c->p == ' ' || *c->p == '\n' || *c->p == '\r' || *c->p == '\t'))
@@ -130,7 +130,7 @@ static bool values_skip(Cursor *c, PlyType type, uint64_t count)
     return true;
 }
 
-/* One face's indices, `count` of them. */
+/* Reads the `count` indices of one face. */
 static bool face_next(Cursor *c, PlyType type, uint64_t count)
 {
     if (count != 3 && count != 4) {
@@ -147,7 +147,7 @@ static bool face_next(Cursor *c, PlyType type, uint64_t count)
     return out != NULL;
 }
 
-/* Where the floats of meaning m go: base + stride * vertex. */
+/* Destination of floats with this meaning: base + *stride * vertex. */
 static float *meaning_target(PlyMesh *mesh, PlyMeaning meaning, size_t *stride)
 {
     *stride = meaning >= PLY_U ? 2 : 3;
@@ -172,7 +172,7 @@ static bool property_next(Cursor *c, const PlyProperty *property, size_t index)
     return float_next(c, property->type, &target[stride * index]);
 }
 
-/* Any element, value by value. */
+/* Reads any element value by value. */
 static bool element_walk(Cursor *c, const PlyElement *element)
 {
     for (size_t i = 0; element->property_count > 0 && i < element->count; ++i)
@@ -182,7 +182,7 @@ static bool element_walk(Cursor *c, const PlyElement *element)
     return true;
 }
 
-/* Bytes that an element takes at least. */
+/* Least number of bytes that an element takes. */
 static size_t element_least_bytes(const PlyHeader *header, const PlyElement *element)
 {
     size_t bytes = 0;
@@ -194,7 +194,8 @@ static size_t element_least_bytes(const PlyHeader *header, const PlyElement *ele
     return bytes;
 }
 
-/* Before memory is taken: a short file must not ask for much. The last ascii value needs no separator. */
+/* Checked before memory is allocated, so that a short file cannot ask for much. The last ascii value needs no
+ * separator. */
 static bool element_fits(const Cursor *c, const PlyElement *element)
 {
     size_t least = element_least_bytes(c->header, element), left = (size_t)(c->end - c->p) + 1;
@@ -215,7 +216,7 @@ static bool floats_take(float **out, size_t count, Error *error)
     return *out != NULL || error_memory(error, count * sizeof **out, "a PLY mesh");
 }
 
-/* Only scalars: values lie at fixed distances. */
+/* Fast path for binary vertices with only scalar properties, whose values are at fixed offsets. */
 static bool vertices_strided(Cursor *c, const PlyElement *element)
 {
     size_t stride = element_least_bytes(c->header, element), offset = 0;
@@ -256,8 +257,8 @@ static bool vertices_read(Cursor *c, const PlyElement *element)
     return lists || c->header->format == PLY_ASCII ? element_walk(c, element) : vertices_strided(c, element);
 }
 
-/* The usual face: one list of 32-bit indices behind a byte. Reads as many triangles as follow each other; returns how
- * many. */
+/* Fast path for the usual face, a list of 32-bit indices after a count of one byte: reads triangles until another kind
+ * of face; returns how many. */
 static size_t triangles_packed(Cursor *c, size_t count)
 {
     bool little = c->header->format == PLY_LITTLE_ENDIAN;
@@ -338,11 +339,11 @@ void ply_destroy(PlyMesh *mesh)
     *mesh = (PlyMesh){0};
 }
 
-/* Of a file, packed or not: four times the 13 bytes a face and 32 bytes for every other vertex of 10^8 triangles.
- * Deflate expands up to 1032 times, so that without a limit a small file might take all memory. */
+/* Limit of a file, compressed or not: four times 10^8 triangles at 13 bytes per face and 32 bytes per vertex, with one
+ * vertex per two triangles. Deflate expands up to 1032-fold, so without a limit a small file could take all memory. */
 #define PLY_BYTES_MAX ((size_t)12 << 30)
 
-/* Inflates all members of a gzip'd file. */
+/* Decompresses all members of a gzip file. */
 static bool gzip_inflate(const PlySource *source, const FileData *file, Array *out)
 {
     z_stream stream = {.next_in = (Bytef *)file->data};

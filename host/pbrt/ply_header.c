@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One line of the header, cut into words. */
+/* A line of the header, split into words. */
 #define WORDS_MAX 6
 
 typedef struct Line {
@@ -54,7 +54,7 @@ static PlyType type_find(const Line *line, int i)
     return PLY_NONE;
 }
 
-/* The line at *position, which then leads behind it. False at the end of the data. */
+/* Reads the line at *position and advances past it. False at the end of the data. */
 static bool line_read(const char *data, size_t size, size_t *position, Line *line)
 {
     const char *start = data + *position;
@@ -139,7 +139,7 @@ static PlyProperty *property_find(PlyElement *element, const char *name, bool li
     return NULL;
 }
 
-/* Gives `count` scalar properties their meanings if all of them are there. */
+/* Gives `count` scalar properties consecutive meanings from `first` on, if all of them exist. */
 static bool meanings_set(PlyElement *element, const char *const *names, int count, PlyMeaning first)
 {
     for (int i = 0; i < count; ++i)
@@ -150,7 +150,7 @@ static bool meanings_set(PlyElement *element, const char *const *names, int coun
     return true;
 }
 
-/* Texture coordinates go by several names; the first complete pair counts, as in pbrt. */
+/* Texture coordinates have several names; the first complete pair is used, as in pbrt. */
 static bool vertex_meanings(const PlySource *source, PlyElement *element)
 {
     static const char *const XYZ[] = {"x", "y", "z"}, *const NORMAL[] = {"nx", "ny", "nz"};

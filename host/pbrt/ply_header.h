@@ -1,4 +1,4 @@
-/* The header of a PLY file: which elements its body has, and what their properties are for. */
+/* The header of a PLY file: the elements of its body and the meanings of their properties. */
 #ifndef TWINLIGHT_PBRT_PLY_HEADER_H
 #define TWINLIGHT_PBRT_PLY_HEADER_H
 
@@ -24,7 +24,7 @@ typedef enum PlyFormat { PLY_ASCII, PLY_LITTLE_ENDIAN, PLY_BIG_ENDIAN } PlyForma
 #define PLY_ELEMENTS_MAX 16
 #define PLY_NAME_MAX 32
 
-/* What a property is for. */
+/* What a property contains. */
 typedef enum PlyMeaning {
     PLY_IGNORED,
     PLY_X,
@@ -42,7 +42,7 @@ typedef enum PlyMeaning {
 typedef struct PlyProperty {
     char name[PLY_NAME_MAX];
     PlyType type;
-    PlyType count_type; /* of a list; PLY_NONE for a scalar */
+    PlyType count_type; /* type of a list's count; PLY_NONE for a scalar */
     PlyMeaning meaning;
 } PlyProperty;
 
@@ -59,22 +59,23 @@ typedef struct PlyHeader {
     PlyFormat format;
     int element_count;
     PlyElement elements[PLY_ELEMENTS_MAX];
-    size_t size; /* bytes up to the body */
+    size_t size; /* bytes before the body */
 } PlyHeader;
 
 /* Bytes of a binary value. */
 size_t ply_type_size(PlyType type);
 
-/* What errors say: which file, and where the scene names it. */
+/* For errors: which file, and where the scene names it. */
 typedef struct PlySource {
     const char *path;
     SourcePlace place;
     Error *error;
 } PlySource;
 
-/* "error: PATH: ..." at the place. Returns false. */
+/* Sets "error: PATH: ..." at the place. Returns false. */
 bool ply_error(const PlySource *source, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Parses the header at the start of `data`; fails by ply_error. */
 bool ply_header_read(const PlySource *source, const char *data, size_t size, PlyHeader *header);
 
 #endif

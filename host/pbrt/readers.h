@@ -1,4 +1,5 @@
-/* What reads the directives that take a name and parameters, and those of objects. The parameters are in im->params. */
+/* Readers of the directives that take a name and parameters, and of those for objects. The parameters are in
+ * im->params. */
 #ifndef TWINLIGHT_PBRT_READERS_H
 #define TWINLIGHT_PBRT_READERS_H
 
@@ -22,7 +23,7 @@ bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_plac
 bool import_object_end(PbrtImport *im);
 bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_place);
 
-/* At WorldBegin: what depends on several directives before it. */
+/* Called at WorldBegin for what depends on several directives before it. */
 bool import_settings_finish(PbrtImport *im);
 
 #endif

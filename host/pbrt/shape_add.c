@@ -29,7 +29,7 @@ static void normal_transform(const Matrix *inverse, bool reverse, float n[3])
         n[k] = scale != 0.0 ? (float)(out[k] * scale) : 0.0f;
 }
 
-/* Points and normals to the space that ctm leads to. */
+/* Transforms points and normals by ctm. */
 static bool mesh_transform(PbrtImport *im, const ShapeContext *context, bool reverse, float *positions, float *normals,
                            size_t count)
 {
@@ -44,8 +44,8 @@ static bool mesh_transform(PbrtImport *im, const ShapeContext *context, bool rev
     return true;
 }
 
-/* Radiance of the primitives that were added last, when the light is given by its power. As in pbrt each primitive
- * has that power: radiance = power / (pi area), half of it on each side of a two-sided light. */
+/* Converts the power of the area lights from first_light on to radiance. As in pbrt, each primitive has the whole
+ * power: radiance = power / (pi area), half of that for a two-sided light. */
 static void power_apply(Scene *scene, size_t first_light, const AreaEmission *emission)
 {
     float sides = emission->flags & LIGHT_TWO_SIDED ? 2.0f : 1.0f;
@@ -61,7 +61,7 @@ static void *arena_copy(PbrtImport *im, const void *data, size_t bytes)
     return copy ? memcpy(copy, data, bytes) : NULL;
 }
 
-/* Keeps an emissive shape of an object definition for its instances. */
+/* Stores an emissive shape of an object definition for its instances. */
 static bool emissive_keep(PbrtImport *im, EmissiveShape shape)
 {
     ImportObject *object = &ARRAY_AT(&im->object_definitions, ImportObject, im->open_object);
@@ -86,13 +86,13 @@ static bool emissive_keep(PbrtImport *im, EmissiveShape shape)
     return true;
 }
 
-/* Of the space that shapes are added to now: the world or an object definition. */
+/* Bounds of the space that shapes are currently added to: the world or an object definition. */
 static Box *space_box(PbrtImport *im)
 {
     return im->open_object < 0 ? &im->world : &ARRAY_AT(&im->object_definitions, ImportObject, im->open_object).box;
 }
 
-/* Adds a mesh that is in its final space. */
+/* Adds a mesh whose vertices are already transformed. */
 static bool mesh_emit(PbrtImport *im, uint kind, const MeshData *mesh, Shape shape, const AreaEmission *emission)
 {
     Box *box = space_box(im);
@@ -127,7 +127,7 @@ bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, floa
     return mesh_emit(im, kind, &moved, context->shape, context->emits ? &context->emission : NULL);
 }
 
-/* The corners of the quadric's bounding box stay in range. */
+/* Whether the corners of the quadric's bounding box are in range; an error if not. */
 static bool quadric_fits(PbrtImport *im, const Quadric *quadric, const Matrix *matrix)
 {
     double radius = fmax((double)quadric->radius, fabs((double)quadric->z_min));
@@ -173,7 +173,7 @@ bool shape_add_quadric(PbrtImport *im, const ShapeContext *context, uint kind, c
 
 static bool emissive_mesh_add(PbrtImport *im, const EmissiveShape *shape, const ShapeContext *context, Shape flags)
 {
-    /* Copies, for the transform overwrites them and the next instance starts from the definition again. */
+    /* Copies, because the transform overwrites them, and the next instance needs the definition again. */
     size_t floats = 3 * shape->mesh.vertex_count;
     Array copies;
     array_init(&copies, sizeof(float));
@@ -210,8 +210,8 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
         return error_fix(im->error, "give the light source a mesh of its own, of few vertices");
     }
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
-    /* An instance is its object's image (geometry/surface.h). A mesh's normal is a cross product in world space, which
-     * a mirror turns; a quadric's is transformed. */
+    /* An instance is the image of its object (geometry/surface.h). A mesh's geometric normal is a cross product in
+     * world space, which a reflection flips; a quadric's normal is transformed. */
     if (!quadric && matrix_swaps_handedness(ctm))
         flags.flags ^= SHAPE_FLIP_NORMAL;
     if (quadric)

@@ -1,23 +1,23 @@
-/* Shapes on their way into the scene. */
+/* Adds shapes to the scene. */
 #ifndef TWINLIGHT_PBRT_SHAPE_ADD_H
 #define TWINLIGHT_PBRT_SHAPE_ADD_H
 
 #include "pbrt/context.h"
 
-/* A shape's surroundings: material, transform, emission. */
+/* Context of a shape: material, transform, emission. */
 typedef struct ShapeContext {
     Matrix ctm;
-    Matrix inverse; /* valid when has_inverse */
+    Matrix inverse; /* valid if has_inverse */
     bool has_inverse;
     Shape shape; /* material, alpha, flags */
     AreaEmission emission;
     bool emits;
-    bool invisible; /* interface material: parameters are checked, nothing is added */
+    bool invisible; /* interface material: parameters are checked, but nothing is added */
     SourcePlace place;
 } ShapeContext;
 
-/* Adds a mesh of the space that context->ctm leads from: triangles (PRIMITIVE_TRIANGLE) or patches. Overwrites the
- * mesh's positions and normals. Vertices that are not finite after the transform are an error. */
+/* Adds a mesh, transformed by context->ctm: triangles (PRIMITIVE_TRIANGLE) or patches. Overwrites `positions` and
+ * `normals`. Fails for vertices that are not finite or too large after the transform. */
 bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, float *positions, float *normals,
                     const MeshData *mesh);
 

@@ -1,4 +1,4 @@
-/* Shape directives other than meshes' data: the surroundings of a shape, and quadrics. */
+/* Shape directives: context of a shape, and quadrics (meshes: mesh.c). */
 #include "base/log.h"
 #include "pbrt/errors.h"
 #include "pbrt/mesh.h"
@@ -11,7 +11,7 @@
 
 #define DEGREES_TO_RADIANS 0.017453292519943295f
 
-/* Sphere::Create of pbrt: zmin -radius, zmax radius, phimax 360 by default, clamped to the sphere. */
+/* As pbrt's Sphere::Create: defaults zmin -radius, zmax radius, phimax 360; clamped to the sphere. */
 static bool sphere_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
 {
     float radius = param_float(list, "radius", 1.0f);
@@ -42,7 +42,7 @@ static bool disk_read(PbrtImport *im, ParamList *list, const ShapeContext *conte
     return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_DISK, &quadric);
 }
 
-/* The alpha texture, or a constant below 1. */
+/* Reads the alpha texture, or a constant below 1. */
 static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
 {
     FloatParam param = {.value = 1.0f, .program = NONE};
@@ -57,7 +57,7 @@ static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
     return !list->failed && (param.value >= 1.0f || *alpha != NONE);
 }
 
-/* Emission of a shape: an invisible one has none, with a warning as in pbrt. */
+/* Reads the emission of a shape; an invisible one has none, with a warning as in pbrt. */
 static bool emission_read(PbrtImport *im, ShapeContext *context)
 {
     if (!value_area_emission(im, &context->emission, &context->emits))
@@ -69,7 +69,7 @@ static bool emission_read(PbrtImport *im, ShapeContext *context)
     return true;
 }
 
-/* pbrt takes an area light of alpha 0 for a light that nobody sees. */
+/* pbrt treats an area light of alpha 0 as invisible but emitting. */
 static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const ShapeContext *context)
 {
     if (!context->emits || context->shape.alpha == NONE)

@@ -6,15 +6,15 @@
 
 void state_init(GraphicsState *state);
 
-/* Appends the matrix to the active transforms (ctm = ctm * matrix), or replaces them. Fails when a transform becomes
+/* Multiplies the active transforms by the matrix (ctm = ctm * matrix), or replaces them. Fails if a transform becomes
  * infinite. */
 bool state_concat(PbrtImport *im, const Matrix *matrix);
 bool state_replace(PbrtImport *im, const Matrix *matrix);
 
-/* AttributeBegin and its like; `opened_by` names it in messages. */
+/* Opens a scope, for AttributeBegin and similar; `opened_by` names the directive in messages. */
 bool state_push(PbrtImport *im, const char *opened_by);
 
-/* Ends what the directive `opened_by` began; `closed_by` is the directive that ends it. */
+/* Closes the scope opened by the directive `opened_by`; `closed_by` names the closing directive in messages. */
 bool state_pop(PbrtImport *im, const char *opened_by, const char *closed_by);
 
 /* CoordinateSystem and CoordSysTransform. */
@@ -27,16 +27,17 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
 /* AreaLightSource "kind" and the parameters in im->params. */
 bool state_area_light(PbrtImport *im, const char *kind);
 
-/* The current transform for a directive that has no motion blur: the start's. Motion is unsupported. */
+/* The current transform for use without motion blur: the one at the start. Motion is reported as unsupported. */
 bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
 
-/* A transform to the world of the file becomes one to that of the scene, which lies elsewhere by im->offset. */
+/* Converts a transform to the file's world space into one to the scene's world space, which is offset by im->offset. */
 void import_matrix_move(const PbrtImport *im, Matrix *matrix);
 
-/* The inverse of a transform. A singular one is an error, and one that does not fit a float. */
+/* Inverts a transform. Fails if it is singular, or if it or its inverse does not fit floats. */
 bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
 
-/* The transform to the scene's world and its inverse. Of the camera, before WorldBegin, nothing is moved. */
+/* The current transform to the scene's world space, and its inverse. Before WorldBegin, for the camera, im->offset is
+ * not applied. */
 bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
 
 #endif

@@ -1,4 +1,4 @@
-/* Texture directives: expressions become postfix programs, constants are folded. */
+/* Texture directives: expressions are compiled to postfix programs, with constants folded. */
 #include "base/log.h"
 #include "base/path_name.h"
 #include "pbrt/errors.h"
@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Ops of one texture, all that it refers to included: named textures can double at each step. */
+/* Maximum number of ops of a texture, including those of the textures it refers to, which can double at each level. */
 #define TEXTURE_OPS_MAX 256
 
-/* A program being put together. */
+/* A program under construction. */
 typedef struct Builder {
     PbrtImport *im;
     ParamList *list;
@@ -47,7 +47,7 @@ static void code_add(Builder *b, uint code)
     ops_add(b, &op, 1);
 }
 
-/* Pushes a parameter that is a texture or a constant; returns where its ops begin. */
+/* Adds a parameter that is a texture or a constant; returns the index of its first op. */
 static uint operand_add(Builder *b, const char *name, bool spectrum, float fallback)
 {
     uint first = b->count;
@@ -70,7 +70,7 @@ static uint operand_add(Builder *b, const char *name, bool spectrum, float fallb
     return first;
 }
 
-/* Are the ops from `first` to `end` one constant? */
+/* Whether the ops from `first` to `end` are a single constant. */
 static bool is_constant(const Builder *b, uint first, uint end)
 {
     return end == first + 1 && b->ops[first].code == TEXTURE_CONSTANT;
@@ -92,7 +92,8 @@ static bool is_image(const Builder *b, uint first, uint end)
     return end == first + 1 && (b->ops[first].code == TEXTURE_IMAGE || b->ops[first].code == TEXTURE_IMAGE_FLOAT);
 }
 
-/* tex * scale. A constant factor of an image goes into the image's own scale, before its inversion, as pbrt does. */
+/* tex * scale. A constant factor of an image is folded into the image's own scale, which applies before inversion, as
+ * in pbrt. */
 static void scale_read(Builder *b)
 {
     uint tex = operand_add(b, "tex", b->spectrum, 1.0f);
@@ -155,7 +156,7 @@ static void planar_read(Builder *b, TextureOp *op)
     space_set(b, op);
 }
 
-/* A mapping takes only its own parameters; those of another count as unknown, as in pbrt. */
+/* A mapping accepts only its own parameters; those of other mappings are unknown, as in pbrt. */
 static void mapping_read(Builder *b, TextureOp *op)
 {
     static const char *const KNOWN[] = {"uv", "planar", "spherical", "cylindrical"};
@@ -204,7 +205,7 @@ static uint choice_read(Builder *b, const char *name, const char *fallback, cons
     return 0;
 }
 
-/* As in pbrt, PNG is sRGB and everything else linear unless "encoding" says otherwise. */
+/* As in pbrt, PNG is sRGB and everything else linear, unless "encoding" is given. */
 static void image_options_read(Builder *b, const char *file, TextureImageOptions *options)
 {
     static const char *const WRAPS[] = {"repeat", "black", "clamp", "octahedralsphere"};
@@ -249,7 +250,7 @@ static const struct {
              {"checkerboard", checkerboard_read}};
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
-/* What stands in for pbrt's other textures: the mean of what they show. */
+/* Substitutes a constant of about their mean for pbrt's other textures. */
 static bool texture_substitute(Builder *b, const char *kind)
 {
     static const char *const UNSUPPORTED[] = {"directionmix", "bilerp", "dots",   "fbm",

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Moves an error without a place, from a part that knows nothing of the scene's text, to the parameter. */
+/* Turns an error without a place, from a module that knows nothing of the scene file, into one at the parameter. */
 static void error_move(ParamList *list, const Param *param, const Error *found)
 {
     error_at(list->error, param->place, "%s", error_text(found));
@@ -15,7 +15,7 @@ static void error_move(ParamList *list, const Param *param, const Error *found)
     list->failed = true;
 }
 
-/* A name of pbrt's, else a file of samples. */
+/* Reads a spectrum named in pbrt, else a file of samples. */
 static void spectrum_named(PbrtImport *im, ParamList *list, const Param *param, ColorRole role, float rgb[3])
 {
     Error error = {{0}, {0}}, file_error = {{0}, {0}};
@@ -160,7 +160,7 @@ bool value_float_param(PbrtImport *im, ParamList *list, const char *name, FloatP
     return !list->failed;
 }
 
-/* No material is further from 1, and squares of eta stay where floats are exact to their last digit. */
+/* Limits of eta are this and its inverse: no material is beyond them, and squares of eta remain normal floats. */
 #define ETA_LEAST 0.01f
 
 float value_eta(PbrtImport *im, ParamList *list, const char *name, float fallback)

@@ -5,7 +5,9 @@
 
 const Integrator *integrator_find(const char *name, Error *error)
 {
-    const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
+#define MADE(name) integrator_##name(),
+    const Integrator *const integrators[] = {INTEGRATOR_LIST(MADE)};
+#undef MADE
     char names[256] = "";
     for (size_t i = 0; i < sizeof integrators / sizeof integrators[0]; ++i) {
         if (strcmp(integrators[i]->name, name) == 0)

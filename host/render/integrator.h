@@ -21,10 +21,12 @@ typedef struct Integrator {
     bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 
-const Integrator *integrator_pt(void);
-const Integrator *integrator_ibpt(void);
-const Integrator *integrator_bdpt(void);
-const Integrator *integrator_mmlt(void);
+/* X(name): every integrator, each made by integrator_name(). */
+#define INTEGRATOR_LIST(X) X(pt) X(ibpt) X(bdpt) X(mmlt)
+
+#define INTEGRATOR_DECLARE(name) const Integrator *integrator_##name(void);
+INTEGRATOR_LIST(INTEGRATOR_DECLARE)
+#undef INTEGRATOR_DECLARE
 
 /* Finds an integrator by name; NULL with an error that lists all. */
 const Integrator *integrator_find(const char *name, Error *error);

@@ -42,7 +42,7 @@ static bool settings_check(const CameraSettings *settings, int width, int height
     return true;
 }
 
-/* x_min x_max y_min y_max. A window may be mirrored, as in pbrt, but not empty. */
+/* Computes x_min x_max y_min y_max. As in pbrt, a window may be mirrored, but not empty. */
 static bool screen_window(const CameraSettings *settings, double film_aspect, double window[4], Error *error)
 {
     double aspect = settings->frame_aspect > 0.0f ? (double)settings->frame_aspect : film_aspect;
@@ -60,7 +60,7 @@ static bool screen_window(const CameraSettings *settings, double film_aspect, do
     return error_fix(error, "give x_min x_max y_min y_max, or leave \"float screenwindow\" out");
 }
 
-/* The power of two next to the length of a unit of camera space in the world. */
+/* Exponent of the power of two at or below the length in the world of one unit of camera space. */
 static int unit_exponent(const double world_from_camera[16])
 {
     Matrix matrix;
@@ -69,8 +69,8 @@ static int unit_exponent(const double world_from_camera[16])
     return isnormal(determinant) ? ilogb(cbrt(fabs(determinant))) : 0;
 }
 
-/* Where a Scale makes units of camera space tiny or huge, volumes and squares of them leave the range of floats. So the
- * camera's own lengths are in units near those of the world, 2^exponent as many: no digit changes. */
+/* A Scale before the camera can make units of camera space tiny or huge, and their squares or volumes leave the range
+ * of floats. So camera space is rescaled by 2^exponent, which is exact, to units close to the world's. */
 static void unit_change(CameraSettings *settings, int exponent)
 {
     for (int i = 0; i < 12; ++i) {
@@ -82,7 +82,7 @@ static void unit_change(CameraSettings *settings, int exponent)
     settings->focal_distance = ldexpf(settings->focal_distance, exponent);
 }
 
-/* Lenses and distances that a camera can have in the world: coordinates of scenes have the same limit. */
+/* Limit of lens radii in world units, the same as for coordinates. */
 #define LENGTH_MAX 1e12f
 
 static bool lens_check(const CameraSettings *settings, Error *error)
@@ -125,11 +125,11 @@ void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 
                  move = matrix_translate(-(double)origin.x, -(double)origin.y, -(double)origin.z);
     memcpy(view.m, settings->camera_from_world, sizeof view.m);
     Matrix world = matrix_multiply(&view, &move);
-    /* The window's units are 2^exponent as many as those of the settings where it is not a tangent. */
+    /* an orthographic window is in rescaled units, 2^exponent times the settings'; a perspective one has tangents */
     double unit = camera->kind == CAMERA_PERSPECTIVE ? 1.0 : ldexp(1.0, -unit_exponent(settings->world_from_camera));
     const double left = unit * (double)camera->screen[0], right = unit * (double)camera->screen[1],
                  low = unit * (double)camera->screen[2], high = unit * (double)camera->screen[3];
-    int across = camera->kind == CAMERA_PERSPECTIVE ? 2 : 3; /* what is divided by: z, or 1 */
+    int across = camera->kind == CAMERA_PERSPECTIVE ? 2 : 3; /* column of the divisor: z, or 1 */
     to_window.m[0] = 1.0 / (right - left);
     to_window.m[5] = 1.0 / (low - high);
     to_window.m[across] = -left / (right - left);

@@ -1,16 +1,16 @@
-/* Coordinates around c are c 2^-23 apart, so that edges, distances and the origins of rays lose as many bits as c is
- * larger than the scene. Less a number within a factor of two, floats lose nothing (P. H. Sterbenz, "Floating-Point
- * Computation", 1974): a scene that is moved to the origin is the same to the last bit, and its differences are not
- * rounded any more. What transforms in double have put there need not be rounded so far away at all: the importer knows
- * where a world lies when it has read it, and reads it again (pbrt/import.c). */
+/* Floats near c are c 2^-23 apart, so edges, distances and ray origins lose precision in proportion to c over the size
+ * of the scene. Subtracting two floats within a factor of two of each other is exact (P. H. Sterbenz, "Floating-Point
+ * Computation", 1974): moving such a scene to the origin loses nothing, and later differences are no longer rounded.
+ * Coordinates computed by transforms in double precision need not be rounded at the distant position at all: the
+ * importer knows the world's position once it has read the scene, and reads it again (pbrt/import.c). */
 #include "scene/center.h"
 
 #include "base/matrix.h"
 
 #include <math.h>
 
-/* How many times its half extent a world must be away. Then every coordinate is within a factor of two of the
- * centre. */
+/* Least distance of a world from the origin, in half extents, for it to be moved. Every coordinate is then within a
+ * factor of two of the centre. */
 #define FAR_EXTENTS 8.0f
 
 Vec3 scene_center_offset(const Box *world)
@@ -31,7 +31,7 @@ static Vec3 affine_translation(const Affine *a)
     return vec3(a->m[3], a->m[7], a->m[11]);
 }
 
-/* What takes points of the world from now on: of p what it was of p + offset. */
+/* Adjusts a transform that takes world points p, so that it maps the moved point p - offset like p before. */
 static void argument_move(Affine *a, Vec3 offset)
 {
     for (int i = 0; i < 12; i += 4)
@@ -39,7 +39,7 @@ static void argument_move(Affine *a, Vec3 offset)
                               (double)a->m[i + 1] * (double)offset.y + (double)a->m[i + 2] * (double)offset.z);
 }
 
-/* world <- object and its inverse, which is made again: its own translation has been rounded. */
+/* Moves the transform from object to world and recomputes its inverse, because the translation has been rounded. */
 static void placement_move(Affine *world_from_object, Affine *object_from_world, Vec3 offset)
 {
     Matrix m = matrix_identity(), inverse;
@@ -55,7 +55,7 @@ static void placement_move(Affine *world_from_object, Affine *object_from_world,
         argument_move(object_from_world, offset);
 }
 
-/* Vertices lie in the order of shapes. Object 0 is the world; the others are placed by instances. */
+/* Vertices are in the order of shapes. Object 0 is the world; others are placed by instances. */
 static void vertices_move(Scene *scene, Vec3 offset)
 {
     Vec3 *positions = scene->positions.data;

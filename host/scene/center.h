@@ -1,20 +1,20 @@
-/* Scenes far from the origin are moved there: by the importer, which reads them a second time and takes the offset off
- * before it rounds to floats, or, where that is not to be had, as floats. */
+/* Moves scenes that are far from the origin to the origin: either the importer reads them a second time and subtracts
+ * the offset before rounding to floats, or the floats themselves are moved. */
 #ifndef TWINLIGHT_SCENE_CENTER_H
 #define TWINLIGHT_SCENE_CENTER_H
 
 #include "geometry/box.h"
 #include "scene/scene.h"
 
-/* What to take off the coordinates of a world that is small beside its distance from the origin, axis by axis; else
- * 0. */
+/* Offset to subtract from the coordinates of a world that is small compared to its distance from the origin, per axis;
+ * else 0. */
 Vec3 scene_center_offset(const Box *world);
 
-/* The same camera where the world has been moved by -offset. */
+/* Adapts the camera to a world moved by -offset. */
 void camera_move(CameraSettings *camera, Vec3 offset);
 
-/* Moves the world and the camera by whole floats when the world's box is small beside its distance from the origin,
- * axis by axis. Returns whether anything has moved. For scene_finish, before bounds and lights are derived. */
+/* Moves world and camera, axis by axis, if the box of the world is small compared to its distance from the origin.
+ * Returns whether anything moved. Called by scene_finish before bounds and lights are derived. */
 bool scene_center(Scene *scene, const Box *world);
 
 #endif

@@ -4,16 +4,16 @@
 
 #include <math.h>
 
-/* The square of canonical numbers is covered by QUADRATURE_PHI x QUADRATURE_HEIGHT midpoints; both axes of the visible
- * normals' density are then smooth functions, for any alpha. */
+/* Midpoints per axis over the square of canonical random numbers: with these variables, the integrand of the visible
+ * normal distribution is smooth for every alpha. */
 #define QUADRATURE_PHI 16
 #define QUADRATURE_HEIGHT 24
-#define AZIMUTHS 64 /* of the mean over azimuth */
+#define AZIMUTHS 64 /* samples of the mean over azimuth */
 
-/* Cosine at which the end of the table at c = 0 is taken: T has a limit there. */
+/* Cosine used for the table's entry at c = 0: T has a limit there. */
 #define GRAZING_COSINE 1e-4f
 
-/* Fraction of the light from direction o (o.z > 0) that the rough interface refracts: the mean over visible normals of
+/* Fraction of light from direction o (o.z > 0) that the rough interface transmits: the mean over visible normals of
  * (1 - F) G2 / G1, the weight of dielectric_rough_sample times the probability of refraction. */
 static float rough_transmission(float alpha_x, float alpha_y, float eta, Vec3 o)
 {
@@ -37,7 +37,7 @@ static float rough_transmission(float alpha_x, float alpha_y, float eta, Vec3 o)
     return (float)(sum / (QUADRATURE_PHI * QUADRATURE_HEIGHT));
 }
 
-/* T_mean / eta^2 of the linear interpolant: over a cell, the integral of T(c) 2 c dc is exact by Simpson's rule. */
+/* T_mean / eta^2 of the linear interpolant; Simpson's rule is exact for the integral of T(c) 2 c dc over a cell. */
 static float row_escape(const float *row, float eta)
 {
     const double width = 1.0 / (COAT_CELLS - 1);
@@ -50,7 +50,7 @@ static float row_escape(const float *row, float eta)
     return (float)(sum / ((double)eta * (double)eta));
 }
 
-/* One row: directions whose azimuth has the sine `across` from the less rough axis. */
+/* Fills one row: directions with sine `across` of the azimuth measured from the less rough axis. */
 static void row_fill(float alpha_x, float alpha_y, float across, float eta, float *row)
 {
     bool smooth = alpha_x < ALPHA_DELTA && alpha_y < ALPHA_DELTA;
@@ -67,7 +67,7 @@ static void row_fill(float alpha_x, float alpha_y, float across, float eta, floa
     row[COAT_CELLS] = row_escape(row, eta);
 }
 
-/* Gives every row the mean over azimuth of 1 - R_i, by midpoints over a quadrant. */
+/* Sets every row's escape value to the mean over azimuth of 1 - R_i, by the midpoint rule over a quadrant. */
 static void rows_average_escape(float *rows)
 {
     double sum = 0.0;
@@ -84,7 +84,7 @@ static void rows_average_escape(float *rows)
         rows[r * COAT_ROW + COAT_CELLS] = (float)(sum / AZIMUTHS);
 }
 
-/* Room for a table of `rows` rows with its head filled; NULL on failure. */
+/* Allocates a table of `rows` rows and fills in its head; NULL on failure. */
 static float *table_begin(unsigned rows, Array *lookup, uint32_t *first, Error *error)
 {
     size_t words = 1 + (size_t)rows * COAT_ROW;

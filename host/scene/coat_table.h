@@ -1,5 +1,5 @@
-/* Tables of what rough dielectric coats transmit, appended to the scene's `lookup` array. shared/bsdf/coat.h has the
- * layout. */
+/* Tables of the transmittance of rough dielectric coats, appended to the scene's `lookup` array (layout:
+ * shared/bsdf/coat.h). */
 #ifndef TWINLIGHT_SCENE_COAT_TABLE_H
 #define TWINLIGHT_SCENE_COAT_TABLE_H
 
@@ -7,19 +7,19 @@
 
 #include <stdint.h>
 
-/* Appends the table of a coat with constant roughness and returns its first float in *first, which is what
- * Material.coat_table wants. alpha_x, alpha_y: of the GGX coat, at least one >= ALPHA_DELTA (a smooth coat needs no
- * table, but gets a valid one). eta: coat over outside, > 0. Deterministic; a few milliseconds. Fails only when memory
- * is out or `lookup` would exceed 32 bits. */
+/* Appends the table of a coat with constant roughness and returns its first float in *first, for Material.coat_table.
+ * alpha_x, alpha_y: of the GGX coat, at least one >= ALPHA_DELTA (a smooth coat needs no table, but gets a valid one).
+ * eta: coat over outside, > 0. Deterministic; takes a few milliseconds. Fails only when out of memory or if `lookup`
+ * would exceed 32-bit indices. */
 bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, uint32_t *first, Error *error);
 
-/* The same for every alpha in 0..1 at once, for a coat whose roughness is textured. Larger alphas use alpha = 1, and
- * anisotropic ones sqrt(alpha_x alpha_y). */
+/* The same for all alphas in [0, 1], for a coat with textured roughness. Larger alphas use alpha = 1, anisotropic ones
+ * sqrt(alpha_x alpha_y). */
 bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *error);
 
 /* Mean transmittance of a round trip between the base and a smooth interface of index eta through a medium of the given
- * optical thickness: integral of R(c) exp(-2 thickness / c) 2 c dc over that of R(c) 2 c dc, R the reflectance from the
- * inside. 1 when nothing absorbs or nothing is reflected. */
+ * optical thickness: the integral of R(c) exp(-2 thickness / c) 2 c dc over that of R(c) 2 c dc, with R the internal
+ * reflectance. 1 without absorption or reflection. */
 float coat_round_trip(float eta, float thickness);
 
 #endif

@@ -7,15 +7,15 @@
 /* ---- alias tables ---------------------------------------------------------------------------------------------- */
 
 typedef struct AliasWork {
-    double *rest; /* what is left of each index's share, in buckets: weight / mean */
-    uint *order; /* a stack of indices below one bucket from the left, of the others from the right */
-    size_t small, large; /* how many on each stack */
+    double *rest; /* remaining weight of each index, in units of a bucket: weight / mean */
+    uint *order; /* two stacks: indices below one bucket from the left, the others from the right */
+    size_t small, large; /* sizes of the stacks */
     size_t n;
-    double rounding; /* sum of (q as float32 - q) so far, kept below 2^-24 by choosing the direction of each rounding */
+    double rounding; /* sum of (q as float - q) so far, kept below 2^-24 by choosing how to round */
 } AliasWork;
 
-/* The sum carries the rounding error of every addition (Neumaier 1974): an error of 1e-11 in the mean, times a million
- * buckets, would be seen in the last of them. */
+/* Compensated summation (Neumaier 1974): a relative error of 1e-11 in the mean would add up over a million buckets and
+ * show in the last ones. */
 static bool alias_sum(const double *weights, size_t n, double *sum, uint *heaviest, Error *error)
 {
     double total = 0.0, lost = 0.0;
@@ -47,7 +47,7 @@ static void alias_push(AliasWork *work, uint i)
         work->order[work->n - ++work->large] = i;
 }
 
-/* q as one of the two float32 next to it, so that errors cancel instead of adding up in the buckets filled last. */
+/* Rounds q up or down to a float such that errors cancel, instead of accumulating in the buckets filled last. */
 static float alias_round(AliasWork *work, double q)
 {
     float rounded = (float)q;
@@ -59,7 +59,7 @@ static float alias_round(AliasWork *work, double q)
     return rounded;
 }
 
-/* Fills the buckets of small indices with what large ones have too much. An index of weight 0 has q = 0. */
+/* Fills the buckets of small indices with the excess of large ones. An index of weight 0 gets q = 0. */
 static void alias_fill(AliasWork *work, uint heaviest, AliasBucket *out)
 {
     while (work->small > 0 && work->large > 0) {
@@ -75,7 +75,7 @@ static void alias_fill(AliasWork *work, uint heaviest, AliasBucket *out)
         out[i].q = 1.0f;
         out[i].alias = i;
     }
-    /* Rounding left these without a partner: they are full buckets but for 1e-7, or empty ones. */
+    /* rounding left these without a partner: they are empty, or full to within 1e-7 */
     for (; work->small > 0; --work->small) {
         uint i = work->order[work->small - 1];
         out[i].q = (float)work->rest[i];
@@ -111,11 +111,11 @@ bool alias_build(const double *weights, size_t n, AliasBucket *out, Error *error
 
 /* ---- piecewise-constant densities over the square --------------------------------------------------------------- */
 
-#define CDF_STEPS 8388608.0 /* 2^23: the number of values that random_float takes */
+#define CDF_STEPS 8388608.0 /* 2^23: number of values of random_float */
 #define DISTRIBUTION_SIZE_MAX (1u << 20)
 
-/* cdf[0 ... n] of n weights with the given sum: every positive weight gets one step, the other steps are shared out in
- * proportion. All zeros when the sum is zero. */
+/* Fills cdf[0 ... n] for n weights with the given sum: every positive weight gets one step of 2^-23, and the remaining
+ * steps are distributed in proportion. All zeros if the sum is zero. */
 static void cdf_fill(const double *weights, uint n, double sum, float *cdf)
 {
     double positive = 0.0;
@@ -132,7 +132,7 @@ static void cdf_fill(const double *weights, uint n, double sum, float *cdf)
     assert(positive == 0.0 || cdf[n] == 1.0f);
 }
 
-/* One row: its weights as double in `row` and their sum, or false when one is not allowed. */
+/* Copies a row of weights to `row` as doubles and sums them; fails for an invalid weight. */
 static bool row_load(const float *weights, uint width, uint y, double *row, double *sum, Error *error)
 {
     *sum = 0.0;
@@ -147,7 +147,7 @@ static bool row_load(const float *weights, uint width, uint y, double *row, doub
     return true;
 }
 
-/* `work` holds height + width doubles. */
+/* `work` has room for height + width doubles. */
 static bool distribution2d_fill(const float *weights, uint width, uint height, double *work, float *cdfs, Error *error)
 {
     double total = 0.0;

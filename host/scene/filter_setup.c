@@ -7,7 +7,7 @@ static double sinc(double x)
     return fabs(x) < 1e-9 ? 1.0 : sin(M_PI * x) / (M_PI * x);
 }
 
-/* On [0, 2], Mitchell and Netravali 1988, equation 8. */
+/* The filter on [0, 2]: Mitchell and Netravali 1988, equation 8. */
 static double mitchell(double b, double c, double x)
 {
     if (x < 1.0)
@@ -40,7 +40,7 @@ double filter_evaluate(const FilterSettings *settings, double radius, double x)
     }
 }
 
-/* Integral over [a, b] by Gauss-Legendre quadrature with three points on each of four parts. */
+/* Integral over [a, b] by three-point Gauss-Legendre quadrature on four subintervals. */
 static double filter_integral(const FilterSettings *settings, double radius, double a, double b)
 {
     double h = (b - a) / 4.0, sum = 0.0;
@@ -53,8 +53,8 @@ static double filter_integral(const FilterSettings *settings, double radius, dou
     return sum * h / 18.0;
 }
 
-/* One axis: the CDF of the cells' absolute integrals and their signs. *integral: of f; *absolute: the sum of the
- * cells' absolute integrals, so that a cell in which f changes its sign has the right net weight. */
+/* Builds the table of one axis: the CDF of the absolute integrals of the cells, and their signs. *integral: of f;
+ * *absolute: sum of the cells' absolute integrals, which gives a cell in which f changes sign the right net weight. */
 static bool table_build(const FilterSettings *settings, double radius, Array *lookup, uint *first, double *integral,
                         double *absolute, Error *error)
 {
@@ -62,7 +62,7 @@ static bool table_build(const FilterSettings *settings, double radius, Array *lo
     const double h = 2.0 * radius / PIXEL_FILTER_CELLS;
     *integral = *absolute = 0.0;
     for (int i = 0; i < PIXEL_FILTER_CELLS; ++i) {
-        /* Mirrored, so that the table is symmetric to the last bit. */
+        /* mirrored, so that the table is symmetric to the last bit */
         int k = i < PIXEL_FILTER_CELLS / 2 ? PIXEL_FILTER_CELLS - 1 - i : i;
         cells[i] = filter_integral(settings, radius, h * k - radius, h * (k + 1) - radius);
         *integral += cells[i];

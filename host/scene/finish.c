@@ -1,4 +1,4 @@
-/* From the arrays that an importer filled to what the kernels read: order, bounds, features, tables. */
+/* Derives what the kernels read from the arrays filled by an importer: order, bounds, features, tables. */
 #include "scene/scene.h"
 
 #include "bsdf/material.h"
@@ -17,7 +17,7 @@
 
 /* ---- order of primitives ---------------------------------------------------------------------------------------- */
 
-/* Gives every object its range of primitives; `ends[s]` is where shape s ends now. */
+/* Assigns every object its range of primitives; `ends[s]` is the present end of shape s. */
 static void objects_place(Scene *scene, const uint *ends)
 {
     Object *objects = scene->objects.data;
@@ -33,7 +33,7 @@ static void objects_place(Scene *scene, const uint *ends)
     }
 }
 
-/* Copies the primitives shape by shape to `sorted`, behind those of the same object, and corrects what names them. */
+/* Copies the primitives shape by shape to `sorted`, grouped by object, and updates the indices that refer to them. */
 static void primitives_copy(Scene *scene, const uint *ends, uint *cursors, Primitive *sorted)
 {
     const Primitive *old = scene->primitives.data;
@@ -52,8 +52,8 @@ static void primitives_copy(Scene *scene, const uint *ends, uint *cursors, Primi
     }
 }
 
-/* Primitives of one object must be consecutive, but objects are defined in the middle of the world's own shapes. Moves
- * whole shapes, keeping their order, and the lights along with them. */
+/* Primitives of an object must be consecutive, but object definitions are interleaved with the world's shapes. Moves
+ * whole shapes, keeping their order, and updates the lights. */
 static bool primitives_group_by_object(Scene *scene, Error *error)
 {
     size_t shape_count = scene->shapes.count, total = scene->primitives.count;
@@ -77,7 +77,7 @@ static bool primitives_group_by_object(Scene *scene, Error *error)
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
-/* What of a view primitive_box reads, over the arrays as they are before packing. */
+/* A view with the members that primitive_box reads, on the arrays before packing. */
 static SceneView geometry_view(const Scene *scene)
 {
     return (SceneView){.positions = scene->positions.data,
@@ -97,7 +97,7 @@ static Box object_box(const Scene *scene, const Object *object)
     return box;
 }
 
-/* The box of everything in world space; *largest is raised to the largest coordinate in the space of any object. */
+/* Bounding box of everything in world space; raises *largest to the largest coordinate in any object's space. */
 static bool world_box(const Scene *scene, Box *world, float *largest, Error *error)
 {
     Box *objects = malloc(scene->objects.count * sizeof *objects);
@@ -116,7 +116,7 @@ static bool world_box(const Scene *scene, Box *world, float *largest, Error *err
         box_join(world, &placed);
     }
     free(objects);
-    if (box_is_empty(world)) /* nothing to hit: an environment alone is a scene all the same */
+    if (box_is_empty(world)) /* no geometry: an environment alone is a valid scene */
         *world = (Box){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
     *largest = fmaxf(*largest, box_largest(world));
     return true;
@@ -152,7 +152,7 @@ static bool scene_bounds(Scene *scene, Error *error)
     }
     for (int i = 0; i < 3; ++i)
         largest = fmaxf(largest, fabsf((float)scene->camera_settings.world_from_camera[4 * i + 3]));
-    if (!(largest <= 2e12f)) { /* rounding of the importer's 1e12, transforms of instances */
+    if (!(largest <= 2e12f)) { /* allows for rounding of the importer's limit 1e12 and transforms of instances */
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
     }
@@ -161,7 +161,7 @@ static bool scene_bounds(Scene *scene, Error *error)
     return true;
 }
 
-/* No ray of the camera starts further out along any axis. */
+/* Upper bound of the coordinates of camera ray origins. */
 static float camera_reach(const Camera *camera)
 {
     Vec3 origin = vec3(camera->lens_radius, camera->lens_radius, 0.0f);
@@ -172,7 +172,8 @@ static float camera_reach(const Camera *camera)
     return vec3_max_abs(affine_magnitude(camera->world_from_camera, origin));
 }
 
-/* Nor any ray of the light: those from infinity start on a disc as large as the bounding sphere that touches it. */
+/* The same for rays from a light: those from infinity start on a disk of the bounding sphere's radius, tangent to
+ * it. */
 static float light_reach(const FrameParams *frame, const Light *light)
 {
     if (light->kind == LIGHT_AREA)
@@ -184,17 +185,11 @@ static float light_reach(const FrameParams *frame, const Light *light)
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
 
-static const uint FEATURE_OF_MATERIAL[] = {
-    [MATERIAL_DIFFUSE] = FEATURE_DIFFUSE,
-    [MATERIAL_CONDUCTOR] = FEATURE_CONDUCTOR,
-    [MATERIAL_DIELECTRIC] = FEATURE_DIELECTRIC,
-    [MATERIAL_THIN_DIELECTRIC] = FEATURE_THIN_DIELECTRIC,
-    [MATERIAL_COATED_DIFFUSE] = FEATURE_COATED_DIFFUSE,
-    [MATERIAL_DIFFUSE_TRANSMISSION] = FEATURE_DIFFUSE_TRANSMISSION,
-    [MATERIAL_MIX] = FEATURE_MIX,
-};
+#define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_##NAME,
+static const uint FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
+#undef FEATURE_OF
 
-/* What the kernels make of a constant roughness. */
+/* The alpha that the kernels use for a constant roughness. */
 static float material_alpha(const Material *m, const FloatParam *roughness)
 {
     return alpha_from_roughness(m->flags, roughness->value);
@@ -207,7 +202,7 @@ static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
 
 bool scene_material_is_rough(const Material *m)
 {
-    return (m->kind == MATERIAL_CONDUCTOR || m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_COATED_DIFFUSE) &&
+    return m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_MICROFACET) != 0u &&
            (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
 }
 
@@ -234,19 +229,16 @@ static uint geometry_features(const Scene *scene)
         features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
         features |= shape->flags & SHAPE_HAS_NORMALS ? FEATURE_NORMALS : 0u;
     }
-    /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers. */
+    /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers */
     for (size_t i = 0; i < scene->primitives.count; ++i)
         features |=
             FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
     return features;
 }
 
-static uint light_features(const Light *light)
-{
-    if (light->kind == LIGHT_AREA)
-        return FEATURE_AREA_LIGHT;
-    return light->kind >= LIGHT_INFINITE ? FEATURE_INFINITE_LIGHT : FEATURE_DELTA_LIGHT;
-}
+#define FEATURE_OF(NAME, text, feature) [LIGHT_##NAME] = feature,
+static const uint FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
+#undef FEATURE_OF
 
 static uint scene_features(const Scene *scene)
 {
@@ -254,7 +246,7 @@ static uint scene_features(const Scene *scene)
     for (size_t i = 0; i < scene->materials.count; ++i)
         features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
     for (size_t i = 0; i < scene->lights.count; ++i)
-        features |= light_features(&ARRAY_AT(&scene->lights, Light, i));
+        features |= FEATURE_OF_LIGHT[ARRAY_AT(&scene->lights, Light, i).kind];
     if (scene->camera_settings.lens_radius > 0.0f)
         features |= FEATURE_LENS;
     return features;
@@ -267,10 +259,10 @@ static bool roughness_is_textured(const Material *m)
     return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
 }
 
-/* Each takes milliseconds, and every coated material is compared with all. */
+/* Building a table takes milliseconds, and every coated material is compared with all of them. */
 #define COATS_MAX 4096
 
-/* Whether the table of `other` serves m. */
+/* Whether m can use the table of `other`. */
 static bool coat_serves(const Material *m, const Material *other)
 {
     if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
@@ -288,7 +280,7 @@ static bool coat_build(Material *m, Array *lookup, Error *error)
                             &m->coat_table, error);
 }
 
-/* The table of m: that of a material in `owners` (uint), or a new one, which makes m an owner. */
+/* Sets the table of m: that of an equal material in `owners` (uint), or a new one, which makes m an owner. */
 static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
 {
     Material *m = &ARRAY_AT(&scene->materials, Material, index);
@@ -310,7 +302,7 @@ static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
     return coat_build(m, &scene->lookup, error);
 }
 
-/* Materials of equal coat share a table. */
+/* Builds the tables of rough coats; materials with equal coats share one. */
 static bool scene_coat_tables(Scene *scene, Error *error)
 {
     Array owners;
@@ -328,7 +320,7 @@ static bool scene_coat_tables(Scene *scene, Error *error)
     return good;
 }
 
-/* ---- entry points ------------------------------------------------------------------------------------------------- */
+/* ---- entry points ------------------------------------------------------------------------------------------------ */
 
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
 {
@@ -353,7 +345,7 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
     frame->crop_y1 = (uint)crop[3];
     if (!camera_setup(&scene->camera_settings, width, height, &frame->camera, error))
         return false;
-    /* The factor is for ray_offset and other rounding. */
+    /* the factor covers ray_offset and other rounding */
     frame->ray_reach = (1.0f + 64.0f * FLOAT_EPSILON) * fmaxf(scene->ray_reach, camera_reach(&frame->camera));
     frame->ray_reach = fminf(frame->ray_reach, RAY_COMPONENT_MAX);
     return true;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Beginnings; blanks before those that begin with a printing character do not count. */
+/* First bytes of other formats. Leading blanks and a UTF-8 byte order mark are skipped. */
 static const struct {
     const char *head;
     size_t size;

@@ -4,15 +4,14 @@
 #include "layout/distribution.h"
 #include "math/warp.h"
 
-/* A light's shape has several primitives, which are one light guide: the mean of their boxes' centres by what they
- * send. */
+/* A light guide. The primitives of an emissive shape form one: the mean of their boxes' centres, weighted by power. */
 typedef struct LightGuide {
     double place[3];
-    double near; /* 1 of a position, 0 of a direction */
-    double power; /* as Guide.lights_power */
+    double near; /* 1 for a position, 0 for a direction */
+    double power; /* as in Guide.lights_power */
 } LightGuide;
 
-/* Takes its place among the strongest, the strongest first. */
+/* Inserts the guide into the list of the strongest ones, in descending order. */
 static void guide_add(Scene *scene, const LightGuide *added)
 {
     FrameParams *frame = &scene->frame;
@@ -34,7 +33,8 @@ static void guide_add(Scene *scene, const LightGuide *added)
     guide->lights_power[place] = power;
 }
 
-/* The lights of the shape that light `first` is of. Returns the first light that is not. */
+/* Makes a light guide of the lights that belong to the same shape as light `first`. Returns the first light after
+ * them. */
 static size_t shape_guide(const Scene *scene, const SceneView *view, size_t first, LightGuide *guide)
 {
     uint shape = view->primitives[view->lights[first].primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK;
@@ -56,7 +56,8 @@ static size_t shape_guide(const Scene *scene, const SceneView *view, size_t firs
     return i;
 }
 
-/* The brightest place of an environment's image. radius: of the scene; its power has passed a disk of that. */
+/* Makes a light guide of the brightest texel of an environment. radius: of the bounding sphere, through whose disk the
+ * light's power was computed. */
 static LightGuide environment_guide(const SceneView *view, const Light *light, double radius)
 {
     Distribution2D d = view->distributions2d[light->distribution];
@@ -65,7 +66,7 @@ static LightGuide environment_guide(const SceneView *view, const Light *light, d
     Vec2 uv = vec2(0.5f, 0.5f);
     for (uint y = 0; y < d.height; ++y) {
         double row =
-            equirectangular ? sin(M_PI * ((double)y + 0.5) / d.height) : 1.0; /* its cells' part of the sphere */
+            equirectangular ? sin(M_PI * ((double)y + 0.5) / d.height) : 1.0; /* relative solid angle of its cells */
         for (uint x = 0; x < d.width; ++x) {
             double density = (double)distribution2d_cell_pdf(view->lookup, d, x, y) / row;
             if (!(density > most))

@@ -14,12 +14,12 @@ static double luminance(Vec3 c)
 
 /* ---- environments ------------------------------------------------------------------------------------------------ */
 
-/* An infinite light's image while its distribution is made. */
+/* The image of an infinite light while its distribution is built. */
 typedef struct Environment {
     SceneView view;
     TextureImage image;
     const Light *light;
-    float *texels; /* luminance times emission, width x height */
+    float *texels; /* luminance of texel times emission, width x height */
 } Environment;
 
 static float texel_luminance(const Environment *e, int x, int y)
@@ -27,7 +27,7 @@ static float texel_luminance(const Environment *e, int x, int y)
     return (float)luminance(vec3_mul(e->light->emission, image_texel_wrapped(&e->view, &e->image, x, y, 0)));
 }
 
-/* Any texel at most one outside the image, wrapped as environment_image (light/infinite.h) sees it. */
+/* The texel (x, y), at most one outside the image, wrapped like environment_image (light/infinite.h). */
 static float texel_at(const Environment *e, int x, int y)
 {
     int width = (int)e->image.width, height = (int)e->image.height;
@@ -39,7 +39,7 @@ static float texel_at(const Environment *e, int x, int y)
 }
 
 /* Mean over the cell of texel (x, y) of the bilinear interpolant between texel centres: weights 1/8, 6/8, 1/8 along
- * each axis. So a dark texel beside a bright one has the density of what bleeds into it. */
+ * each axis. It gives a dark texel next to a bright one the density of the interpolated light in it. */
 static float cell_mean(const Environment *e, int x, int y)
 {
     if (e->image.filter == FILTER_POINT)
@@ -51,7 +51,7 @@ static float cell_mean(const Environment *e, int x, int y)
     return 0.125f * rows[0] + 0.75f * rows[1] + 0.125f * rows[2];
 }
 
-/* Share of the sphere that each cell of row y covers, times the number of cells. */
+/* Fraction of the sphere covered by each cell of row y, times the number of cells. */
 static double row_weight(const Environment *e, int y)
 {
     if ((e->light->flags & LIGHT_EQUIRECTANGULAR) == 0)
@@ -75,7 +75,7 @@ static bool environment_load(Environment *e, Error *error)
     return true;
 }
 
-/* Fills `weights` with every cell's share of the light; *mean: average radiance (luminance) over the sphere. */
+/* Fills `weights` with each cell's share of the light; *mean: mean luminance of the radiance over the sphere. */
 static void environment_weights(const Environment *e, float *weights, double *mean)
 {
     int width = (int)e->image.width, height = (int)e->image.height;
@@ -91,7 +91,7 @@ static void environment_weights(const Environment *e, float *weights, double *me
     *mean = sum / ((double)width * (double)height);
 }
 
-/* Builds the distribution of an infinite image; *mean as above. */
+/* Builds the distribution of an infinite light's image; *mean as above. */
 static bool environment_setup(Scene *scene, Light *light, double *mean, Error *error)
 {
     Environment e = {.light = light, .image = ARRAY_AT(&scene->images, TextureImage, light->image)};
@@ -119,13 +119,14 @@ static bool environment_setup(Scene *scene, Light *light, double *mean, Error *e
 
 /* ---- power ------------------------------------------------------------------------------------------------------- */
 
-/* Integral of pbrt's falloff over the sphere: the cubic step in the cosine has the mean 1/2. */
+/* Integral of pbrt's falloff over the sphere: the mean of smoothstep over the cosine is 1/2. */
 double light_spot_solid_angle(double cos_total, double cos_falloff)
 {
     return 2.0 * M_PI * ((1.0 - cos_falloff) + 0.5 * (cos_falloff - cos_total));
 }
 
-/* Luminance of the flux that a light sends into the scene; of an infinite light, through the bounding sphere. */
+/* Luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
+ * bounding sphere. */
 static bool light_power(Scene *scene, Light *light, double *power, Error *error)
 {
     double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
@@ -163,7 +164,7 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Fills `powers`, sets every select_pdf, and lists the infinite lights. */
+/* Fills `powers`, sets select_pdf of every light, and lists the infinite lights. */
 static bool lights_weigh(Scene *scene, double *powers, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;

@@ -1,16 +1,16 @@
-/* How lights are chosen and environments sampled. */
+/* Sets up the selection of lights and the sampling of environments. */
 #ifndef TWINLIGHT_SCENE_LIGHT_SETUP_H
 #define TWINLIGHT_SCENE_LIGHT_SETUP_H
 
 #include "scene/scene.h"
 
 /* Sets select_pdf of every light in proportion to its power (luminance; pbrt-v4's estimates), and builds
- * scene->light_alias, infinite_lights and the distributions of infinite images. A light without power gets
- * select_pdf 0 and a warning. Needs frame.world_radius, the radius of the scene's bounding sphere. Fails when no
- * light has power, and on a light that is not finite. */
+ * scene->light_alias, infinite_lights and the distributions of environment images. Lights without power get select_pdf
+ * 0 and a warning. Needs frame.world_radius, the radius of the bounding sphere. Fails if no light has power, or if a
+ * light's power is not finite. */
 bool light_setup(Scene *scene, Error *error);
 
-/* The solid angle that, filled with a spot light's intensity on its axis, holds all that the light sends out. */
+/* Effective solid angle of a spot light: its flux over its intensity on the axis. */
 double light_spot_solid_angle(double cos_total, double cos_falloff);
 
 #endif

@@ -1,9 +1,9 @@
-/* A scene's three buffers: made, and shown to a backend. */
+/* Packs a scene into three buffers, and presents them to a backend. */
 #include "scene/pack.h"
 
 #include <string.h>
 
-/* Copies `array` behind the words already in `words`, from a multiple of four words on. */
+/* Appends `array` to `words`, aligned to four words; *first: index of its first word. */
 static bool words_append(Array *words, const Array *array, uint *first, Error *error)
 {
     size_t bytes = array->count * array->element_size, start = (words->count + 3) / 4 * 4;
@@ -47,7 +47,7 @@ size_t scene_geometry_words(const Scene *scene)
     return words;
 }
 
-/* The unpacked vertex and primitive arrays are freed on the way: a large scene is held once. */
+/* Frees the unpacked vertex and primitive arrays on the way, so that a large scene is in memory only once. */
 static bool geometry_pack(Scene *scene, Error *error)
 {
     SceneLayout *layout = &scene->frame.layout;

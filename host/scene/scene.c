@@ -51,10 +51,10 @@ void scene_destroy(Scene *scene)
 #undef X
 }
 
-/* Appends one element; a macro so that the result has the right type. */
+/* Appends n elements; a macro, so that the result has the right type. */
 #define SCENE_GROW(scene, member, Type, n, error) ((Type *)array_grow(&(scene)->member, (n), (error)))
 
-/* Indices are 32 bits and PRIMITIVE_SHAPE_MASK 28 bits wide. */
+/* Indices have 32 bits, PRIMITIVE_SHAPE_MASK has 28. */
 static bool count_fits(size_t count, size_t limit, const char *what, Error *error)
 {
     if (count < limit)
@@ -68,7 +68,7 @@ static bool object_ensure_world(Scene *scene, Error *error)
     return scene->objects.count > 0 || SCENE_GROW(scene, objects, Object, 1, error) != NULL;
 }
 
-/* Before memory is taken: what does not fit the packed buffer must not be gathered first. */
+/* Checked before memory is allocated: geometry that does not fit the packed buffer must not be collected first. */
 static bool geometry_fits(const Scene *scene, const MeshData *mesh, size_t primitive_words, Error *error)
 {
     size_t vertex_words = 3u + (mesh->normals ? 3u : 0u) + (mesh->uvs ? 2u : 0u), words = scene_geometry_words(scene);
@@ -79,7 +79,7 @@ static bool geometry_fits(const Scene *scene, const MeshData *mesh, size_t primi
     return error_fix(error, "use object instances, or split the scene");
 }
 
-/* Appends `shape` to the current object, and its vertices. */
+/* Appends `shape` to the current object, with its vertices. */
 static bool shape_add(Scene *scene, const MeshData *mesh, Shape *shape, uint *index, Error *error)
 {
     if (!object_ensure_world(scene, error) || !count_fits(scene->shapes.count, PRIMITIVE_SHAPE_MASK, "shapes", error))
@@ -124,8 +124,8 @@ static uint shape_and_kind(uint shape_index, uint kind, const Shape *shape)
     return shape_index | (kind << PRIMITIVE_KIND_SHIFT) | (shape->alpha != NONE ? PRIMITIVE_ALPHA_BIT : 0u);
 }
 
-/* Makes every primitive of the shape, from its first to the last of the scene, an area light. Those of no area are gone
- * by now, and lights come in the order of primitives, so that the numbers of both differ by a constant. */
+/* Makes every primitive from the shape's first to the last of the scene an area light. Degenerate primitives have been
+ * dropped before, and lights are in the order of primitives, so the indices of both differ by a constant. */
 static bool shape_emit(Scene *scene, uint shape_index, const float *emission, uint light_flags, Error *error)
 {
     Shape *shape = &ARRAY_AT(&scene->shapes, Shape, shape_index);
@@ -172,7 +172,7 @@ static double triangle_area(Vec3 a, Vec3 b, Vec3 c)
     return 0.5 * length3(n);
 }
 
-/* The kernels divide by lengths squared in float32, so an area whose float32 normal vanishes counts as none. */
+/* The kernels divide by squared lengths in float, so a triangle whose normal vanishes in float counts as degenerate. */
 static bool triangle_degenerate(Vec3 a, Vec3 b, Vec3 c)
 {
     Vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
@@ -236,7 +236,7 @@ bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const fl
     return shape_emit(scene, index, emission, light_flags, error);
 }
 
-/* The factor of a similarity transform (rotation, reflection, uniform scale), or 0 when it is none to 1e-5. */
+/* The factor of a similarity transform (rotation, reflection, uniform scale); 0 if it is none to within 1e-5. */
 static double similarity_scale(const double m[16])
 {
     double column[3][3];
@@ -255,7 +255,7 @@ static double similarity_scale(const double m[16])
     return length;
 }
 
-/* Factor by which the affine map stretches the area element with object-space normal n: |det M| |M^-T n|. */
+/* Factor by which the affine transform scales the area element with object-space normal n: |det M| |M^-T n|. */
 static double area_stretch(const Quadric *quadric, const double n[3])
 {
     const float *m = quadric->world_from_object.m;
@@ -271,9 +271,9 @@ static double area_stretch(const Quadric *quadric, const double n[3])
     return fabs(determinant) * length3(transformed);
 }
 
-#define SPHERE_STEPS 64 /* of the area of a light */
+#define SPHERE_STEPS 64 /* for the area of an emissive sphere */
 
-/* By the midpoint rule with `steps` squared places. */
+/* Area by the midpoint rule with steps x steps points. */
 static double sphere_area(const Quadric *quadric, int steps)
 {
     double r = (double)quadric->radius;
@@ -329,8 +329,8 @@ bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double wo
     *stored = quadric;
     primitive->a = quadric_index;
     primitive->shape_and_kind = shape_and_kind(index, kind, &shape);
-    /* Whether there is any area is seen with few steps; scenes of a million spheres that are no lights are read
-     * fast. */
+    /* a few steps suffice to tell whether there is any area; scenes with a million spheres that are no lights load
+     * faster */
     if (!((float)quadric_area(stored, kind, emission ? SPHERE_STEPS : 4) > 0.0f)) {
         --scene->primitives.count;
         scene->counts.zero_area_lights += emission ? 1 : 0;
@@ -397,7 +397,7 @@ bool scene_add_light(Scene *scene, const Light *light, Error *error)
     return true;
 }
 
-/* Area of a bilinear patch by a midpoint rule over its Jacobian; exact for parallelograms. */
+/* Area of a bilinear patch by the midpoint rule over its Jacobian; exact for parallelograms. */
 static double patch_area(const Vec3 *positions, const Patch *patch)
 {
     enum { STEPS = 16 };

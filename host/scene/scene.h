@@ -1,37 +1,37 @@
-/* A scene in the host's memory: what an importer fills, and what the backends upload.
+/* A scene in host memory: filled by an importer, uploaded by the backends.
  *
- * Life of a Scene: scene_init; the importer appends to the arrays through the scene_add_* functions and sets camera,
- * film and options; scene_finish derives the light distributions, bounds, feature mask and packs the arrays into the
- * three buffers that the kernels read; scene_destroy. */
+ * Life cycle: scene_init; the importer appends to the arrays through the scene_add_* functions and sets camera, film
+ * and options; scene_finish derives light distributions, bounds and feature mask, and packs the arrays into the three
+ * buffers that the kernels read; scene_destroy. */
 #ifndef TWINLIGHT_SCENE_SCENE_H
 #define TWINLIGHT_SCENE_SCENE_H
 
 #include "backend/backend.h"
 #include "base/array.h"
 
-/* What the scene file says about film, sampling and depth; command-line options override it. */
+/* Settings of film, sampling and depth in the scene file; command-line options override them. */
 typedef struct SceneSettings {
     int width, height; /* pixels */
     int crop[4]; /* x0 y0 x1 y1, pixels */
     int max_depth; /* path segments (pbrt's maxdepth + 1) */
     int samples; /* per pixel */
     float film_scale; /* exposure: factor on every pixel (pbrt's iso x exposuretime / 100) */
-    char output[1024]; /* file name of the film, "" when the file names none */
+    char output[1024]; /* file name of the film, "" if the scene names none */
 } SceneSettings;
 
-/* What was dropped or replaced while reading, for `info`, the log and the statistics. */
+/* What was dropped or replaced while reading; for `info`, the log and the statistics. */
 typedef struct SceneCounts {
     unsigned long degenerate_triangles;
     unsigned long zero_area_lights;
-    unsigned long substitutions; /* --lenient */
+    unsigned long substitutions; /* replacements made by --lenient */
 } SceneCounts;
 
-/* Camera as the file gives it, before the film's size is final: camera_setup turns it into a Camera. */
+/* Camera as given in the file, before the film's size is final; camera_setup turns it into a Camera. */
 typedef struct CameraSettings {
     uint kind; /* CAMERA_* */
-    float fov; /* degrees, of the shorter side */
+    float fov; /* degrees, along the film's shorter side */
     float frame_aspect; /* 0: width / height */
-    float screen_window[4]; /* valid when has_screen_window */
+    float screen_window[4]; /* valid if has_screen_window */
     bool has_screen_window;
     float lens_radius;
     float focal_distance;
@@ -54,8 +54,8 @@ typedef struct Scene {
     SceneCounts counts;
 
     /* geometry; element types in comments */
-    Array positions; /* Vec3, world space (object space inside an object) */
-    Array normals; /* Vec3, unit, already transformed and with ReverseOrientation applied */
+    Array positions; /* Vec3, world space (or object space in an object definition) */
+    Array normals; /* Vec3, unit length, transformed, with ReverseOrientation applied */
     Array uvs; /* Vec2 */
     Array primitives; /* Primitive */
     Array shapes; /* Shape */
@@ -68,37 +68,37 @@ typedef struct Scene {
     Array texture_ops; /* TextureOp */
     Array images; /* TextureImage */
     Array lights; /* Light */
-    Array light_alias; /* AliasBucket, made by scene_finish */
+    Array light_alias; /* AliasBucket, set by scene_finish */
     Array infinite_lights; /* uint */
-    double light_power; /* luminance of the flux of all lights, made by scene_finish */
+    double light_power; /* luminance of the flux of all lights, set by scene_finish */
     Array distributions2d; /* Distribution2D */
     Array lookup; /* float */
     Array texels; /* uint */
 
-    Vec3 origin; /* of the scene's coordinates in those of the file: what the importer has taken off */
-    bool movable; /* nobody keeps coordinates of it: scene_finish may move it (scene/center.h) */
-    Array shape_objects; /* uint: the object of every shape */
+    Vec3 origin; /* origin of the scene's coordinates in those of the file, subtracted by the importer */
+    bool movable; /* scene_finish may move the scene to the origin (scene/center.h) */
+    Array shape_objects; /* uint: object of each shape */
     uint current_object;
 
-    /* made by scene_finish */
-    float bounds_min[3], bounds_max[3]; /* world space of the file, everything; see scene/center.h */
-    float
-        ray_reach; /* largest coordinate of where rays start on surfaces and at lights; frame.ray_reach: and the camera */
+    /* set by scene_finish */
+    float bounds_min[3], bounds_max[3]; /* bounds of everything in the file's world space, see scene/center.h */
+    float ray_reach; /* largest coordinate of ray origins on surfaces and lights; frame.ray_reach: also on the camera */
     uint features;
-    size_t primitive_count; /* the array itself is freed once packed */
-    FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are the integrator's */
-    Guide guide; /* light guides; importance and visits are the integrator's */
-    Array geometry_words; /* uint: the packed buffers */
+    size_t primitive_count; /* the array itself is freed by packing */
+    FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are set by the integrator */
+    Guide guide; /* light guides; importance and visits are set by the integrator */
+    Array geometry_words; /* uint: packed buffer */
     Array tables_words; /* uint */
 } Scene;
 
+/* An empty scene with default settings. */
 void scene_init(Scene *scene);
 void scene_destroy(Scene *scene);
 
-/* One triangle mesh in world space (object space within an object definition). Arrays: positions 3 n floats, normals
- * 3 n or NULL, uvs 2 n or NULL, indices 3 m. The indices must be below n. Degenerate triangles (zero area in float32)
- * are dropped and counted. `shape` gives material, alpha and flags; its other members are set here. With `emission`
- * (one RGB radiance; NULL for none) every remaining triangle becomes an area light with `light_flags`. */
+/* A triangle mesh in world space (object space in an object definition): positions 3 n floats, normals 3 n or NULL, uvs
+ * 2 n or NULL, indices 3 m, which must be below n. Degenerate triangles (zero area in float) are dropped and counted.
+ * `shape` gives material, alpha and flags; its other members are set here. With `emission` (an RGB radiance; NULL for
+ * none) every remaining triangle becomes an area light with `light_flags`. */
 typedef struct MeshData {
     const float *positions;
     const float *normals;
@@ -110,47 +110,47 @@ typedef struct MeshData {
 bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
                     Error *error);
 
-/* Bilinear patches: as above with four indices a patch (p00 p10 p01 p11). */
+/* Bilinear patches: as above with four indices per patch (p00 p10 p01 p11). */
 bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
-/* Sphere or disk (kind PRIMITIVE_SPHERE or PRIMITIVE_DISK). `world_from_object` and its inverse: 4x4 row-major. The
- * caller fills radius, inner_radius, z_min, z_max, phi_max of `quadric`; the rest is set here. */
+/* A sphere or disk (kind PRIMITIVE_SPHERE or PRIMITIVE_DISK). `world_from_object` and its inverse are 4x4, row-major.
+ * The caller sets radius, inner_radius, z_min, z_max and phi_max of `quadric`; the rest is set here. */
 bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double world_from_object[16],
                        const double object_from_world[16], Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
-/* Object definitions: the primitives added between begin and end belong to the object. Returns its index in *object. */
+/* Object definitions: shapes added between begin and end belong to the object. *object: its index. */
 bool scene_object_begin(Scene *scene, uint *object, Error *error);
 bool scene_object_end(Scene *scene, Error *error);
 bool scene_add_instance(Scene *scene, uint object, const double world_from_object[16],
                         const double object_from_world[16], Error *error);
 
-/* Appends and returns the index in *index. */
+/* Appends a material; *index: its index. */
 bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error);
 bool scene_add_light(Scene *scene, const Light *light, Error *error);
 
-/* Surface area of one primitive in world space (double arithmetic). Before scene_finish has ended. */
+/* Surface area of a primitive in world space, computed in double. Only before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);
 
-/* Derives everything marked "made by scene_finish". Fails when the scene has no light or reaches too far, and when a
- * count does not fit 32 bits. */
+/* Derives everything marked "set by scene_finish". Fails if the scene has no light or extends too far, or if a count
+ * exceeds 32 bits. */
 bool scene_finish(Scene *scene, Error *error);
 
-/* Sets the film's size and crop again (after options) and recomputes the camera of `frame`. */
+/* Sets the film's size and crop again (after options) and updates the camera and ray_reach of `frame`. */
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error);
 
-/* Whether a conductor, dielectric or coat has a microfacet lobe anywhere, and not a delta. */
+/* Whether a conductor, dielectric or coat may have a microfacet lobe: a textured roughness counts as rough. */
 bool scene_material_is_rough(const Material *m);
 
-/* Words of 32 bits that the packed geometry takes, as the arrays are now. A buffer may have SCENE_WORDS_MAX, 16 GiB. */
+/* Number of 32-bit words that the geometry would take when packed now. A buffer may have SCENE_WORDS_MAX, 16 GiB. */
 size_t scene_geometry_words(const Scene *scene);
 #define SCENE_WORDS_MAX 0xfffffff0u
 
-/* What a backend gets of a finished scene, which must outlive it. */
+/* View of a finished scene for a backend. The scene must outlive it. */
 BackendScene scene_backend_view(const Scene *scene);
 
-/* Bytes held by geometry, tables and texels. */
+/* Bytes of geometry, tables and texels. */
 size_t scene_bytes(const Scene *scene);
 
 #endif

@@ -5,25 +5,18 @@
 #include <string.h>
 
 static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk"};
-static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {
-    "diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "diffusetransmission", "mix"};
-static const char *const LIGHT_NAMES[LIGHT_KINDS] = {"area", "point", "spot", "distant", "infinite", "infinite image"};
-static const char *const FEATURE_NAMES[FEATURE_COUNT] = {"triangle",       "bilinear",
-                                                         "sphere",         "disk",
-                                                         "instance",       "alpha",
-                                                         "normals",        "texture",
-                                                         "bump",           "mix",
-                                                         "diffuse",        "conductor",
-                                                         "dielectric",     "thindielectric",
-                                                         "coateddiffuse",  "diffusetransmission",
-                                                         "rough",          "area light",
-                                                         "infinite light", "delta light",
-                                                         "lens",           "tangents"};
+#define TEXT(NAME, name, text, traits) text,
+static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {MATERIAL_LIST(TEXT)};
+#define LIGHT_TEXT(NAME, text, feature) text,
+static const char *const LIGHT_NAMES[LIGHT_KINDS] = {LIGHT_LIST(LIGHT_TEXT)};
+#undef LIGHT_TEXT
+static const char *const FEATURE_NAMES[FEATURE_COUNT] = {FEATURE_LIST(TEXT)};
+#undef TEXT
 
 void scene_summary(const Scene *scene, SceneSummary *summary)
 {
     memset(summary, 0, sizeof *summary);
-    /* The importer's array is gone by now; the packed buffer holds the same primitives. */
+    /* The importer's array is already freed; the packed buffer holds the same primitives. */
     const uint *words = scene->geometry_words.data;
     const Primitive *primitives = (const Primitive *)(words + scene->frame.layout.primitives);
     for (size_t i = 0; i < scene->primitive_count; ++i)

@@ -1,4 +1,4 @@
-/* Counts of what a finished scene holds, for people and for scripts. */
+/* Counts of the contents of a finished scene, as text and as JSON. */
 #ifndef TWINLIGHT_SCENE_SUMMARY_H
 #define TWINLIGHT_SCENE_SUMMARY_H
 
@@ -7,11 +7,9 @@
 #include <stdio.h>
 
 #define PRIMITIVE_KINDS 4
-#define MATERIAL_KINDS 7
-#define LIGHT_KINDS 6
 
 typedef struct SceneSummary {
-    size_t primitives[PRIMITIVE_KINDS]; /* by PRIMITIVE_*; those of objects once, however often they are instanced */
+    size_t primitives[PRIMITIVE_KINDS]; /* by PRIMITIVE_*; those of an object count once, not per instance */
     size_t materials[MATERIAL_KINDS]; /* by MATERIAL_* */
     size_t lights[LIGHT_KINDS]; /* by LIGHT_* */
     size_t textures; /* texture programs */
@@ -22,6 +20,7 @@ typedef struct SceneSummary {
 
 void scene_summary(const Scene *scene, SceneSummary *summary);
 
+/* Print the summary; `path` is the scene's name. */
 void scene_summary_text(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 void scene_summary_json(const Scene *scene, const SceneSummary *summary, const char *path, FILE *stream);
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One TextureImage that came from a file. */
+/* A TextureImage loaded from a file. */
 typedef struct CacheEntry {
     char *path;
     TextureImageOptions options;
@@ -46,7 +46,7 @@ static bool encoding_equal(const TextureImageOptions *a, const TextureImageOptio
     return a->encoding == b->encoding && (a->encoding != ENCODING_GAMMA || a->gamma == b->gamma);
 }
 
-/* One encoded number (0 ... 1) to linear. */
+/* Decodes a value in [0, 1] to linear. */
 static float encoding_decode(const TextureImageOptions *options, double encoded)
 {
     if (options->encoding == ENCODING_LINEAR)
@@ -56,7 +56,7 @@ static float encoding_decode(const TextureImageOptions *options, double encoded)
     return (float)pow(fmax(encoded, 0.0), (double)options->gamma);
 }
 
-/* The table in scene->lookup that decodes bytes: one that another image has already, or a new one. */
+/* Index in scene->lookup of the table that decodes bytes: an existing one if equal, else a new one. */
 static bool lut_find(Scene *scene, const TextureImageOptions *options, uint *lut, Error *error)
 {
     float table[256];
@@ -64,7 +64,8 @@ static bool lut_find(Scene *scene, const TextureImageOptions *options, uint *lut
         table[i] = encoding_decode(options, i / 255.0);
     for (size_t i = 0; i < scene->images.count; ++i) {
         const TextureImage *image = &ARRAY_AT(&scene->images, TextureImage, i);
-        /* The same bits are wanted. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
+        /* Bitwise comparison is intended.
+         * NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c) */
         if (image->lut != NONE && memcmp(&ARRAY_AT(&scene->lookup, float, image->lut), table, sizeof table) == 0) {
             *lut = image->lut;
             return true;
@@ -78,7 +79,7 @@ static bool lut_find(Scene *scene, const TextureImageOptions *options, uint *lut
     return true;
 }
 
-/* Whether the fourth channel says nothing. */
+/* Whether the alpha channel is 1 everywhere. */
 static bool alpha_is_one(const Image *image)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
@@ -88,7 +89,7 @@ static bool alpha_is_one(const Image *image)
     return true;
 }
 
-/* Bytes: four texels of one channel in a word, or one texel of 3 or 4 channels, the first in the low bits. */
+/* Packs bytes: four texels of one channel per word, or one texel of 3 or 4 channels, first channel in the low bits. */
 static void bytes_pack(const Image *image, uint channels, uint *words)
 {
     const unsigned char *data = image->data;
@@ -101,7 +102,7 @@ static void bytes_pack(const Image *image, uint channels, uint *words)
     }
 }
 
-/* Floats, decoded when they are encoded. Returns how many were not finite and became 0. */
+/* Packs floats, decoding encoded ones. Returns how many were not finite and became 0. */
 static size_t floats_pack(const Image *image, uint channels, const TextureImageOptions *options, uint *words)
 {
     const float *data = image->data;
@@ -172,7 +173,8 @@ bool texture_image_add(Scene *scene, const Image *image, const TextureImageOptio
     return image_append(scene, &texture, index, error);
 }
 
-/* An entry for `path` whose texels serve these options, or NULL: bytes serve every encoding. */
+/* Finds an entry for `path`. With same_sampling its options must be equal; else only its texels must be usable, and
+ * bytes are for every encoding. NULL if there is none. */
 static const CacheEntry *cache_find(const TextureCache *cache, const Scene *scene, const char *path,
                                     const TextureImageOptions *options, bool same_sampling)
 {
@@ -201,7 +203,7 @@ static bool cache_add(TextureCache *cache, const char *path, const TextureImageO
     return true;
 }
 
-/* A new TextureImage over the texels of an old one. */
+/* Adds a TextureImage that shares the texels of an existing one. */
 static bool image_share(Scene *scene, uint old, const TextureImageOptions *options, uint *index, Error *error)
 {
     TextureImage texture = ARRAY_AT(&scene->images, TextureImage, old);
@@ -233,7 +235,7 @@ bool texture_image_load(Scene *scene, TextureCache *cache, const char *path, con
     return good;
 }
 
-/* How many values an op takes from the stack; -1 for an unknown code. Every op but the end leaves one. */
+/* Number of values that an op pops from the stack; -1 for an unknown code. Every op except the end pushes one. */
 static int op_operands(const TextureOp *op)
 {
     switch (op->code) {

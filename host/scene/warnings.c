@@ -4,7 +4,7 @@
 #include "base/log.h"
 #include "layout/scene_view.h"
 
-/* Whether all that the material scatters goes where a mirror or smooth glass sends it. */
+/* Whether the material scatters only specularly (mirror or smooth glass). */
 static bool material_is_delta(const Material *m)
 {
     return m->kind == MATERIAL_THIN_DIELECTRIC ||

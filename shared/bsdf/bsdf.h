@@ -1,5 +1,5 @@
-/* Scattering at a surface: evaluation and sampling of whatever Bsdf it has. A branch for a kind or a rough lobe that
- * the scene lacks is compiled out on devices and costs one test in C. */
+/* Scattering at a surface: evaluates and samples whatever Bsdf it has. A branch for a kind or a rough lobe that the
+ * scene lacks is compiled out on devices and costs one test in C. */
 #ifndef TWINLIGHT_BSDF_BSDF_H
 #define TWINLIGHT_BSDF_BSDF_H
 
@@ -11,87 +11,95 @@
 #include "bsdf/thin_dielectric.h"
 #include "layout/scene_view.h"
 
-/* A rough interface whose index is this close to 1 is taken as smooth: it bends light by less than 1e-3 alpha radians,
- * and float32 half vectors no longer resolve that. */
+/* A rough interface whose relative index is this close to 1 is treated as smooth: it bends light by less than 1e-3
+ * alpha radians, which float32 half vectors no longer resolve. */
 #define ETA_MATCHED 1e-3f
 
-/* Must be called once kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and bounds the
- * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Other flags are kept. */
+/* TRAIT_* of a kind of BSDF, from a constant with four bits per kind. */
+SHARED_FUNCTION uint bsdf_traits(uint kind)
+{
+#define TRAITS_OF(NAME, name, text, traits) | (ulong)(traits) << 4 * MATERIAL_##NAME
+    return (uint)((0ul BSDF_LIST(TRAITS_OF)) >> 4u * kind) & 0xfu;
+#undef TRAITS_OF
+}
+
+/* To be called after kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and clamps the
+ * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
-    uint kind = bsdf->kind;
-    bool interface = kind == MATERIAL_DIELECTRIC || kind == MATERIAL_COATED_DIFFUSE;
-    bool rough = (kind == MATERIAL_CONDUCTOR || interface) &&
-                 (bsdf->alpha_x >= ALPHA_DELTA || bsdf->alpha_y >= ALPHA_DELTA) &&
-                 !(interface && float_abs(bsdf->eta - 1.0f) < ETA_MATCHED);
+    uint traits = bsdf_traits(bsdf->kind);
+    bool rough = (traits & TRAIT_MICROFACET) != 0u && (bsdf->alpha_x >= ALPHA_DELTA || bsdf->alpha_y >= ALPHA_DELTA) &&
+                 !((traits & TRAIT_INTERFACE) != 0u && float_abs(bsdf->eta - 1.0f) < ETA_MATCHED);
     bsdf->flags &= ~(BSDF_SMOOTH | BSDF_ROUGH);
     if (rough) {
         bsdf->flags |= BSDF_ROUGH;
         bsdf->alpha_x = float_clamp(bsdf->alpha_x, ALPHA_MIN, ALPHA_MAX);
         bsdf->alpha_y = float_clamp(bsdf->alpha_y, ALPHA_MIN, ALPHA_MAX);
-    } else if (kind == MATERIAL_CONDUCTOR || kind == MATERIAL_DIELECTRIC || kind == MATERIAL_THIN_DIELECTRIC) {
+    } else if ((traits & TRAIT_DELTA) != 0u) {
         bsdf->flags |= BSDF_SMOOTH;
     }
 }
 
-/* Both directions are unit, in the shading frame, pointing away from the surface. Delta lobes are zero. */
+/* Whether to dispatch to the functions of kind NAME, whose directions have |z| > BSDF_COSINE_MIN. */
+#define OF_KIND(scene, bsdf, NAME) (SCENE_HAS(scene, FEATURE_##NAME) && (bsdf)->kind == MATERIAL_##NAME)
+
+/* f(wo, wi) |cos wi| and both densities; delta lobes count as zero. wo and wi: unit, in the shading frame, pointing
+ * away from the surface. */
 SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
         return bsdf_value_zero();
-    if (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE)
-        return diffuse_eval(bsdf, wo, wi);
-    if (SCENE_HAS(scene, FEATURE_COATED_DIFFUSE) && bsdf->kind == MATERIAL_COATED_DIFFUSE)
-        return coated_eval(scene, bsdf, wo, wi);
-    if (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION)
-        return diffuse_transmission_eval(bsdf, wo, wi);
-    if (SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u) {
-        if (SCENE_HAS(scene, FEATURE_CONDUCTOR) && bsdf->kind == MATERIAL_CONDUCTOR)
-            return conductor_rough_eval(bsdf, wo, wi);
-        if (SCENE_HAS(scene, FEATURE_DIELECTRIC) && bsdf->kind == MATERIAL_DIELECTRIC)
-            return dielectric_rough_eval(bsdf, wo, wi, transport);
-    }
+#define EVAL(NAME, name, text, traits)                                                                                 \
+    if (OF_KIND(scene, bsdf, NAME))                                                                                    \
+        return bsdf_##name##_eval(scene, bsdf, wo, wi, transport);
+    BSDF_LIST(EVAL)
+#undef EVAL
     return bsdf_value_zero();
 }
 
-/* Whether bsdf_sample_base asks for u_base. */
+/* Whether bsdf_sample_base reads u_base. */
 SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
 {
-    return (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE) ||
-           (SCENE_HAS(scene, FEATURE_COATED_DIFFUSE) && bsdf->kind == MATERIAL_COATED_DIFFUSE) ||
-           (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION);
+    (void)scene;
+    return (bsdf_traits(bsdf->kind) & TRAIT_COSINE) != 0u;
 }
 
-/* Draws wi from u_lobe (which lobe) and u_base (where in a cosine lobe) or u (where in another), all in [0,1). Fills
- * every member of *sample. False: the light is absorbed, or the sample fell on the wrong side of the surface; it
- * contributes nothing. */
+/* Draws wi. u_lobe chooses the lobe; u_base draws the direction in a cosine lobe, u in any other; all in [0,1). Fills
+ * every member of *sample. False: no contribution, since the light is absorbed or the direction lies on the wrong side
+ * of the surface. */
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                       Vec2 u_base, uint transport, BsdfSample *sample)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
         return false;
-    if (SCENE_HAS(scene, FEATURE_DIFFUSE) && bsdf->kind == MATERIAL_DIFFUSE)
-        return diffuse_sample(bsdf, wo, u_base, sample);
-    if (SCENE_HAS(scene, FEATURE_COATED_DIFFUSE) && bsdf->kind == MATERIAL_COATED_DIFFUSE)
-        return coated_sample(scene, bsdf, wo, u_lobe, u, u_base, sample);
-    if (SCENE_HAS(scene, FEATURE_DIFFUSE_TRANSMISSION) && bsdf->kind == MATERIAL_DIFFUSE_TRANSMISSION)
-        return diffuse_transmission_sample(bsdf, wo, u_lobe, u_base, sample);
-    if (SCENE_HAS(scene, FEATURE_THIN_DIELECTRIC) && bsdf->kind == MATERIAL_THIN_DIELECTRIC)
-        return thin_dielectric_sample(bsdf, wo, u_lobe, sample);
-    bool rough = SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
-    if (SCENE_HAS(scene, FEATURE_CONDUCTOR) && bsdf->kind == MATERIAL_CONDUCTOR)
-        return rough ? conductor_rough_sample(bsdf, wo, u, sample) : conductor_smooth_sample(bsdf, wo, sample);
-    if (SCENE_HAS(scene, FEATURE_DIELECTRIC) && bsdf->kind == MATERIAL_DIELECTRIC)
-        return rough ? dielectric_rough_sample(bsdf, wo, u_lobe, u, transport, sample)
-                     : dielectric_smooth_sample(bsdf, wo, u_lobe, transport, sample);
+#define SAMPLE(NAME, name, text, traits)                                                                               \
+    if (OF_KIND(scene, bsdf, NAME))                                                                                    \
+        return bsdf_##name##_sample(scene, bsdf, wo, u_lobe, u, u_base, transport, sample);
+    BSDF_LIST(SAMPLE)
+#undef SAMPLE
     return false;
 }
 
-/* The same with one point for all lobes. */
+/* bsdf_sample_base with the same point for all lobes. */
 SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                  uint transport, BsdfSample *sample)
 {
     return bsdf_sample_base(scene, bsdf, wo, u_lobe, u, u, transport, sample);
+}
+
+/* The point with which bsdf_sample_base draws wi in the lobe that u_lobe chooses. False: that lobe is a delta or cannot
+ * draw wi. If several lobes can draw wi, it has other points as well. */
+SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                 BsdfInverse *inverse)
+{
+    if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
+        return false;
+#define INVERT(NAME, name, text, traits)                                                                               \
+    if (OF_KIND(scene, bsdf, NAME))                                                                                    \
+        return bsdf_##name##_invert(scene, bsdf, wo, wi, u_lobe, inverse);
+    BSDF_LIST(INVERT)
+#undef INVERT
+    return false;
 }
 
 #endif

@@ -5,7 +5,7 @@
 #include "layout/scene_view.h"
 #include "layout/state.h"
 
-/* Fields of a stored Bsdf, from its base on. */
+/* Fields of a stored Bsdf, relative to its base. */
 #define STORED_BSDF_KIND 0u
 #define STORED_BSDF_FLAGS 1u
 #define STORED_BSDF_COLOR0 2u /* 3 */
@@ -16,65 +16,65 @@
 #define STORED_BSDF_COAT 11u
 #define STORED_BSDF_WORDS 12u
 
-/* Of a stored frame: normal, tangent. */
+/* Words of a stored frame: normal and tangent. */
 #define STORED_FRAME_WORDS 6u
 
 /* Materials whose Bsdf has a second colour, and those with an index of refraction. */
 #define FEATURES_COLOR1 (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_DIFFUSE_TRANSMISSION)
 #define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE)
 
-/* Only what some material of the scene uses is stored. */
-SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint t,
+/* Stores only the members that some material of the scene uses. */
+SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint item,
                                 const Bsdf *bsdf)
 {
-    state_store(buffer, stride, base + STORED_BSDF_KIND, t, bsdf->kind);
-    state_store(buffer, stride, base + STORED_BSDF_FLAGS, t, bsdf->flags);
-    state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR0, t, bsdf->color0);
+    state_store(buffer, stride, base + STORED_BSDF_KIND, item, bsdf->kind);
+    state_store(buffer, stride, base + STORED_BSDF_FLAGS, item, bsdf->flags);
+    state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR0, item, bsdf->color0);
     if (SCENE_HAS(scene, FEATURES_COLOR1))
-        state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR1, t, bsdf->color1);
+        state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR1, item, bsdf->color1);
     if (SCENE_HAS(scene, FEATURES_ETA))
-        state_store_float(buffer, stride, base + STORED_BSDF_ETA, t, bsdf->eta);
+        state_store_float(buffer, stride, base + STORED_BSDF_ETA, item, bsdf->eta);
     if (SCENE_HAS(scene, FEATURE_ROUGH)) {
-        state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_X, t, bsdf->alpha_x);
-        state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, t, bsdf->alpha_y);
-        state_store(buffer, stride, base + STORED_BSDF_COAT, t, bsdf->coat_table);
+        state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_X, item, bsdf->alpha_x);
+        state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, item, bsdf->alpha_y);
+        state_store(buffer, stride, base + STORED_BSDF_COAT, item, bsdf->coat_table);
     }
 }
 
-SHARED_FUNCTION Bsdf bsdf_load(const SceneView *scene, __global const uint *buffer, uint stride, uint base, uint t)
+SHARED_FUNCTION Bsdf bsdf_load(const SceneView *scene, __global const uint *buffer, uint stride, uint base, uint item)
 {
     Bsdf bsdf;
-    bsdf.kind = state_load(buffer, stride, base + STORED_BSDF_KIND, t);
-    bsdf.flags = state_load(buffer, stride, base + STORED_BSDF_FLAGS, t);
-    bsdf.color0 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR0, t);
+    bsdf.kind = state_load(buffer, stride, base + STORED_BSDF_KIND, item);
+    bsdf.flags = state_load(buffer, stride, base + STORED_BSDF_FLAGS, item);
+    bsdf.color0 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR0, item);
     bsdf.color1 = vec3_splat(0.0f);
     bsdf.eta = 1.0f;
     bsdf.alpha_x = 0.0f;
     bsdf.alpha_y = 0.0f;
     bsdf.coat_table = NONE;
     if (SCENE_HAS(scene, FEATURES_COLOR1))
-        bsdf.color1 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR1, t);
+        bsdf.color1 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR1, item);
     if (SCENE_HAS(scene, FEATURES_ETA))
-        bsdf.eta = state_load_float(buffer, stride, base + STORED_BSDF_ETA, t);
+        bsdf.eta = state_load_float(buffer, stride, base + STORED_BSDF_ETA, item);
     if (SCENE_HAS(scene, FEATURE_ROUGH)) {
-        bsdf.alpha_x = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_X, t);
-        bsdf.alpha_y = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, t);
-        bsdf.coat_table = state_load(buffer, stride, base + STORED_BSDF_COAT, t);
+        bsdf.alpha_x = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_X, item);
+        bsdf.alpha_y = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, item);
+        bsdf.coat_table = state_load(buffer, stride, base + STORED_BSDF_COAT, item);
     }
     return bsdf;
 }
 
-SHARED_FUNCTION void frame_store(__global uint *buffer, uint stride, uint base, uint t, Frame frame)
+SHARED_FUNCTION void frame_store(__global uint *buffer, uint stride, uint base, uint item, Frame frame)
 {
-    state_store_vec3(buffer, stride, base, t, frame.n);
-    state_store_vec3(buffer, stride, base + 3u, t, frame.t);
+    state_store_vec3(buffer, stride, base, item, frame.n);
+    state_store_vec3(buffer, stride, base + 3u, item, frame.t);
 }
 
-SHARED_FUNCTION Frame frame_load(__global const uint *buffer, uint stride, uint base, uint t)
+SHARED_FUNCTION Frame frame_load(__global const uint *buffer, uint stride, uint base, uint item)
 {
     Frame frame;
-    frame.n = state_load_vec3(buffer, stride, base, t);
-    frame.t = state_load_vec3(buffer, stride, base + 3u, t);
+    frame.n = state_load_vec3(buffer, stride, base, item);
+    frame.t = state_load_vec3(buffer, stride, base + 3u, item);
     frame.b = vec3_cross(frame.n, frame.t);
     return frame;
 }

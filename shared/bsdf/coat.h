@@ -5,9 +5,9 @@
  * field *inside* that gets out is T_mean / eta^2; the rest, R_i, goes back to the base.
  *
  * The coat absorbs: pbrt gives its medium unit extinction over the depth `thickness`, and no scattering. Light that
- * enters or leaves at the angle c_t inside keeps exp(-thickness / c_t) (coat_absorption; a rough interface scatters
- * around that direction, and the difference is second order in a thickness of 0.01). Of the diffuse light that the
- * interface throws back to the base, exp(-2 thickness / c) is left, on average over R(c) 2 c dc the round trip of
+ * crosses the coat with cosine c_t inside is attenuated by exp(-thickness / c_t) (coat_absorption; a rough interface
+ * scatters around that direction, and the difference is second order in a thickness of 0.01). Diffuse light that the
+ * interface reflects back to the base is attenuated by exp(-2 thickness / c), averaged over R(c) 2 c dc:
  * coat_round_trip in host/scene/coat_table.c.
  *
  * Layout of a table in `lookup`, from Bsdf.coat_table on (all floats):
@@ -75,7 +75,7 @@ SHARED_FUNCTION float coat_row_transmission(__global const float *row, float cos
     return (1.0f - t) * row[cell] + t * row[cell + 1u];
 }
 
-/* Between which rows of a table with more than one a direction lies, as row + fraction. */
+/* The position of direction w among the rows of a table with more than one, as row + fraction. */
 SHARED_FUNCTION float coat_row_position(uint rows, float alpha_x, float alpha_y, Vec3 w)
 {
     float coordinate;
@@ -89,7 +89,7 @@ SHARED_FUNCTION float coat_row_position(uint rows, float alpha_x, float alpha_y,
     return float_min(coordinate, 1.0f) * (float)(rows - 1u);
 }
 
-/* T of direction w (w.z > 0) and, in *escape, 1 - R_i. */
+/* T of direction w (w.z > 0); *escape: 1 - R_i. */
 SHARED_FUNCTION float coat_table_lookup(__global const float *table, float alpha_x, float alpha_y, Vec3 w,
                                         float *escape)
 {
@@ -114,7 +114,7 @@ SHARED_FUNCTION float coat_table_lookup(__global const float *table, float alpha
     return transmission;
 }
 
-/* What the coat leaves of light that crosses it once, having `cosine` outside. */
+/* Transmittance of one crossing of the coat by light whose cosine outside is `cosine`. */
 SHARED_FUNCTION float coat_absorption(float thickness, float eta, float cosine)
 {
     if (!(thickness > 0.0f))

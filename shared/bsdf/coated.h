@@ -21,23 +21,18 @@
 
 #include "bsdf/coat.h"
 #include "bsdf/dielectric.h"
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 
-SHARED_FUNCTION bool coated_is_rough(const SceneView *scene, const Bsdf *bsdf)
-{
-    return SCENE_HAS(scene, FEATURE_ROUGH) && (bsdf->flags & BSDF_ROUGH) != 0u;
-}
-
-/* T of direction w (w.z > 0) and, in *escape, 1 - R_i, which is the same for every direction. */
+/* T of direction w (w.z > 0); *escape: 1 - R_i, which is the same for every direction. */
 SHARED_FUNCTION float coated_transmission(const SceneView *scene, const Bsdf *bsdf, Vec3 w, float *escape)
 {
-    if (coated_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
+    if (bsdf_is_rough(scene, bsdf) && bsdf->coat_table != NONE)
         return coat_table_lookup(scene->lookup + bsdf->coat_table, bsdf->alpha_x, bsdf->alpha_y, w, escape);
     *escape = coat_smooth_escape(bsdf->eta);
     return 1.0f - fresnel_dielectric(w.z, bsdf->eta);
 }
 
-/* rho / (eta^2 (1 - rho R_i)): the base's albedo between the two passages through the coat, R_i with absorption. */
+/* rho / (eta^2 (1 - rho R_i)): albedo of the base between the two crossings of the coat; R_i includes absorption. */
 SHARED_FUNCTION float coated_base_channel(float rho, float eta, float escape)
 {
     return rho / (eta * eta * ((1.0f - rho) + rho * escape));
@@ -52,8 +47,8 @@ SHARED_FUNCTION Vec3 coated_base(const Bsdf *bsdf, float interface_escape)
                 coated_base_channel(bsdf->color0.z, bsdf->eta, escape));
 }
 
-/* Probability of sampling the coat's reflection from a direction whose T is `t`: its share of the albedo,
- * (1 - T) : T base T_mean, with T_mean = escape eta^2. */
+/* Probability of sampling the coat's reflection from a direction with transmission `t`: its share of the albedo, (1 -
+ * T) : T base T_mean, with T_mean = escape eta^2. */
 SHARED_FUNCTION float coated_specular_probability(float t, float base_max, float escape_eta2)
 {
     float specular = 1.0f - t;
@@ -78,7 +73,7 @@ SHARED_FUNCTION BsdfValue coated_eval_above(const SceneView *scene, const Bsdf *
     value.f_cos = vec3_scale(base, absorbed * t_o * t_i * i.z * INV_PI);
     value.pdf_w = (1.0f - specular_o) * i.z * INV_PI;
     value.pdf_rev_w = (1.0f - specular_i) * o.z * INV_PI;
-    if (!coated_is_rough(scene, bsdf))
+    if (!bsdf_is_rough(scene, bsdf))
         return value;
     Vec3 h = vec3_add(o, i);
     float density = 0.5f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y);
@@ -100,7 +95,7 @@ SHARED_FUNCTION BsdfValue coated_eval(const SceneView *scene, const Bsdf *bsdf, 
     return coated_eval_above(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip));
 }
 
-/* coated_specular_probability of direction o, o.z > 0, and in *t_o its T. */
+/* coated_specular_probability of direction o, o.z > 0; *t_o: its T. */
 SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, Vec3 o, float *t_o)
 {
     float escape;
@@ -109,14 +104,14 @@ SHARED_FUNCTION float coated_specular(const SceneView *scene, const Bsdf *bsdf, 
     return coated_specular_probability(*t_o, base_max, escape * bsdf->eta * bsdf->eta);
 }
 
-/* One direction from the mixture of both lobes, by u from the coat's and by u_base from the base's; the delta
- * reflection of a smooth coat stays apart. */
+/* Draws a direction from the mixture of both lobes: u in the coat's, u_base in the base's. The delta reflection of a
+ * smooth coat is no part of the mixture's density. */
 SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, Vec2 u_base,
                                    BsdfSample *sample)
 {
     bool flip = wo.z < 0.0f;
     Vec3 o = direction_flip(wo, flip);
-    bool rough = coated_is_rough(scene, bsdf);
+    bool rough = bsdf_is_rough(scene, bsdf);
     float t_o, specular = coated_specular(scene, bsdf, o, &t_o);
     Vec3 i;
     if (!(u_lobe < specular)) {
@@ -135,6 +130,39 @@ SHARED_FUNCTION bool coated_sample(const SceneView *scene, const Bsdf *bsdf, Vec
         return false;
     bsdf_sample_set(sample, direction_flip(i, flip), vec3_scale(value.f_cos, 1.0f / value.pdf_w), value);
     return true;
+}
+
+SHARED_FUNCTION bool coated_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                   BsdfInverse *inverse)
+{
+    float t_o;
+    if (!(u_lobe < coated_specular(scene, bsdf, wo, &t_o)))
+        return cosine_invert(wi, inverse);
+    return bsdf_is_rough(scene, bsdf) && reflection_invert(bsdf, wo, wi, inverse);
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_coated_diffuse_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                   uint transport)
+{
+    (void)transport;
+    return coated_eval(scene, bsdf, wo, wi);
+}
+
+SHARED_FUNCTION bool bsdf_coated_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                                Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)transport;
+    return coated_sample(scene, bsdf, wo, u_lobe, u, u_base, sample);
+}
+
+SHARED_FUNCTION bool bsdf_coated_diffuse_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                float u_lobe, BsdfInverse *inverse)
+{
+    bool flip = wo.z < 0.0f;
+    return wo.z * wi.z > 0.0f &&
+           coated_invert(scene, bsdf, direction_flip(wo, flip), direction_flip(wi, flip), u_lobe, inverse);
 }
 
 #endif

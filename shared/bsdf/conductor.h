@@ -2,9 +2,8 @@
 #ifndef TWINLIGHT_BSDF_CONDUCTOR_H
 #define TWINLIGHT_BSDF_CONDUCTOR_H
 
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 #include "bsdf/fresnel.h"
-#include "bsdf/microfacet.h"
 
 SHARED_FUNCTION Vec3 conductor_fresnel(const Bsdf *bsdf, float cos_i)
 {
@@ -20,8 +19,8 @@ SHARED_FUNCTION bool conductor_smooth_sample(const Bsdf *bsdf, Vec3 wo, BsdfSamp
     return true;
 }
 
-/* Walter et al. 2007, eq. 20, times |cos wi|, in the form of bsdf/microfacet.h. The half vector of the two unit
- * directions h has wo.h / |h| = |h| / 2, which stays accurate where both are grazing. */
+/* Walter et al. 2007, eq. 20, times |cos wi|, in the form of bsdf/microfacet.h. For unit directions the half vector h =
+ * wo + wi has wo.h / |h| = |h| / 2, which stays accurate where both are grazing. */
 SHARED_FUNCTION BsdfValue conductor_rough_eval(const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
     BsdfValue value = bsdf_value_zero();
@@ -56,6 +55,34 @@ SHARED_FUNCTION bool conductor_rough_sample(const Bsdf *bsdf, Vec3 wo, Vec2 u, B
         ggx_shadowing(w.z, ggx_root(w, bsdf->alpha_x, bsdf->alpha_y), wi.z, ggx_root(wi, bsdf->alpha_x, bsdf->alpha_y));
     bsdf_sample_set(sample, direction_flip(wi, flip), vec3_scale(conductor_fresnel(bsdf, cos_h), shadowing), value);
     return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_conductor_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                              uint transport)
+{
+    (void)transport;
+    return bsdf_is_rough(scene, bsdf) ? conductor_rough_eval(bsdf, wo, wi) : bsdf_value_zero();
+}
+
+SHARED_FUNCTION bool bsdf_conductor_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                           Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)u_lobe;
+    (void)u_base;
+    (void)transport;
+    return bsdf_is_rough(scene, bsdf) ? conductor_rough_sample(bsdf, wo, u, sample)
+                                      : conductor_smooth_sample(bsdf, wo, sample);
+}
+
+SHARED_FUNCTION bool bsdf_conductor_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                           BsdfInverse *inverse)
+{
+    (void)u_lobe;
+    bool flip = wo.z < 0.0f;
+    return wo.z * wi.z > 0.0f && bsdf_is_rough(scene, bsdf) &&
+           reflection_invert(bsdf, direction_flip(wo, flip), direction_flip(wi, flip), inverse);
 }
 
 #endif

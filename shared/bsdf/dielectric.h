@@ -5,17 +5,16 @@
 #ifndef TWINLIGHT_BSDF_DIELECTRIC_H
 #define TWINLIGHT_BSDF_DIELECTRIC_H
 
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 #include "bsdf/fresnel.h"
-#include "bsdf/microfacet.h"
 
 SHARED_FUNCTION float dielectric_relative_eta(float eta, Vec3 wo)
 {
     return wo.z > 0.0f ? eta : 1.0f / eta;
 }
 
-/* Radiance that crosses into index eta (relative) is compressed by eta^2; seen against the light, a path that carries
- * radiance from wi to wo gains 1 / eta^2 (Veach 1997, section 5.2). Importance is not scaled. */
+/* Radiance is scaled by eta^2 when it enters a medium of relative index eta. Against the direction of light, as a path
+ * carries radiance from wi to wo, that is a factor 1 / eta^2 (Veach 1997, section 5.2). Importance is not scaled. */
 SHARED_FUNCTION float refraction_scale(float eta, uint transport)
 {
     return transport == TRANSPORT_RADIANCE ? 1.0f / (eta * eta) : 1.0f;
@@ -41,8 +40,8 @@ SHARED_FUNCTION bool dielectric_smooth_sample(const Bsdf *bsdf, Vec3 wo, float u
     return true;
 }
 
-/* Reflection by the microfacets of an interface for o.z, i.z > 0. The probability of choosing reflection is F, so both
- * densities hold it as well. */
+/* Reflection by the microfacets of an interface, for o.z, i.z > 0. Reflection is chosen with probability F, so both
+ * densities contain F too. */
 SHARED_FUNCTION BsdfValue dielectric_reflection_eval(float alpha_x, float alpha_y, float eta, Vec3 o, Vec3 i)
 {
     Vec3 h = vec3_add(o, i);
@@ -72,7 +71,7 @@ SHARED_FUNCTION BsdfValue dielectric_refraction_eval(float alpha_x, float alpha_
     float cos_o = vec3_dot(o, h) * to_m;
     float cos_i = -vec3_dot(i, h) * to_m;
     if (!(cos_o > 0.0f && cos_i > 0.0f && h.z != 0.0f))
-        return value; /* the microfacet shows one of the directions its back */
+        return value; /* one of the directions lies behind the microfacet */
     float transmittance = 1.0f - fresnel_from_cosines(cos_o, cos_i, eta);
     float density = 2.0f * transmittance * ggx_density(h, alpha_x, alpha_y) * cos_o * cos_i / length_squared;
     float root_o = ggx_root(o, alpha_x, alpha_y);
@@ -97,8 +96,8 @@ SHARED_FUNCTION BsdfValue dielectric_rough_eval(const Bsdf *bsdf, Vec3 wo, Vec3 
     return dielectric_refraction_eval(bsdf->alpha_x, bsdf->alpha_y, eta, o, i, transport);
 }
 
-/* The direction into which a visible microfacet sends light from o (o.z > 0): reflected when u_lobe is below its
- * reflectance, else refracted. False when it lies on the wrong side of the surface. */
+/* Draws a microfacet visible from o (o.z > 0) and scatters there: reflects if u_lobe is below its reflectance, else
+ * refracts. False if *i lies on the wrong side of the surface. */
 SHARED_FUNCTION bool dielectric_scatter(float alpha_x, float alpha_y, float eta, Vec3 o, float u_lobe, Vec2 u, Vec3 *i)
 {
     Vec3 m = ggx_sample_visible(o, alpha_x, alpha_y, u);
@@ -117,7 +116,7 @@ SHARED_FUNCTION bool dielectric_scatter(float alpha_x, float alpha_y, float eta,
     return i->z < -BSDF_COSINE_MIN;
 }
 
-/* weight = G2 / G1: the choice by F takes F out of it. */
+/* weight = G2 / G1: F cancels against the probability of the choice. */
 SHARED_FUNCTION bool dielectric_rough_sample(const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, uint transport,
                                              BsdfSample *sample)
 {
@@ -130,7 +129,7 @@ SHARED_FUNCTION bool dielectric_rough_sample(const Bsdf *bsdf, Vec3 wo, float u_
     bool refracted = i.z < 0.0f;
     BsdfValue value = dielectric_rough_eval(bsdf, wo, direction_flip(i, flip), transport);
     if (!(value.pdf_w > 0.0f))
-        return false; /* rounding took the half vector to the other side of a boundary */
+        return false; /* rounding moved the half vector across a boundary */
     float weight = ggx_shadowing(o.z, ggx_root(o, bsdf->alpha_x, bsdf->alpha_y), float_abs(i.z),
                                  ggx_root(i, bsdf->alpha_x, bsdf->alpha_y));
     if (refracted)
@@ -141,6 +140,55 @@ SHARED_FUNCTION bool dielectric_rough_sample(const Bsdf *bsdf, Vec3 wo, float u_
         sample->eta = eta;
     }
     return true;
+}
+
+/* Given u_lobe, exactly the microfacets whose reflectance exceeds u_lobe reflect, so no density contains the
+ * probability of the choice. */
+SHARED_FUNCTION bool dielectric_invert(const Bsdf *bsdf, float eta, Vec3 wo, Vec3 wi, float u_lobe,
+                                       BsdfInverse *inverse)
+{
+    bool reflected = wi.z > 0.0f;
+    Vec3 h = reflected ? vec3_add(wo, wi) : vec3_mad(wo, eta, wi);
+    float length = vec3_length(h);
+    if (!(length > 0.0f))
+        return false;
+    h = vec3_scale(h, (h.z < 0.0f ? -1.0f : 1.0f) / length);
+    float cos_o = vec3_dot(wo, h), cos_i = vec3_dot(wi, h);
+    float reflectance = fresnel_dielectric(cos_o, eta);
+    if (!(cos_o > 0.0f) || (cos_i > 0.0f) != reflected || (u_lobe < reflectance) != reflected)
+        return false;
+    if (reflected)
+        return reflection_invert(bsdf, wo, wi, inverse);
+    inverse->u = ggx_invert_visible(wo, h, bsdf->alpha_x, bsdf->alpha_y);
+    inverse->pdf_w = 2.0f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y) * cos_o * -cos_i * eta * eta /
+                     (length * length * (wo.z + ggx_root(wo, bsdf->alpha_x, bsdf->alpha_y)));
+    inverse->base = false;
+    return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_dielectric_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                               uint transport)
+{
+    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_eval(bsdf, wo, wi, transport) : bsdf_value_zero();
+}
+
+SHARED_FUNCTION bool bsdf_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                            Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)u_base;
+    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_sample(bsdf, wo, u_lobe, u, transport, sample)
+                                      : dielectric_smooth_sample(bsdf, wo, u_lobe, transport, sample);
+}
+
+SHARED_FUNCTION bool bsdf_dielectric_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                            BsdfInverse *inverse)
+{
+    bool flip = wo.z < 0.0f;
+    return bsdf_is_rough(scene, bsdf) &&
+           dielectric_invert(bsdf, dielectric_relative_eta(bsdf->eta, wo), direction_flip(wo, flip),
+                             direction_flip(wi, flip), u_lobe, inverse);
 }
 
 #endif

@@ -1,53 +1,8 @@
-/* Lambertian reflection on whichever side the light comes from, and the cut-off that all BSDFs share.
- *
- * Conventions of every bsdf_*.h: directions are unit, in the shading frame, and point away from the surface. `eval` and
- * `sample` treat directions whose |z| is at most BSDF_COSINE_MIN alike: they carry nothing. */
+/* Lambertian reflection on the side that light comes from. */
 #ifndef TWINLIGHT_BSDF_DIFFUSE_H
 #define TWINLIGHT_BSDF_DIFFUSE_H
 
-#include "layout/path_types.h"
-#include "math/warp.h"
-
-#define BSDF_COSINE_MIN 1e-6f
-
-SHARED_FUNCTION BsdfValue bsdf_value_zero(void)
-{
-    BsdfValue value;
-    value.f_cos = vec3_splat(0.0f);
-    value.pdf_w = 0.0f;
-    value.pdf_rev_w = 0.0f;
-    return value;
-}
-
-/* The same direction seen from the other side of the surface when `flip`. */
-SHARED_FUNCTION Vec3 direction_flip(Vec3 w, bool flip)
-{
-    return vec3(w.x, w.y, flip ? -w.z : w.z);
-}
-
-/* A sample that stays on wo's side and is no delta, with everything but wi and weight taken from `value`. */
-SHARED_FUNCTION void bsdf_sample_set(BsdfSample *sample, Vec3 wi, Vec3 weight, BsdfValue value)
-{
-    sample->wi = wi;
-    sample->weight = weight;
-    sample->pdf_w = value.pdf_w;
-    sample->pdf_rev_w = value.pdf_rev_w;
-    sample->delta = 0u;
-    sample->transmitted = 0u;
-    sample->eta = 1.0f;
-}
-
-/* A delta lobe that is chosen with probability `probability` from either of its directions. */
-SHARED_FUNCTION void bsdf_sample_set_delta(BsdfSample *sample, Vec3 wi, Vec3 weight, float probability)
-{
-    sample->wi = wi;
-    sample->weight = weight;
-    sample->pdf_w = probability;
-    sample->pdf_rev_w = probability;
-    sample->delta = 1u;
-    sample->transmitted = 0u;
-    sample->eta = 1.0f;
-}
+#include "bsdf/lobe.h"
 
 SHARED_FUNCTION BsdfValue diffuse_eval(const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
@@ -68,6 +23,35 @@ SHARED_FUNCTION bool diffuse_sample(const Bsdf *bsdf, Vec3 wo, Vec2 u, BsdfSampl
     wi = direction_flip(wi, wo.z < 0.0f);
     bsdf_sample_set(sample, wi, bsdf->color0, diffuse_eval(bsdf, wo, wi));
     return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_diffuse_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
+{
+    (void)scene;
+    (void)transport;
+    return diffuse_eval(bsdf, wo, wi);
+}
+
+SHARED_FUNCTION bool bsdf_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
+                                         Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)scene;
+    (void)u_lobe;
+    (void)u;
+    (void)transport;
+    return diffuse_sample(bsdf, wo, u_base, sample);
+}
+
+SHARED_FUNCTION bool bsdf_diffuse_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
+                                         BsdfInverse *inverse)
+{
+    (void)scene;
+    (void)bsdf;
+    (void)u_lobe;
+    bool flip = wo.z < 0.0f;
+    return wo.z * wi.z > 0.0f && cosine_invert(direction_flip(wi, flip), inverse);
 }
 
 #endif

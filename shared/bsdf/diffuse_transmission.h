@@ -2,9 +2,9 @@
 #ifndef TWINLIGHT_BSDF_DIFFUSE_TRANSMISSION_H
 #define TWINLIGHT_BSDF_DIFFUSE_TRANSMISSION_H
 
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 
-/* Probability of sampling reflection; the largest components decide. Both colours must not be black. */
+/* Probability of sampling reflection, by the largest components. The two colours must not both be black. */
 SHARED_FUNCTION float diffuse_transmission_reflect_probability(const Bsdf *bsdf)
 {
     float reflected = vec3_max_component(bsdf->color0);
@@ -47,6 +47,34 @@ SHARED_FUNCTION bool diffuse_transmission_sample(const Bsdf *bsdf, Vec3 wo, floa
     bsdf_sample_set(sample, wi, vec3_scale(color, 1.0f / probability), diffuse_transmission_eval(bsdf, wo, wi));
     sample->transmitted = reflected ? 0u : 1u;
     return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_diffuse_transmission_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                         uint transport)
+{
+    (void)scene;
+    (void)transport;
+    return diffuse_transmission_eval(bsdf, wo, wi);
+}
+
+SHARED_FUNCTION bool bsdf_diffuse_transmission_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe,
+                                                      Vec2 u, Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)scene;
+    (void)u;
+    (void)transport;
+    return diffuse_transmission_sample(bsdf, wo, u_lobe, u_base, sample);
+}
+
+SHARED_FUNCTION bool bsdf_diffuse_transmission_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                      float u_lobe, BsdfInverse *inverse)
+{
+    (void)scene;
+    bool flip = wo.z<0.0f, same = wo.z * wi.z> 0.0f;
+    return !diffuse_transmission_is_black(bsdf) && (u_lobe < diffuse_transmission_reflect_probability(bsdf)) == same &&
+           cosine_invert(direction_flip(wi, flip), inverse);
 }
 
 #endif

@@ -80,7 +80,8 @@ SHARED_FUNCTION float extinction_from_reflectance(float r)
     return 2.0f * float_sqrt(clamped / (1.0f - clamped));
 }
 
-/* Reflectance of the conductor that pbrt-v4 makes of a "reflectance" parameter: eta = 1 and k from above. */
+/* Reflectance of the conductor that pbrt-v4 makes of a "reflectance" parameter: eta = 1, k from
+ * extinction_from_reflectance. */
 SHARED_FUNCTION Vec3 fresnel_conductor_reflectance(float cos_i, Vec3 reflectance)
 {
     return vec3(fresnel_conductor(cos_i, 1.0f, extinction_from_reflectance(reflectance.x)),

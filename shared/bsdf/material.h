@@ -1,5 +1,5 @@
-/* From a material and a point on a surface to a Bsdf in a shading frame: mixes decided, textures looked up, bump and
- * normal maps applied. */
+/* From a material and a surface point to a Bsdf and its shading frame: chooses among mixes, looks up textures, applies
+ * bump and normal maps. */
 #ifndef TWINLIGHT_BSDF_MATERIAL_H
 #define TWINLIGHT_BSDF_MATERIAL_H
 
@@ -11,7 +11,7 @@
 /* Mixes may nest this deep; the importer refuses deeper ones. */
 #define MIX_DEPTH_MAX 6
 
-/* Step in (u, v) for the finite differences of a displacement: what pbrt takes when it has no ray differentials. */
+/* Step in (u, v) for the finite differences of a displacement: pbrt's without ray differentials. */
 #define BUMP_STEP 0.0005f
 
 SHARED_FUNCTION TexturePoint texture_point(const Surface *surface)
@@ -22,7 +22,7 @@ SHARED_FUNCTION TexturePoint texture_point(const Surface *surface)
     return point;
 }
 
-/* Follows mix materials down to a plain one. u in (0,1) decides; what is left of it after each decision is rescaled to
+/* Follows mix materials down to a plain one. u in (0,1) decides; after each decision what remains of it is rescaled to
  * (0,1), so one number serves nested mixes. */
 SHARED_FUNCTION uint material_choose(const SceneView *scene, uint material, const TexturePoint *point, float u)
 {
@@ -39,7 +39,7 @@ SHARED_FUNCTION uint material_choose(const SceneView *scene, uint material, cons
     return material;
 }
 
-/* The part of v that is perpendicular to the unit vector n; any perpendicular when nothing is left. */
+/* The part of v perpendicular to the unit vector n; any perpendicular if that vanishes. */
 SHARED_FUNCTION Vec3 vec3_orthogonal_part(Vec3 v, Vec3 n)
 {
     Vec3 w = vec3_mad(v, -vec3_dot(v, n), n);
@@ -87,7 +87,7 @@ SHARED_FUNCTION float alpha_from_roughness(uint flags, float roughness)
     return float_clamp(alpha, 0.0f, 1.0f);
 }
 
-/* Reflectances from textures may leave [0,1], where energy would be gained. */
+/* Clamps to [0,1]: reflectances from textures may lie outside, where they would create energy. */
 SHARED_FUNCTION Vec3 color_unit(Vec3 c)
 {
     return vec3(float_clamp(c.x, 0.0f, 1.0f), float_clamp(c.y, 0.0f, 1.0f), float_clamp(c.z, 0.0f, 1.0f));

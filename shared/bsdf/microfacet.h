@@ -32,8 +32,7 @@ SHARED_FUNCTION float ggx_root(Vec3 w, float alpha_x, float alpha_y)
     return float_sqrt(w.z * w.z + x * x + y * y);
 }
 
-/* Density of normals D(h / |h|), per unit of solid angle and projected area (Walter et al. 2007, eq. 33, with two
- * alphas). h must not be zero. */
+/* Fraction of reflections off visible normals that is not shadowed, G2 / G1(o), for cosines o_z, i_z > 0. */
 SHARED_FUNCTION float ggx_density(Vec3 h, float alpha_x, float alpha_y)
 {
     float x = h.x / alpha_x;

@@ -8,7 +8,7 @@ SHARED_FILES += \
 	shared/bsdf/diffuse.h \
 	shared/bsdf/diffuse_transmission.h \
 	shared/bsdf/fresnel.h \
-	shared/bsdf/invert.h \
+	shared/bsdf/lobe.h \
 	shared/bsdf/material.h \
 	shared/bsdf/microfacet.h \
 	shared/bsdf/thin_dielectric.h

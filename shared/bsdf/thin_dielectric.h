@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_BSDF_THIN_DIELECTRIC_H
 #define TWINLIGHT_BSDF_THIN_DIELECTRIC_H
 
-#include "bsdf/diffuse.h"
+#include "bsdf/lobe.h"
 #include "bsdf/fresnel.h"
 
 /* R + T^2 R + T^2 R^3 + ... = 2 R / (1 + R) with T = 1 - R (Stokes 1862; the sum that pbrt-v4 uses). */
@@ -20,6 +20,41 @@ SHARED_FUNCTION bool thin_dielectric_sample(const Bsdf *bsdf, Vec3 wo, float u_l
     bsdf_sample_set_delta(sample, vec3_negate(wo), vec3_splat(1.0f), transmittance);
     sample->transmitted = 1u;
     return true;
+}
+
+/* ---- for bsdf/bsdf.h --------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION BsdfValue bsdf_thin_dielectric_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                    uint transport)
+{
+    (void)scene;
+    (void)bsdf;
+    (void)wo;
+    (void)wi;
+    (void)transport;
+    return bsdf_value_zero();
+}
+
+SHARED_FUNCTION bool bsdf_thin_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe,
+                                                 Vec2 u, Vec2 u_base, uint transport, BsdfSample *sample)
+{
+    (void)scene;
+    (void)u;
+    (void)u_base;
+    (void)transport;
+    return thin_dielectric_sample(bsdf, wo, u_lobe, sample);
+}
+
+SHARED_FUNCTION bool bsdf_thin_dielectric_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                 float u_lobe, BsdfInverse *inverse)
+{
+    (void)scene;
+    (void)bsdf;
+    (void)wo;
+    (void)wi;
+    (void)u_lobe;
+    (void)inverse;
+    return false;
 }
 
 #endif

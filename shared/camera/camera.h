@@ -7,7 +7,7 @@
 #include "layout/scene_types.h"
 #include "math/warp.h"
 
-/* The point of the screen window (plane z = 1, or camera units when orthographic) that a film position shows. */
+/* From film position (pixels) to screen window (on the plane z = 1, or in camera units if orthographic). */
 SHARED_FUNCTION Vec2 camera_screen(const Camera *camera, Vec2 film, float width, float height)
 {
     float x = film.x / width;
@@ -35,16 +35,16 @@ SHARED_FUNCTION Vec2 camera_lens(const Camera *camera, Vec2 u_lens)
     return lens;
 }
 
-/* The ray, in world space with a unit direction and no end, that the film position `film` (pixels, 0 <= x <= width,
- * 0 <= y <= height of the whole film) sees through the lens point of `u_lens`.
+/* The camera ray of the film position `film` (pixels, 0 <= x <= width, 0 <= y <= height of the whole film) through the
+ * lens point of `u_lens`: in world space, with a unit direction and t_max = FLOAT_MAX.
  *
- * Thin lens: rays of one film position meet in one point of the plane z = focal_distance. An orthographic camera's
+ * Thin lens: the rays of a film position meet in one point of the plane z = focal_distance. An orthographic camera's
  * lens is centred on each ray (telecentric). */
 SHARED_FUNCTION Ray camera_ray(const Camera *camera, Vec2 film, float width, float height, Vec2 u_lens)
 {
     Vec2 screen = camera_screen(camera, film, width, height);
     Vec2 lens = camera_lens(camera, u_lens);
-    /* The lens moves the origin by l and the point at z = focal_distance not at all, so d changes by -l / f. */
+    /* The lens shifts the origin by l but not the point in focus, at z = f, so the direction changes by -l / f. */
     float slope_x = 0.0f, slope_y = 0.0f;
     if (camera->lens_radius > 0.0f) {
         slope_x = lens.x / camera->focal_distance;
@@ -75,7 +75,7 @@ SHARED_FUNCTION float camera_screen_pdf(__global const FrameParams *frame)
     return 1.0f / float_abs(pixels * x * y);
 }
 
-/* By how much the camera's transform scales volumes. */
+/* Factor by which the camera's transform scales volumes. */
 SHARED_FUNCTION float camera_volume_scale(__global const Camera *camera)
 {
     Affine m = camera->world_from_camera;
@@ -83,18 +83,17 @@ SHARED_FUNCTION float camera_volume_scale(__global const Camera *camera)
     return float_abs(vec3_dot(x, vec3_cross(y, z)));
 }
 
-/* Density with which camera_ray makes the point at `distance` (world units) along the unit direction d from its origin,
- * per unit of area perpendicular to d there, when the film position is uniform over the crop window's pixels and the
- * lens point is given. It holds outside the window too: the same formula continues there, where the pixel filter still
- * looks. 0 for points behind the camera.
+/* Density, per unit area perpendicular to d, with which camera_ray makes the point at `distance` (world units) along
+ * the unit direction d from its origin, for a given lens point and a film position uniform over the pixels of the crop
+ * window. Also valid outside the window, where the pixel filter still reaches. 0 for points behind the camera.
  *
- * Let z be the camera-space component of d along the axis. The lens point fixed, the screen's area element dS is z^2
- * distance^2 dS across the plane through the point parallel to the screen (perspective), or dS (orthographic), in
- * camera space. Times a step dz along the ray that is a volume, which the transform M scales by |det M|; in the world
- * the same volume is the area sought times dz / z. For a transform that keeps lengths, z is the cosine at the lens and
- * this is 1 / (A cos^3 distance^2), the importance of a pinhole (Veach 1997, section 8.2; Pharr, Jakob and Humphreys,
- * section 16.1.1) and as well what a connection from a light path to the lens is multiplied by: divided by the samples
- * per pixel, the sums of the filtered splats are pixel values. */
+ * Let z be the camera-space component of d along the axis. For a fixed lens point, the screen's area element dS
+ * corresponds to z^2 distance^2 dS (perspective) or dS (orthographic) of the plane through the point parallel to the
+ * screen, in camera space. Times the depth dz of a step along the ray that is a volume, which the transform M scales by
+ * |det M|; in the world the same volume is the area sought times dz / z. If the transform preserves lengths, z is the
+ * cosine at the lens and the result is 1 / (A cos^3 distance^2), the importance of a pinhole (Veach 1997, section 8.2;
+ * Pharr, Jakob and Humphreys, section 16.1.1). It is also the factor of a connection from a light path to the lens:
+ * sums of filtered splats, divided by the samples per pixel, are pixel values. */
 SHARED_FUNCTION float camera_pdf(__global const FrameParams *frame, Vec3 lens, Vec3 d, float distance)
 {
     (void)lens;
@@ -109,16 +108,16 @@ SHARED_FUNCTION float camera_pdf(__global const FrameParams *frame, Vec3 lens, V
     return pdf;
 }
 
-/* A point joined to the lens. */
+/* A connection from a point to the lens. */
 typedef struct CameraConnection {
-    Vec2 film; /* where the film sees it: pixels of the whole film, continuous */
+    Vec2 film; /* its film position: pixels of the whole film, continuous */
     Vec3 p; /* on the lens */
     Vec3 wi; /* unit, from the point to the lens */
     float pdf; /* camera_pdf */
 } CameraConnection;
 
-/* Whether the film position is no further from the crop window than the pixel filter reaches. (Between pixels, a filter
- * narrower than a pixel leaves gaps; film_splat_pixel says so.) */
+/* Whether the film position is within the pixel filter's reach of the crop window. (A filter narrower than a pixel
+ * leaves gaps between pixels; film_splat_pixel finds those.) */
 SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2 film)
 {
     float x = frame->filter.radius_x - 0.5f, y = frame->filter.radius_y - 0.5f;
@@ -126,9 +125,9 @@ SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2
            film.y >= (float)frame->crop_y0 - y && film.y < (float)frame->crop_y1 + y;
 }
 
-/* Joins the world point p to the lens point of u_lens: the inverse of camera_ray. False when p is behind the camera or
- * beyond the filter's reach around the crop window. Everything is taken relative to the place of the camera, so that a
- * camera far from (0,0,0) loses no more than its own position's rounding. */
+/* Connects the world point p to the lens point of u_lens: the inverse of camera_ray. False if p is behind the camera or
+ * its film position is out of the filter's reach of the crop window. Everything is computed relative to the camera's
+ * position, so that a camera far from (0,0,0) loses no more than the rounding of that position. */
 SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, Vec2 u_lens,
                                     CameraConnection *connection)
 {
@@ -138,7 +137,7 @@ SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, V
     Vec3 q = affine_vector(camera.camera_from_world, vec3_sub(p, center));
     if (!(q.z > 0.0f))
         return false;
-    /* The point of the screen as camera_ray has it, through the point in focus. */
+    /* The point of the screen as in camera_ray, through the point in focus. */
     Vec2 slope = vec2(0.0f, 0.0f);
     if (camera.lens_radius > 0.0f)
         slope = vec2(lens.x / camera.focal_distance, lens.y / camera.focal_distance);

@@ -1,14 +1,13 @@
-/* Where a splat goes that comes from anywhere on the film: to one pixel drawn among those whose filter covers the film
- * position. The expected image is that of camera/pixel_filter.h, which draws film positions for a given pixel from the
- * same tables: per unit of pixel area, pixel c gets f(film - c) / (integral of f), and nothing is renormalised at
- * borders. */
+/* Which pixel a splat at an arbitrary film position goes to: one drawn among those whose filter covers the position.
+ * The expected image is that of camera/pixel_filter.h, which draws film positions for a given pixel from the same
+ * tables: pixel c gets f(film - c) / (integral of f) per unit of pixel area, and nothing is renormalised at borders. */
 #ifndef TWINLIGHT_CAMERA_FILM_SPLAT_H
 #define TWINLIGHT_CAMERA_FILM_SPLAT_H
 
 #include "camera/pixel_filter.h"
 
-/* |f| at `offset` (pixels from a pixel's centre) along one axis, divided by its integral: what pixel_filter_sample
- * draws with. table: the axis's, in `lookup`. *sign: of f. */
+/* |f| at `offset` (pixels from the pixel's centre) along one axis, over the integral of |f|: the density of
+ * pixel_filter_sample. table: that of the axis, in `lookup`. *sign: of f. */
 SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, float radius, float offset, float *sign)
 {
     uint kind = scene->frame->filter.kind;
@@ -23,8 +22,8 @@ SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, flo
     return (cdf[cell + 1u] - cdf[cell]) * ((0.5f * (float)PIXEL_FILTER_CELLS) / radius);
 }
 
-/* The pixels begin <= i < end along an axis whose filters may cover `film`: *first ... *last, of which there may be
- * none (false). */
+/* The pixels begin <= i < end along an axis whose filter may cover `film`: *first ... *last. False if there are
+ * none. */
 SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float film, uint *first, uint *last)
 {
     float low = float_max(float_floor(film - 0.5f - radius) + 1.0f, (float)begin);
@@ -36,11 +35,11 @@ SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float 
     return true;
 }
 
-/* Draws one of the pixels begin <= i < end along an axis in proportion to |f(film - i - 0.5)|; NONE when no filter
- * covers `film`. *weight: the sum of |f| / (integral of |f|) over all of them times the sign of the one drawn.
+/* Draws one of the pixels begin <= i < end along an axis in proportion to |f(film - i - 0.5)|; NONE if no filter covers
+ * `film`. *weight: the sum of |f| / (integral of |f|) over all of them, with the sign of f at the one drawn.
  *
- * One pass, which keeps the pixel drawn so far and replaces it with probability f / (sum so far); what the decision
- * leaves of u is uniform again and serves for the next. */
+ * Reservoir sampling in one pass: the pixel drawn so far is replaced with probability f / (sum so far); what each
+ * decision leaves of u is uniform again and serves the next. */
 SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float radius, uint begin, uint end, float film,
                                      float u, float *weight)
 {
@@ -78,9 +77,9 @@ SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float r
     return sum;
 }
 
-/* The pixel (y * width + x, inside the crop window) that a splat at film position `film` (pixels, continuous) goes to
- * with factor *weight; NONE when no pixel's filter covers the position. u in [0, 1)^2. The film divides sums by samples
- * per pixel, of which there are as many as light paths per pixel of the crop window. */
+/* The pixel (y * width + x, inside the crop window) that a splat at film position `film` (pixels, continuous) goes to;
+ * NONE if no pixel's filter covers the position. *weight: factor of its colour. u in [0, 1)^2. The film divides sums by
+ * the samples per pixel, of which there are as many as light paths per pixel of the crop window. */
 SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u, float *weight)
 {
     __global const FrameParams *frame = scene->frame;
@@ -94,8 +93,8 @@ SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u,
     return x == NONE || y == NONE ? NONE : y * frame->width + x;
 }
 
-/* What all pixels together see of the film position: the sum of |f(film - c)| / (integral of |f|), which is 1 but for
- * borders and for filters that do not add up to a constant. */
+/* Coverage of the film position by all filters: the sum over pixels c of |f(film - c)| / (integral of |f|). 1 except
+ * near borders and for filters that do not add up to a constant. */
 SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
 {
     __global const FrameParams *frame = scene->frame;
@@ -104,14 +103,14 @@ SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
            film_splat_sum(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y);
 }
 
-/* The cell along an axis of `pixels` pixels, from `first` on, that `film` is in or nearest to. */
+/* The cell of an axis of `pixels` pixels, beginning at pixel `first`, that contains `film` or is nearest to it. */
 SHARED_FUNCTION uint importance_axis(float film, uint first, uint pixels)
 {
     float place = (film - (float)first) * ((float)IMPORTANCE_SIDE / (float)pixels);
     return (uint)float_clamp(place, 0.0f, (float)IMPORTANCE_SIDE - 1.0f);
 }
 
-/* The cell of Guide.importance that a film position is in. */
+/* The cell of the target importance that contains a film position. */
 SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 film)
 {
     uint x = importance_axis(film.x, frame->crop_x0, frame->crop_x1 - frame->crop_x0);

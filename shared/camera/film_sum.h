@@ -1,75 +1,75 @@
-/* What the film does with a splat, on the host and on devices: every contribution is rounded to a whole number of units
- * of 2^exponent and added to a 64-bit sum in two's complement, so neither the order of additions nor who makes them
- * matters.
+/* How the film adds up splats, on the host and on devices: every contribution is rounded to a whole number of units of
+ * 2^exponent, the quantum, and added to a 64-bit sum in two's complement, so that neither the order of additions nor
+ * which thread makes them matters.
  *
- * A sum that would leave 64 bits becomes +-SUM_FULL and stays that, and what is read of any sum is at most SUM_MAX
- * (film_sum_shown). Let p be all that is positive in a sum and n all that is negative, without sign. With both below
- * 2^63 no order fills the sum. With p above that and n at most SUM_MAX the sum is full in some orders and p - n, which
- * is SUM_MAX or more, in others: what is read is SUM_MAX in all. Order could matter only with n above SUM_MAX, too,
- * which takes more than 2^14 negative contributions, as only filters with negative lobes and colours outside the gamut
- * make them, each near NEGATIVE_MAX. */
+ * A sum that would leave 64 bits saturates at +-SUM_FULL and stays there, and the host reads any sum as at most SUM_MAX
+ * in magnitude (film_sum_shown in host/film/film.h). Nor does the order matter then: let p be the total of all positive
+ * contributions to a sum and n that of all negative ones, without sign. With both below 2^63 no order saturates the
+ * sum. With p above that and n at most SUM_MAX, the sum saturates in some orders and is p - n >= SUM_MAX in others; it
+ * reads as SUM_MAX in all. The order could matter only with n above SUM_MAX too, which takes more than 2^14 negative
+ * contributions near NEGATIVE_MAX each; only filters with negative lobes and colours outside the gamut make any. */
 #ifndef TWINLIGHT_CAMERA_FILM_SUM_H
 #define TWINLIGHT_CAMERA_FILM_SUM_H
 
 #include "layout/state.h"
 
-/* What is read of a sum at most: one at or beyond +-this is full. */
+/* Largest magnitude that is read of a sum: at or beyond +-this it is full. */
 #define SUM_MAX ((ulong)1 << 62)
 
-/* Where a sum stays. */
+/* Where a saturated sum stays. */
 #define SUM_FULL (((ulong)1 << 63) - 1u)
 
-/* A sum below SUM_FAR stays below SUM_MAX though 2^21 additions meet, each of less than UNITS_SMALL: such ones need not
- * ask whether it is full. */
+/* A sum below SUM_FAR stays below SUM_MAX even if 2^21 concurrent additions add less than UNITS_SMALL each, so those
+ * need not check for saturation. */
 #define SUM_FAR ((ulong)1 << 61)
 #define UNITS_SMALL ((ulong)1 << 40)
 
-/* A contribution of more units is clamped. One path may bring all that a sum can show; of the largest negative ones
- * 2^14 come to as much. */
+/* Larger contributions are clamped. One path may bring all that a sum can show; of the largest negative contributions
+ * that takes 2^14. */
 #define CONTRIBUTION_MAX SUM_MAX
 #define NEGATIVE_MAX ((ulong)1 << 48)
 
-/* A film as functions see it; the pixels that are kept are x0 <= x < x1, y0 <= y < y1, row by row. */
+/* A film as functions see it. It keeps the pixels x0 <= x < x1, y0 <= y < y1, row by row. */
 typedef struct FilmView {
     uint width; /* of the whole film */
     uint x0, y0, x1, y1;
     int exponent;
-    __global ulong *sums; /* 3 a pixel */
+    __global ulong *sums; /* 3 per pixel */
     __global ulong *light_sums; /* the same for splats with SPLAT_LIGHT */
-    __global ulong *rare_sums; /* of all with SPLAT_RARE, which are in one of the others, too */
-    __global ulong *depth_sums; /* the same once more for every number of segments: film_depth_place */
-    uint depth_kinds; /* of them: 0 (names have no depth), 1: from the light, or 3: their own and rare ones, too */
-    uint depth_last; /* from SPLAT_DEPTH_MIN on */
+    __global ulong *rare_sums; /* of splats with SPLAT_RARE, which are in one of the others too */
+    __global ulong *depth_sums; /* the same again for each depth: film_depth_place */
+    uint depth_kinds; /* kinds of depth_sums: 0 (splats carry no depth), 1: light, 3: light, own and rare */
+    uint depth_last; /* largest depth that has sums; the smallest is SPLAT_DEPTH_MIN */
     __global uint *counts; /* samples of a pixel */
     __global ulong *saturated; /* contributions that were clamped */
     __global ulong *vanished; /* contributions that are not black, but less than half a unit in every channel */
-    __global ulong *not_finite; /* contributions that counted as zero */
+    __global ulong *not_finite; /* contributions that were not finite and counted as zero */
 } FilmView;
 
 #define FILM_KIND_LIGHT 0u
 #define FILM_KIND_OWN 1u
 #define FILM_KIND_RARE 2u
 
-/* Sums of a kind and of paths of `depth` segments, 3 a pixel; where they begin in depth_sums. */
+/* Where the sums of one kind and of paths of `depth` segments begin in depth_sums; 3 per pixel. */
 SHARED_FUNCTION size_t film_depth_place(uint pixels, uint kinds, uint depth, uint kind)
 {
     return 3u * (size_t)pixels * ((depth - SPLAT_DEPTH_MIN) * kinds + kind);
 }
 
-/* All of them: what depth_sums has. */
+/* Words of depth_sums. */
 SHARED_FUNCTION size_t film_depth_words(uint pixels, uint kinds, uint depth_last)
 {
     return depth_last >= SPLAT_DEPTH_MIN ? film_depth_place(pixels, kinds, depth_last + 1u, 0u) : 0u;
 }
 
-/* The sums of a film in one buffer (BUFFER_FILM): sums, the three counters, the pixels' counts, two a word, as many of
- * the light's sums and the rare ones as there are (0, 1 or 2), and last those of depths. */
+/* Words of a film's sums in one buffer (BUFFER_FILM): the sums, the three counters, the pixels' counts, two per word,
+ * then `more` (0, 1 or 2) of the light sums and the rare sums. The sums by depth follow. */
 SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
     return (1u + more) * 3u * (ulong)pixels + 3u + ((ulong)pixels + 1u) / 2u;
 }
 
-/* Points the view's sums into such a buffer; depth_kinds are known. */
+/* Points the view into such a buffer; depth_kinds must be set. */
 SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint pixels)
 {
     film->sums = words;
@@ -82,7 +82,7 @@ SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint
     film->depth_sums = words + film_words(pixels, film->depth_kinds > FILM_KIND_RARE ? 2u : 1u);
 }
 
-/* The pixel's place among those kept, or NONE. */
+/* Index of the pixel among those kept, or NONE. */
 SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
 {
     uint x = pixel % film->width, y = pixel / film->width;
@@ -90,9 +90,9 @@ SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
     return kept ? (y - film->y0) * (film->x1 - film->x0) + x - film->x0 : NONE;
 }
 
-/* The nearest whole number of units of 2^exponent to |value|, halves up, at most CONTRIBUTION_MAX or NEGATIVE_MAX;
- * whether it was more goes to *clamped. In whole numbers, for devices have no doubles to scale the float by every power
- * of two. */
+/* |value| in units of 2^exponent, rounded to the nearest, halves up, and clamped to CONTRIBUTION_MAX, or NEGATIVE_MAX
+ * where value < 0. *clamped: whether it was larger. In integers, since without doubles a device cannot scale a float by
+ * every power of two. */
 SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
 {
     uint bits = float_bits(value), field = bits >> 23 & 0xffu;
@@ -109,13 +109,13 @@ SHARED_FUNCTION ulong film_units(float value, int exponent, bool *clamped)
     return *clamped ? most : mantissa << up;
 }
 
-/* Whether a sum stays as it is. */
+/* Whether the sum has saturated. */
 SHARED_FUNCTION bool film_sum_full(ulong sum)
 {
     return sum == SUM_FULL || sum == 0u - SUM_FULL;
 }
 
-/* A sum that is not full with so many units more, which may be another sum. */
+/* A sum that is not full plus `units`, which may themselves be another sum; saturates. */
 SHARED_FUNCTION ulong film_sum_of(ulong sum, ulong units)
 {
     ulong after = sum + units;
@@ -133,7 +133,7 @@ SHARED_FUNCTION bool film_sum_below(ulong number, ulong limit)
     return number + (limit - 1u) <= 2u * (limit - 1u);
 }
 
-/* Adds to one sum. */
+/* Adds to one sum, atomically; saturates. */
 SHARED_FUNCTION void film_sum_add(__global ulong *sum, ulong units)
 {
     ulong before = atomic_sum_load(sum);
@@ -149,12 +149,12 @@ SHARED_FUNCTION void film_sum_add(__global ulong *sum, ulong units)
     }
 }
 
-/* What becomes of a contribution. */
+/* Results of film_color_add. */
 #define FILM_ADDED 0u
 #define FILM_CLAMPED 1u
 #define FILM_VANISHED 2u
 
-/* Adds a contribution to three sums. */
+/* Adds a contribution to the three sums of a pixel. Returns FILM_*. */
 SHARED_FUNCTION uint film_color_add(__global ulong *sums, Vec3 color, int exponent)
 {
     const float values[3] = {color.x, color.y, color.z};
@@ -173,7 +173,7 @@ SHARED_FUNCTION uint film_color_add(__global ulong *sums, Vec3 color, int expone
     return none && !black ? FILM_VANISHED : FILM_ADDED;
 }
 
-/* Adds to the sums of the path's number of segments what has been added to those of all. */
+/* Adds to the sums by depth a splat that has been added to the main sums. */
 SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, Vec3 color)
 {
     uint pixels = (film->x1 - film->x0) * (film->y1 - film->y0), kinds = film->depth_kinds;
@@ -189,17 +189,17 @@ SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, 
                        color, film->exponent);
 }
 
-/* Adds splat t of a buffer, and one sample to its pixel unless it comes from the light. Any number of threads or
- * work-items may do so at once. */
-SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint t)
+/* Adds a splat of a buffer, and one sample to its pixel unless the splat comes from the light. Any number of threads or
+ * work-items may do so concurrently. */
+SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint item)
 {
-    uint name = state_load(splats, stride, SPLAT_PIXEL, t);
+    uint name = state_load(splats, stride, SPLAT_PIXEL, item);
     bool from_light = (name & SPLAT_LIGHT) != 0u;
     uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
     uint slot = name != NONE ? film_slot(film, pixel) : NONE;
     if (slot == NONE)
         return;
-    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, t);
+    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, item);
     if (!from_light)
         atomic_count_add(film->counts + slot, 1u);
     if (!vec3_finite(color)) {

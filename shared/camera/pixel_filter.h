@@ -1,13 +1,13 @@
-/* The pixel filter, importance sampled: a sample of a pixel is taken at an offset drawn from |f|, and what it sees
- * goes to that pixel alone with a weight of constant magnitude (Ernst, Stamminger and Greiner, "Filter Importance
- * Sampling", IEEE Symposium on Interactive Ray Tracing, 2006). */
+/* The pixel filter, importance sampled: the offset of a pixel's sample is drawn from |f|, and its radiance goes to that
+ * pixel alone with a weight of constant magnitude (Ernst, Stamminger and Greiner, "Filter Importance Sampling", IEEE
+ * Symposium on Interactive Ray Tracing, 2006). */
 #ifndef TWINLIGHT_CAMERA_PIXEL_FILTER_H
 #define TWINLIGHT_CAMERA_PIXEL_FILTER_H
 
 #include "layout/distribution.h"
 #include "layout/scene_view.h"
 
-/* Triangle filter on [-1, 1], by inverting its distribution function on either half. */
+/* Inverse of the triangle filter's distribution function; the result is in [-1, 1]. */
 SHARED_FUNCTION float pixel_filter_triangle(float u)
 {
     return u < 0.5f ? float_sqrt(2.0f * u) - 1.0f : 1.0f - float_sqrt(2.0f * (1.0f - u));

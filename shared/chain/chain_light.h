@@ -1,25 +1,25 @@
-/* The light that a chain's walk from the camera meets (s = 0), and where the film sees what a chain proposes. */
+/* The light that a chain's camera walk hits (s = 0), and the film position of a proposal. */
 #ifndef TWINLIGHT_CHAIN_CHAIN_LIGHT_H
 #define TWINLIGHT_CHAIN_CHAIN_LIGHT_H
 
 #include "chain/mutation.h"
 #include "path/bd_weight.h"
 
-/* Where the film sees the proposal, and what path tracing shows of it. */
-SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint t, Vec2 film, Vec3 color,
-                                 float path_tracing)
+/* Stores the proposal's film position and, in its key, the part that path tracing shows. */
+SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint item, Vec2 film,
+                                 Vec3 color, float path_tracing)
 {
-    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, t, film.x);
-    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, t, film.y);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, chain_key_shown(scene, key, film, color, path_tracing));
+    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM, item, film.x);
+    state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, item, film.y);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, item, chain_key_shown(scene, key, film, color, path_tracing));
 }
 
-/* s = 0 at everything at infinity, as walk_environment, times beta. Which light a path has met says what path tracing
- * shows of it, which limits each light by itself: of several one stands for all, drawn with u in proportion to what
- * they send. It has the luminance of all, so that the chain goes after all of them, and their color on average.
- * *path_tracing: StrategyWeights.path_tracing, as much larger, so that color / *path_tracing is what path tracing would
- * contribute of the light drawn. */
+/* s = 0 at infinity, as walk_environment, times beta. Path tracing clamps the contribution of each light by itself, so
+ * the part that it shows depends on which light the path has hit. Of several lights one stands for all, drawn with u in
+ * proportion to the luminance of its weighted contribution. It is scaled to the luminance of all, so that the chain
+ * targets their sum; its expected colour is theirs. *path_tracing: StrategyWeights.path_tracing, scaled alike, so that
+ * color / *path_tracing is what path tracing would contribute from the light drawn. */
 SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
                                        float u, float *path_tracing)
 {
@@ -51,19 +51,21 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
     return vec3_scale(one, scale);
 }
 
-/* s = 0: the camera's walk of d segments has ended, at a light it is hoped. */
+/* s = 0: the camera walk of d segments has ended; it contributes only if it hit a light or left the scene towards
+ * one. */
 SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *restrict paths,
-                                     __global const uint *restrict densities, uint t, uint d, const WalkHit *walk_hit)
+                                     __global const uint *restrict densities, uint item, uint d,
+                                     const WalkHit *walk_hit)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, bank = chain_bank(paths, stride, t, SIDE_CAMERA);
-    state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, t,
-                state_load(paths, stride, BD_CAMERA_DELTA, t));
-    DensityView view = chain_density_view(frame, paths, densities, t, 0u, d + 1u);
-    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, t);
+    uint stride = frame->stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA);
+    state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, item,
+                state_load(paths, stride, BD_CAMERA_DELTA, item));
+    DensityView view = chain_density_view(frame, paths, densities, item, 0u, d + 1u);
+    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, item);
     float path_tracing = 0.0f;
     if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-        float u = random_float(chain_select(frame, paths, t).x[0]);
+        float u = random_float(chain_select(frame, paths, item).x[0]);
         color = chain_environment(scene, beta, view, walk_hit->ray.d, walk_hit->from_ng, d, u, &path_tracing);
     } else if (!walk_hit->missed && walk_hit->light != NONE) {
         StrategyEnds ends = {0};
@@ -76,9 +78,9 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
     }
     if (vec3_is_zero(color))
         return;
-    Random4 film = chain_camera(frame, paths, t);
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, color);
-    chain_place(scene, paths, t, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
+    Random4 film = chain_camera(frame, paths, item);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, color);
+    chain_place(scene, paths, item, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* What a chain proposes, and whether it takes it: Metropolis's rule with expected values, every proposal and every
- * current path weighted by how probable it is to be visited (Veach 1997, section 11.3.2). */
+/* What a chain proposes and whether it accepts: Metropolis's rule with expected values, where each proposal and each
+ * current path is splatted with the probability of its visit (Veach 1997, section 11.3.2). */
 #ifndef TWINLIGHT_CHAIN_MUTATION_H
 #define TWINLIGHT_CHAIN_MUTATION_H
 
@@ -7,11 +7,11 @@
 #include "chain/shift.h"
 #include "path/bd_connect.h"
 
-/* What decides how the path is mutated at `step`: the same for all chains where they are grouped, so that kernels of a
- * half that does not change have nothing to do. */
-SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint t, uint step)
+/* The numbers that choose the mutation at `step`. If chains are grouped all get the same, so that the kernels of a
+ * subpath that does not change have nothing to do. */
+SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint item, uint step)
 {
-    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + t;
+    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + item;
     return random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
 }
 
@@ -33,13 +33,13 @@ SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, Random4 
     return MUTATION_ALL; /* the set is empty */
 }
 
-/* The scale of its small steps. */
+/* The scale of the mutation's small steps. */
 SHARED_FUNCTION uint mutation_scale(Random4 random)
 {
     return (uint)((ulong)random.x[2] * STEP_SCALES >> 32);
 }
 
-/* Which subpaths the mutation changes. a subpath without coordinates cannot change: then all do. */
+/* The subpaths (SUBPATH_*) that the mutation changes: both, if one of them has no coordinates. */
 SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
 {
     bool light = s > 0u, camera = s < d;
@@ -50,47 +50,47 @@ SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
     return SUBPATH_BOTH;
 }
 
-/* Chooses what is proposed next, and makes its coordinates. The first proposal of a pass is the current path. */
+/* Chooses the next mutation and makes the proposal's coordinates. The first proposal of a pass is the current path. */
 SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
-                                   __global const uint *restrict vertices, uint t)
+                                   __global const uint *restrict vertices, uint item)
 {
-    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
-    uint step = state_load(paths, stride, CHAIN_STEP, t), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
+    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, item), d = chain_key_depth(key);
+    uint step = state_load(paths, stride, CHAIN_STEP, item), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
          scale = 0u;
     uint shift = 0u;
-    if (state_load_float(paths, stride, CHAIN_LUMINANCE, t) != 0.0f) {
-        state_store(paths, stride, CHAIN_STEP, t, ++step);
-        Random4 random = mutation_random(frame, t, step);
+    if (state_load_float(paths, stride, CHAIN_LUMINANCE, item) != 0.0f) {
+        state_store(paths, stride, CHAIN_STEP, item, ++step);
+        Random4 random = mutation_random(frame, item, step);
         mutation = mutation_choose(frame, random);
         scale = mutation_scale(random);
         changed = mutation_subpaths(mutation, d, chain_key_s(key));
         if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
-            shift = shift_kind(paths, vertices, stride, t);
+            shift = shift_kind(paths, vertices, stride, item);
     }
     if (mutation == MUTATION_LARGE) {
-        uint bits = chain_random(frame, t, step, CHAIN_BLOCK_S).x[0];
+        uint bits = chain_random(frame, item, step, CHAIN_BLOCK_S).x[0];
         key = chain_key(d, (uint)((ulong)bits * (d + 1u) >> 32));
     }
     uint kept = SUBPATH_BOTH & ~changed, reached = chain_key_s(key) < 2u ? kept | SUBPATH_LIGHT : kept;
-    uint banks = state_load(paths, stride, CHAIN_MOVE, t) & 0xfu << MOVE_BANKS;
-    state_store(paths, stride, CHAIN_MOVE, t,
+    uint banks = state_load(paths, stride, CHAIN_MOVE, item) & 0xfu << MOVE_BANKS;
+    state_store(paths, stride, CHAIN_MOVE, item,
                 banks | mutation << MOVE_MUTATION | changed << MOVE_CHANGED | reached << MOVE_REACHED |
                     scale << MOVE_SCALE | shift << MOVE_SHIFT);
-    state_store(paths, stride, CHAIN_PROPOSED_KEY, t, key);
+    state_store(paths, stride, CHAIN_PROPOSED_KEY, item, key);
     if (mutation != MUTATION_REPLAY)
-        chain_move_numbers(frame, paths, t, false);
+        chain_move_numbers(frame, paths, item, false);
 }
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-/* What path tracing shows of a path, from 0 to this, in the upper half of a chain's key: rounded, which leaves out or
- * doubles less than 2^-16 of a path. */
+/* The part of a path that path tracing shows is stored in the upper half of a chain's key, as a number from 0 to this.
+ * Rounding omits or doubles less than 2^-16 of a path. */
 #define KEY_SHOWN_ALL 0xffffu
 
-/* The key of a proposal at `film` of the contribution `color`, path tracing's part of whose weights is `path_tracing`:
- * were the path made by path tracing, it would contribute color / path_tracing. Here as in kernels/pt.cl (path_shown)
- * that, times its importance, is shown up to the limit. Walks from the camera begin with film_reach_factor, which paths
- * that the light's walk brings to the lens (t = 1) do not have, nor path tracing. */
+/* The key of a proposal at `film` with contribution `color`; path_tracing: weight of path tracing's strategies. Path
+ * tracing would contribute color / path_tracing, of which, times importance, it shows what is below its clamping
+ * threshold, as in path_shown (kernels/pt.cl). Camera walks start with throughput film_reach_factor, which is divided
+ * out here, since path tracing does not have it; nor do paths that the light walk connects to the lens (t = 1). */
 SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film, Vec3 color, float path_tracing)
 {
     __global const FrameParams *frame = scene->frame;
@@ -104,8 +104,8 @@ SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film
     return chain_key(d, s) | shown << 16;
 }
 
-/* Where the film's sums have a splat of a path that path tracing shows so much of, in all or in nothing of them, by
- * chance. */
+/* Layers (SPLAT_*) of a splat, all or nothing of it at random: in expectation what the pool shows of the path has
+ * SPLAT_LIGHT and its excess SPLAT_EXCESS; what path tracing does not show of it also has SPLAT_RARE. */
 SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint key, float f, float u)
 {
     bool by_pool = partition_draw(u, f, partition_threshold(frame, PARTITION_POOL));
@@ -113,11 +113,12 @@ SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint 
     return (by_pool ? SPLAT_LIGHT : SPLAT_EXCESS) | (by_paths ? 0u : SPLAT_RARE);
 }
 
-/* A path at `film` whose contribution is f times `color` is visited `visits` times; random: of CHAIN_BLOCK_DECIDE. What
- * a path has above the limit is kept apart (mmlt/combination.h): all of a visit or nothing of it, by chance. */
+/* Splats a path at `film` whose contribution is f times `color`, for `visits` expected visits. random: block
+ * CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
+ * splat or nothing of it, at random. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
-                                 __global uint *restrict diagnostics, uint t, uint key, Vec2 film, float f, Vec3 color,
-                                 float visits, Random4 random)
+                                 __global uint *restrict diagnostics, uint item, uint key, Vec2 film, float f,
+                                 Vec3 color, float visits, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride, pixel = NONE;
@@ -125,50 +126,51 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
     if (visits > 0.0f)
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
     if (pixel == NONE)
-        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else
-        splat_store(splats, diagnostics, stride, t,
+        splat_store(splats, diagnostics, stride, item,
                     chain_splat_layers(frame, key, f, random_float(random.x[3])) | pixel |
                         splat_depth(frame->split_depths, chain_key_depth(key)),
                     vec3_scale(color, visits * (weight * frame->brightness)));
 }
 
-SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint t)
+SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint item)
 {
-    return vec2(state_load_float(paths, stride, field, t), state_load_float(paths, stride, field + 1u, t));
+    return vec2(state_load_float(paths, stride, field, item), state_load_float(paths, stride, field + 1u, item));
 }
 
 SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const uint *restrict paths,
-                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint t,
+                                         __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
                                          float visits, Random4 random)
 {
     uint stride = scene->frame->stride;
-    chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_KEY, t),
-                chain_film_load(paths, stride, CHAIN_FILM, t), state_load_float(paths, stride, CHAIN_LUMINANCE, t),
-                state_load_vec3(paths, stride, CHAIN_COLOR, t), visits, random);
+    chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_KEY, item),
+                chain_film_load(paths, stride, CHAIN_FILM, item),
+                state_load_float(paths, stride, CHAIN_LUMINANCE, item),
+                state_load_vec3(paths, stride, CHAIN_COLOR, item), visits, random);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
 
-/* The proposal, of contribution `color` = f * (color / f), becomes the current path, which has `visits` to begin
- * with. */
-SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint t, float f,
+/* Makes the proposal the current path. Its target is f and its contribution `color` = f * (color / f); it starts with
+ * `visits` expected visits. */
+SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint item, float f,
                                 Vec3 color, float visits)
 {
     uint stride = frame->stride;
-    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t);
-    state_store(paths, stride, CHAIN_KEY, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t));
-    chain_move_set(paths, stride, t, MOVE_BANKS,
-                   chain_move(paths, stride, t, MOVE_BANKS) ^ chain_move(paths, stride, t, MOVE_CHANGED));
-    state_store_float(paths, stride, CHAIN_LUMINANCE, t, f);
-    state_store_vec3(paths, stride, CHAIN_COLOR, t, vec3_scale(color, 1.0f / f));
-    state_store_float(paths, stride, CHAIN_FILM, t, film.x);
-    state_store_float(paths, stride, CHAIN_FILM + 1u, t, film.y);
-    state_store_float(paths, stride, CHAIN_PENDING, t, visits);
+    Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item);
+    state_store(paths, stride, CHAIN_KEY, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item));
+    chain_move_set(paths, stride, item, MOVE_BANKS,
+                   chain_move(paths, stride, item, MOVE_BANKS) ^ chain_move(paths, stride, item, MOVE_CHANGED));
+    state_store_float(paths, stride, CHAIN_LUMINANCE, item, f);
+    state_store_vec3(paths, stride, CHAIN_COLOR, item, vec3_scale(color, 1.0f / f));
+    state_store_float(paths, stride, CHAIN_FILM, item, film.x);
+    state_store_float(paths, stride, CHAIN_FILM + 1u, item, film.y);
+    state_store_float(paths, stride, CHAIN_PENDING, item, visits);
 }
 
-/* f, after which chains go: the luminance of a contribution as far as the pixels' filters cover its place on the film,
- * times the importance there. */
+/* The target function f of chains: luminance of a contribution, times how far the pixels' filters cover its film
+ * position, times the target importance there. */
 SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color)
 {
     float f = rgb_luminance(color);
@@ -177,52 +179,52 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
     return f;
 }
 
-/* The proposal has the contribution `color`. Takes it with probability a = min(1, f' / f * change), where `change` is
- * that of volumes of a mutation that is no step (shift_ratio). What the film gets is expected: a of the proposal, 1 - a
- * of the current path, the latter kept until the chain leaves it. So there is one splat a step: of what the chain
- * leaves, or of what it does not take. */
+/* Decides on the proposal, whose contribution is `color`. Accepts with probability a = min(1, f' / f * change), where
+ * `change` is the change of volume by a mutation that is no step (shift_ratio). The film gets expected values: a of the
+ * proposal and 1 - a of the current path, which is summed up until the chain leaves it. So each step makes one splat:
+ * of the path that the chain leaves, or of the proposal that it refuses. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
-                                  __global uint *restrict diagnostics, uint t, Vec3 color, float change)
+                                  __global uint *restrict diagnostics, uint item, Vec3 color, float change)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, mutation = chain_move(paths, stride, t, MOVE_MUTATION);
-    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), color);
-    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, t);
+    uint stride = frame->stride, mutation = chain_move(paths, stride, item, MOVE_MUTATION);
+    float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), color);
+    float current = state_load_float(paths, stride, CHAIN_LUMINANCE, item);
     if (!float_finite(f)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
-        if (state_load(paths, stride, CHAIN_BAD, t) == NONE)
-            state_store(paths, stride, CHAIN_BAD, t, state_load(paths, stride, CHAIN_STEP, t));
+        if (state_load(paths, stride, CHAIN_BAD, item) == NONE)
+            state_store(paths, stride, CHAIN_BAD, item, state_load(paths, stride, CHAIN_STEP, item));
         f = 0.0f;
     }
     f = float_max(f, 0.0f);
     if (mutation == MUTATION_REPLAY) {
-        uint expected = state_load(paths, stride, CHAIN_EXPECTED, t);
-        state_store(splats, stride, SPLAT_PIXEL, t, NONE);
+        uint expected = state_load(paths, stride, CHAIN_EXPECTED, item);
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
         if (expected != 0u && expected != float_bits(f))
             diagnostic_count(diagnostics, DIAGNOSTIC_REPLAY);
         if (f > 0.0f)
-            chain_take(frame, paths, t, f, color, 0.0f);
+            chain_take(frame, paths, item, f, color, 0.0f);
         else
             diagnostic_count(diagnostics, DIAGNOSTIC_LOST_CHAIN);
         return;
     }
     float ratio = f > 0.0f ? f / current * change : 0.0f, accept = float_min(ratio, 1.0f),
-          pending = state_load_float(paths, stride, CHAIN_PENDING, t);
-    Random4 random = chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE);
+          pending = state_load_float(paths, stride, CHAIN_PENDING, item);
+    Random4 random = chain_random(frame, item, state_load(paths, stride, CHAIN_STEP, item), CHAIN_BLOCK_DECIDE);
     bool taken = f > 0.0f && random_float(random.x[0]) < accept;
-    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, t);
-    state_store(paths, stride, CHAIN_TALLY + mutation, t, tally + 1u + (taken ? 0x10000u : 0u));
-    state_store(paths, stride, CHAIN_RUN, t, run_after(state_load(paths, stride, CHAIN_RUN, t), taken));
+    uint tally = state_load(paths, stride, CHAIN_TALLY + mutation, item);
+    state_store(paths, stride, CHAIN_TALLY + mutation, item, tally + 1u + (taken ? 0x10000u : 0u));
+    state_store(paths, stride, CHAIN_RUN, item, run_after(state_load(paths, stride, CHAIN_RUN, item), taken));
     if (taken) {
-        chain_splat_current(scene, paths, splats, diagnostics, t, pending + (1.0f - accept), random);
-        chain_take(frame, paths, t, f, color, accept);
+        chain_splat_current(scene, paths, splats, diagnostics, item, pending + (1.0f - accept), random);
+        chain_take(frame, paths, item, f, color, accept);
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, splats, diagnostics, t, state_load(paths, stride, CHAIN_PROPOSED_KEY, t),
-                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, t), f, color, accept, random);
-        state_store_float(paths, stride, CHAIN_PENDING, t, pending + (1.0f - accept));
-        chain_move_numbers(frame, paths, t, true);
+        chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
+                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), f, color, accept, random);
+        state_store_float(paths, stride, CHAIN_PENDING, item, pending + (1.0f - accept));
+        chain_move_numbers(frame, paths, item, true);
     }
 }
 

@@ -1,11 +1,11 @@
-/* The pool from which chains begin: independent bidirectional samples, each a pair of walks with all connections
- * between them, of which one path is kept in proportion to what it carries (a bundle of candidates, and one of them
- * drawn). But for frame->pool_lights of them they have the camera's walk alone, with what it meets and is connected
- * with of lights.
+/* The pool from which chains start: independent bidirectional samples, each a pair of walks with all connections
+ * between them, of which one path is kept with probability proportional to what it carries (reservoir sampling). Only
+ * frame->pool_lights of them have a light walk; the others have a camera walk with the lights that it hits and is
+ * connected to.
  *
- * The random numbers of a pool's sample are a chain's coordinates: the same light and the same point on the lens serve
- * every connection, and the film position is two of the numbers. So the path kept can be made again from the sample's
- * number, its depth d and its light vertices s. */
+ * The random numbers of a sample are coordinates of a chain: all connections share one light and one point on the lens,
+ * and the film position is two of the numbers. So the kept path can be made again from the sample's number, its depth d
+ * and its number s of light vertices. */
 #ifndef TWINLIGHT_CHAIN_POOL_H
 #define TWINLIGHT_CHAIN_POOL_H
 
@@ -15,13 +15,14 @@
 #include "path/bd_start.h"
 #include "path/partition.h"
 
-/* BUFFER_PASS of a pool: what a sample is worth, and the path kept of it (chain_key); 0: none. */
-#define POOL_WEIGHT 0u /* sum of the luminances of all its paths, times their importance */
+/* BUFFER_PASS of a pool: the contribution weight of a sample, and the path kept of it (chain_key); 0: none. */
+#define POOL_WEIGHT 0u /* contribution weight: the sum over all paths of the sample */
 #define POOL_KEY 1u
-#define POOL_LUMINANCE 2u /* f of the path kept, as a chain has it */
+#define POOL_LUMINANCE 2u /* target f of the kept path, as a chain has it */
 #define POOL_WORDS 3u
 
-/* d segments, s of the vertices from the light. In the upper half a chain keeps what path tracing shows of the path. */
+/* A path of d segments with s vertices from the light. In the upper half a chain stores what path tracing shows of
+ * it. */
 SHARED_FUNCTION uint chain_key(uint d, uint s)
 {
     return d | s << 8;
@@ -37,14 +38,14 @@ SHARED_FUNCTION uint chain_key_s(uint key)
     return key >> 8 & 0xffu;
 }
 
-/* The camera's numbers of a pool's sample: its pixel is given, and the film position drawn from that pixel's filter, as
- * for every sample of an image. So a pool shows all pixels alike, which positions drawn from all of the film would not.
- * The density of a position is then film_splat_cover over film_reach_factor. *weight: of the pixel filter. */
-SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint *paths, uint t, float *weight)
+/* The camera's numbers of a pool's sample. Its pixel is given, and the film position is drawn from that pixel's filter,
+ * as in every sample of an image; positions drawn uniformly over the film would not sample all pixels alike. The
+ * density of a position is film_splat_cover / film_reach_factor. *weight: of the pixel filter. */
+SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint *paths, uint item, float *weight)
 {
     __global const FrameParams *frame = scene->frame;
-    Random4 random = pool_random(frame, paths, t, BD_RANDOM_CAMERA);
-    uint pixel = state_load(paths, frame->stride, BD_PIXEL, t);
+    Random4 random = pool_random(frame, paths, item, BD_RANDOM_CAMERA);
+    uint pixel = state_load(paths, frame->stride, BD_PIXEL, item);
     uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), weight);
     FilmReach reach = film_reach(frame);
@@ -53,59 +54,59 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
     return random;
 }
 
-/* Whether the pool's sample has a walk from the light: pool_lights of them from pool_lights_first on, behind the last
- * sample again from the first. */
+/* Whether a pool's sample has a light walk: pool_lights of them do, from pool_lights_first on, wrapping around at the
+ * pool's end. */
 SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item)
 {
-    uint first = frame->pool_lights_first, behind = frame->pool_items - first; /* the first of the pool */
+    uint first = frame->pool_lights_first, behind = frame->pool_items - first; /* samples from `first` to the end */
     return (item < first ? item + behind : item - first) < frame->pool_lights;
 }
 
-/* Roulette goes by all that a sample's paths count for: what few samples have, a pixel rarely visited or a walk from
- * the light, it may not make rarer still. In the same time a glossy hall has 0.85 times the square error, and 0.6 times
- * with the worst thousandth of its pixels, which were paths that counted 128 times, so that fifty chains began with
- * one; beaten metal has 0.7 times, a door ajar 0.8 times with the worst, others the same. */
-SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+/* Multiplies what Russian roulette goes by with what the sample's paths count for (density ratio, weight of light
+ * walks), so that roulette does not make paths rarer that few samples have. docs/TUNING.md */
+SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                          float density_ratio)
 {
     uint stride = frame->stride;
     float counts = float_max(density_ratio, 1.0f) *
-                   (pool_has_light(frame, frame->first_item + t) ? frame->pool_lights_weight : 1.0f);
-    state_store_float(paths, stride, BD_ROULETTE_SCALE, t,
-                      counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, t));
+                   (pool_has_light(frame, frame->first_item + item) ? frame->pool_lights_weight : 1.0f);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, item,
+                      counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, item));
 }
 
-/* The camera's first ray. What is gathered goes to the sample's pixel. */
+/* The first ray of the camera walk. What it gathers goes to the sample's pixel. */
 SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint t)
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint item)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     float weight;
-    Random4 random = pool_camera(scene, paths, t, &weight);
+    Random4 random = pool_camera(scene, paths, item, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
-    state_store_float(paths, stride, BD_COVER, t, film_splat_cover(scene, film));
-    state_store_float(paths, stride, BD_IMPORTANCE, t, film_importance(frame, scene->guide, film));
-    float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, t));
-    state_store_float(paths, stride, BD_WEIGHT, t, density_ratio * (weight / film_reach_factor(frame)));
-    walk_start_film(scene, paths, rays, diagnostics, stride, t, random);
-    pool_roulette_weigh(frame, paths, t, density_ratio);
+    state_store_float(paths, stride, BD_COVER, item, film_splat_cover(scene, film));
+    state_store_float(paths, stride, BD_IMPORTANCE, item, film_importance(frame, scene->guide, film));
+    float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, item));
+    state_store_float(paths, stride, BD_WEIGHT, item, density_ratio * (weight / film_reach_factor(frame)));
+    walk_start_film(scene, paths, rays, diagnostics, stride, item, random);
+    pool_roulette_weigh(frame, paths, item, density_ratio);
 }
 
-/* A sample's path of the strategy (s, t) carries `contribution`, having survived roulette with probability `survival`;
- * `cover`, `importance`: film_splat_cover and the importance where the film sees it. It becomes the candidate with the
- * probability of its share in all so far. Returns what the film is shown of it, the part below the limit. */
+/* Offers a path of strategy (s, t) to the sample's reservoir, whose candidate it becomes with probability proportional
+ * to its contribution weight. contribution: after roulette, which it survived with probability `survival`; cover,
+ * importance: film_splat_cover and target importance at its film position. Returns what the film shows of it: the part
+ * below the clamping threshold. */
 SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __global const Guide *guide,
                                       __global uint *restrict paths, uint item, uint s, uint t, float survival,
                                       float cover, float importance, Vec3 contribution)
 {
     uint stride = frame->stride;
     float luminance = rgb_luminance(contribution) * importance;
-    float f = luminance * cover * survival; /* of a chain there, which knows no roulette */
-    float weight = s > 1u ? frame->pool_lights_weight : 1.0f; /* fewer items can have made it */
+    float f = luminance * cover * survival; /* as a chain has it: without roulette */
+    float weight = s > 1u ? frame->pool_lights_weight : 1.0f; /* fewer items have a light walk */
     if (!(f > 0.0f) || !float_finite(luminance))
         return vec3_scale(contribution, weight);
-    /* Over the density of the numbers: those of a film position that the path does not have (t = 1) are uniform. */
+    /* Divided by the density of the random numbers. A path with t = 1 does not use the film's two, which are
+     * uniform. */
     float worth = weight * luminance;
     worth *= t == 1u ? cover
                      : pool_density_ratio(frame, guide, state_load(paths, stride, BD_PIXEL, item)) /

@@ -11,7 +11,7 @@ typedef struct PatchCorners {
     Vec3 p00, p10, p01, p11;
 } PatchCorners;
 
-/* How far outside [0, 1] a parameter may come out and still count, so that neighbours overlap rather than leak. */
+/* How far outside [0, 1] a parameter may lie and still count, so that neighbours overlap rather than leak. */
 #define PATCH_OVERLAP (16.0f * FLOAT_EPSILON)
 
 SHARED_FUNCTION Vec3 patch_point(const PatchCorners *q, float u, float v)
@@ -29,7 +29,7 @@ SHARED_FUNCTION Vec3 patch_dpdv(const PatchCorners *q, float u)
     return vec3_lerp(vec3_sub(q->p01, q->p00), vec3_sub(q->p11, q->p10), u);
 }
 
-/* Real roots of a x^2 + b x + c = 0 without cancellation; their number. */
+/* Real roots of a x^2 + b x + c = 0, without cancellation; returns their number. */
 SHARED_FUNCTION uint quadratic_roots(float a, float b, float c, float *x0, float *x1)
 {
     if (a == 0.0f) {
@@ -52,7 +52,7 @@ SHARED_FUNCTION float patch_size(const PatchCorners *q)
                      float_max(vec3_max_abs(q->p01), vec3_max_abs(q->p11)));
 }
 
-/* The point of the line p(u, .) where the ray meets it. */
+/* Where the ray meets the line p(u, .). */
 SHARED_FUNCTION bool patch_query_line(const PatchCorners *q, const RayQuery *query, float u, float *t, float *v)
 {
     if (!(u >= -PATCH_OVERLAP && u <= 1.0f + PATCH_OVERLAP))

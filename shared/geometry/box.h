@@ -57,7 +57,7 @@ SHARED_FUNCTION Box box_transform(const Box *box, Affine map)
     return image;
 }
 
-/* `box` with `margin` on every side. */
+/* `box` enlarged by `margin` on every side. */
 SHARED_FUNCTION Box box_inflate(Box box, float margin)
 {
     for (int i = 0; i < 3; ++i) {
@@ -78,12 +78,12 @@ SHARED_FUNCTION float box_largest(const Box *box)
 
 /* ---- hits lie in boxes ------------------------------------------------------------------------------------------- */
 
-/* The closest hit must not depend on the order in which a hierarchy is walked, so a traversal has to reach every
- * primitive whose test accepts the ray, at the t that the test finds. Bounding the rounding of each primitive's test
- * does not give that: where a triangle is seen edge-on all three edge functions may round to zero, and a ray that
- * passes it at any distance is accepted; t of a grazing hit may be far off; bilinear patches overlap. So a hit counts
- * only where the ray is in the primitive's box, widened by hit_margin: box_admits_hit is part of the primitive's test.
- * With u = FLOAT_EPSILON / 2, and A = largest coordinate of the box + largest coordinate of the ray's origin:
+/* The closest hit must not depend on the order of traversal, so a traversal has to reach every primitive whose test
+ * accepts the ray, at the t that the test finds. Bounding the rounding errors of each primitive's test does not ensure
+ * that: where a triangle is seen edge-on all three edge functions may round to zero, and a ray that passes it at any
+ * distance is accepted; t of a grazing hit may be far off; bilinear patches overlap. So a hit counts only where the ray
+ * is in the primitive's box, widened by hit_margin: box_admits_hit is part of the primitive's test. With u =
+ * FLOAT_EPSILON / 2, and A = largest coordinate of the box + largest coordinate of the ray's origin:
  *
  *   - A line that meets a triangle is off it by at most 7 u A in the test's arithmetic: u |p - o| in the differences,
  *     4 u |s z| in the sheared offsets, u of the sheared coordinates, each at most A, 2 A for the last. HIT_ULPS, 6, is
@@ -94,10 +94,10 @@ SHARED_FUNCTION float box_largest(const Box *box)
  * test_geometry's `adversary` searches for rays that break it. */
 #define HIT_ULPS 6.0f
 
-/* Of boxes in a hierarchy: HIT_ULPS + 1.5; half a unit for the sum that widens the box; and what the slab tests are off
- * by. Embree's, without FMA, makes t of a plane with three roundings and a reciprocal that is off by up to 5 u (an
- * estimate of 12 bits and one Newton step): 7 u A. With FMA it is (p r - o r): 3.3 u + u for each of A and o. The
- * device's, of which no FMA is asked: 3 u A, and u |o| for the error of the origin that it adds itself. */
+/* Margin of the boxes in a hierarchy: HIT_ULPS + 1.5, half a unit for the sum that widens the box, and the error of the
+ * slab tests. Embree's, without FMA, makes t of a plane with three roundings and a reciprocal that is off by up to 5 u
+ * (an estimate of 12 bits and one Newton step): 7 u A. With FMA it is (p r - o r): 3.3 u + u for each of A and o. The
+ * device's, which does not rely on FMA: 3 u A, and u |o| for the error of the origin, which it adds itself. */
 #define BOX_ULPS 12.0f
 
 /* How far outside `box` a hit of the ray may lie. */
@@ -106,7 +106,7 @@ SHARED_FUNCTION float hit_margin(const Box *box, const RayQuery *query)
     return HIT_ULPS * FLOAT_EPSILON * (box_largest(box) + vec3_max_abs(query->o));
 }
 
-/* Narrows [*enter, *leave] to where o + t d lies between low and high, all relative to the origin. */
+/* Narrows [*enter, *leave] to where o + t d lies between low and high; low and high are relative to the origin. */
 SHARED_FUNCTION void slab_narrow(float low, float high, float d, float *enter, float *leave)
 {
     if (d == 0.0f) {
@@ -119,8 +119,8 @@ SHARED_FUNCTION void slab_narrow(float low, float high, float d, float *enter, f
     *leave = float_min(*leave, float_max(a, b));
 }
 
-/* Whether a hit at *t of the primitive in `box` may count: true as it is when the ray is within hit_margin of the box
- * there. Else *t is moved to where it is, if anywhere between 0 and t_max. */
+/* Whether a hit at *t of the primitive in `box` may count. If the ray is within hit_margin of the box there, *t stays;
+ * otherwise *t moves to the nearest t between 0 and t_max where it is. False if there is none. */
 SHARED_FUNCTION bool box_admits_hit(const Box *box, const RayQuery *query, float *t)
 {
     float margin = hit_margin(box, query), enter = 0.0f, leave = query->t_max;
@@ -148,7 +148,7 @@ SHARED_FUNCTION bool box_admits_hit(const Box *box, const RayQuery *query, float
     return *t > 0.0f && *t < query->t_max;
 }
 
-/* What a box in a hierarchy is widened by on every side, for rays whose origins have no coordinate above `reach`. */
+/* The margin, on every side, of a box in a hierarchy, for rays whose origins have no coordinate above `reach`. */
 SHARED_FUNCTION float box_margin(const Box *box, float reach)
 {
     return BOX_ULPS * FLOAT_EPSILON * (box_largest(box) + reach);
@@ -168,7 +168,7 @@ SHARED_FUNCTION Box quadric_box(__global const Quadric *quadric, uint kind)
     box_add(&box, vec3(-r, -r, kind == PRIMITIVE_DISK ? quadric->z_min : float_max(-r, quadric->z_min)));
     box_add(&box, vec3(r, r, kind == PRIMITIVE_DISK ? quadric->z_min : float_min(r, quadric->z_max)));
     box = box_transform(&box, quadric->world_from_object);
-    /* The rounding of the two transforms, of boxes here and of rays in the primitive's test. */
+    /* Rounding of the two transforms: of the box here, and of rays in the primitive's test. */
     return box_inflate(box, 4.0f * FLOAT_EPSILON * box_largest(&box));
 }
 
@@ -181,7 +181,7 @@ SHARED_FUNCTION Box triangle_box(Vec3 a, Vec3 b, Vec3 c)
     return box;
 }
 
-/* Around one primitive, without margin, in the space of its object. */
+/* The box of one primitive, without margin, in the space of its object. */
 SHARED_FUNCTION Box primitive_box(const SceneView *scene, uint primitive)
 {
     Primitive p = scene->primitives[primitive];

@@ -1,10 +1,10 @@
 /* Rays through the hierarchy in BUFFER_BVH: two nested loops, one that descends through nodes and one over the
  * primitives of a leaf, with a bounded stack in private memory.
  *
- * The buffer is made of quads, four words that are read at once. Node n begins at quad n * BVH_NODE_QUADS; in the place
- * of node 0 is the header. A node has up to four children: quads 0 ... 5 are the low and high planes of their boxes
- * along x, y, z, a lane a child; quad 6 holds the children's words; quad 7 keeps nodes to a device's cache lines of 128
- * bytes. Lanes without a child have a box that nothing meets. A child's word is the number of an inner node, or
+ * The buffer is made of quads, four words that are read at once. Node n begins at quad n * BVH_NODE_QUADS; the header
+ * takes the place of node 0. A node has up to four children: quads 0 ... 5 are the low and high planes of their boxes
+ * along x, y, z, one lane per child; quad 6 holds the children's words; quad 7 pads nodes to a device's cache lines of
+ * 128 bytes. Lanes without a child have a box that nothing meets. A child's word is the number of an inner node, or
  * BVH_LEAF with the number of items, less one, and the first of them. Item i, a primitive or an instance, begins at
  * quad i * BVH_ITEM_QUADS:
  *
@@ -12,30 +12,30 @@
  *     0   0   0   0   0   0   0   0   0   0   0   0   id shape_and_kind 0    0     another primitive: see the scene
  *     0   0   0   0   0   0   0   0   0   0   0   0   id BVH_INSTANCE   root 0     an instance and its object's root
  *
- * A ray takes the axes in its own order (RayQuery), so it reads its quads in that order and permutes nothing. An
- * object's nodes lie together, children of a node side by side, and its items behind them.
+ * A ray takes the axes in its own order (RayQuery), so it reads the quads of an item in that order and permutes
+ * nothing. The nodes of an object are consecutive, with the children of a node side by side, and its items follow them.
  *
- * Boxes are widened by box_margin for their own coordinates, rays add what follows from their origins (bvh_ray), and
- * hits lie in boxes (box_admits_hit). So whichever boxes a ray is found to meet, the answer is the smallest (t,
- * instance, primitive) of the shared primitive test, and the arithmetic of boxes decides no bit of it. */
+ * Boxes are widened by box_margin for their own coordinates, rays add the margin for their origins (bvh_ray), and hits
+ * lie in boxes (box_admits_hit). So the answer is the smallest (t, instance, primitive) of the shared primitive test,
+ * whatever the rounding of box tests, which decides no bit of it. */
 #ifndef TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 #define TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 
 #include "geometry/primitive.h"
 
-/* Entries of the stack. The build refuses what would need more. */
+/* Entries of the stack. The build refuses hierarchies that would need more. */
 #define BVH_STACK 96u
 
 #define BVH_NODE_QUADS 8u
 #define BVH_ITEM_QUADS 4u
-#define BVH_ITEM_TAG 3u /* quad of an item */
+#define BVH_ITEM_TAG 3u /* the quad of an item with its tag */
 
-/* Words of the header: the world's root, and the bits of origin_ulps of bvh_ray in world space. In the space of an
- * object it is BOX_ULPS. */
+/* Words of the header: the world's root, and the bits of bvh_ray's origin_ulps in world space. In the space of an
+ * object that is BOX_ULPS. */
 #define BVH_ROOT 0u
 #define BVH_ORIGIN_ULPS 1u
 
-/* Children. */
+/* Words of children. */
 #define BVH_LEAF 0x80000000u
 #define BVH_LEAF_COUNT_SHIFT 28
 #define BVH_LEAF_COUNT_MASK 3u
@@ -43,26 +43,26 @@
 #define BVH_EMPTY 0xffffffffu /* nothing left, or nothing at all */
 #define BVH_RETURN 0xfffffffeu /* on the stack: leave the instance */
 
-/* What an item of an instance has for a tag: no kind of primitive. */
+/* Tag of an instance's item; no primitive has this kind. */
 #define BVH_INSTANCE 0xffffffffu
 
 #define BVH_MISS 0xffffffffu
 
 /* ---- boxes ------------------------------------------------------------------------------------------------------- */
 
-/* A ray as boxes see it. d is scaled by a power of two so that its largest component lies in [1, 2): reciprocals
- * neither overflow nor lose what is left of a very short one. */
+/* A ray as box tests need it. d is scaled by a power of two so that its largest component lies in [1, 2): the
+ * reciprocals neither overflow nor lose the precision of a very short d. */
 typedef struct BvhRay {
     float ix, iy, iz; /* 1 / d */
-    /* -o / d, less and more what the origin's rounding may amount to: a plane at p is met first at p i + n, one
-     * instruction on a device, and left at p i + f. */
+    /* -o / d, lowered (n) or raised (f) by the possible rounding error of the origin: a plane at p is entered at p i +
+     * n, one instruction on a device, and left at p i + f. */
     float n_x, n_y, n_z, f_x, f_y, f_z;
-    uint nx, ny, nz; /* the quad of a node with the planes that the ray meets first; the others are in quad n ^ 1 */
+    uint nx, ny, nz; /* the quad of a node with the planes where the ray enters; those where it leaves: quad n ^ 1 */
     float scale; /* t of boxes over t of the ray */
 } BvhRay;
 
-/* A component this small, beside one of 1 or more, is taken for its size: that moves no point of the ray by more than
- * 2^-60 of its distance from the origin, far below the margin of boxes. */
+/* A component of d smaller than this, beside one of 1 or more, is replaced by it. That moves no point of the ray by
+ * more than 2^-60 of its distance from the origin, far below the margin of boxes. */
 #define BVH_SMALL 8.6736173798840355e-19f /* 2^-60 */
 
 SHARED_FUNCTION float bvh_reciprocal(float d)
@@ -71,9 +71,8 @@ SHARED_FUNCTION float bvh_reciprocal(float d)
     return 1.0f / (d < 0.0f ? -size : size);
 }
 
-/* o, d: traceable (ray_traceable). origin_ulps: by how many units of FLOAT_EPSILON times the origin's largest
- * coordinate boxes have to be wider for this ray; what follows from their own coordinates they are widened by
- * already. */
+/* o, d: traceable (ray_traceable). origin_ulps: additional margin that boxes need for this ray, in units of
+ * FLOAT_EPSILON times the origin's largest coordinate; boxes already have the margin for their own coordinates. */
 SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d, float origin_ulps)
 {
     BvhRay ray;
@@ -90,15 +89,15 @@ SHARED_FUNCTION BvhRay bvh_ray(Vec3 o, Vec3 d, float origin_ulps)
     ray.f_x = -(o.x * ray.ix) + error * float_abs(ray.ix);
     ray.f_y = -(o.y * ray.iy) + error * float_abs(ray.iy);
     ray.f_z = -(o.z * ray.iz) + error * float_abs(ray.iz);
-    /* By the signs of the reciprocals: a component of d that is denormal may have lost its own by the stretch. */
+    /* By the signs of the reciprocals: scaling may have cost a denormal component of d its sign. */
     ray.nx = ray.ix < 0.0f ? 1u : 0u;
     ray.ny = ray.iy < 0.0f ? 3u : 2u;
     ray.nz = ray.iz < 0.0f ? 5u : 4u;
     return ray;
 }
 
-/* For each child: where the ray enters its box, as bits that order like numbers, with the child's lane in the lowest
- * two; BVH_MISS where it does not enter it before `limit`. */
+/* For each child: the t at which the ray enters its box, as bits that order like numbers, with the child's lane in the
+ * lowest two; BVH_MISS if the ray does not enter it before `limit`. */
 SHARED_FUNCTION Uint4 bvh_node_keys(__global const Float4 *node, const BvhRay *ray, float limit)
 {
     Float4 near_x = float4_mad(node[ray->nx], ray->ix, ray->n_x);
@@ -115,14 +114,14 @@ SHARED_FUNCTION Uint4 bvh_node_keys(__global const Float4 *node, const BvhRay *r
 
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
-/* What waits to be done. */
+/* A child that waits to be visited. */
 typedef struct BvhEntry {
     uint word; /* of a child */
-    float enter; /* where the ray enters it, in t of boxes; 0 for what must be done in any case */
+    float enter; /* where the ray enters it, in t of boxes; 0: must be visited in any case */
 } BvhEntry;
 
-/* One traversal under way, but for the stack: an array whose index is known at run time only lies in memory, and what
- * shares a struct with it would too. */
+/* State of a traversal, except for its stack: an array that is indexed at run time lives in memory, and would take the
+ * rest of a struct with it. */
 typedef struct BvhWalk {
     BvhRay boxes; /* the ray in the space of `instance` */
     RayQuery query; /* the same for primitives */
@@ -139,7 +138,8 @@ SHARED_FUNCTION void bvh_push(BvhWalk *walk, BvhEntry *stack, uint word, float e
     ++walk->waiting;
 }
 
-/* The next child that the ray enters before the limit. The lowest entry is BVH_EMPTY at 0, which ends every walk. */
+/* Pops the next child that the ray enters before the limit. The lowest entry is BVH_EMPTY at 0, which ends every
+ * walk. */
 SHARED_FUNCTION uint bvh_pop(BvhWalk *walk, const BvhEntry *stack)
 {
     do
@@ -158,8 +158,8 @@ SHARED_FUNCTION uint uint_upper(uint a, uint b)
     return a < b ? b : a;
 }
 
-/* Meets the node's children: the nearest is returned, the others wait on the stack, the next nearest on top. Without
- * the lanes in their keys: they would be entered up to three floats later than they are. */
+/* Tests the node's children: returns the nearest and pushes the others, the next nearest on top. Their entry distances
+ * are stored without the lane bits of the keys, which could make them up to three floats larger. */
 SHARED_FUNCTION uint bvh_descend(__global const Float4 *bvh, uint node, BvhWalk *walk, BvhEntry *stack)
 {
     __global const Float4 *quads = bvh + node * BVH_NODE_QUADS;
@@ -199,8 +199,8 @@ SHARED_FUNCTION ShearedCorner bvh_corner(Float4 x, Float4 y, Float4 z, uint k)
     return corner;
 }
 
-/* triangle_query on an item, a corner a lane: the same numbers from the same operands, and whether the hit counts. One
- * cheap reason to give up comes first that it would find later: all corners behind the origin. */
+/* triangle_query on an item, one lane per corner: the same numbers from the same operands, and whether the hit counts.
+ * A cheap rejection comes first that the test would make later: all corners behind the origin. */
 SHARED_FUNCTION bool bvh_triangle_query(const SceneView *scene, __global const Float4 *quads, const RayQuery *query,
                                         uint id, Hit *hit)
 {
@@ -228,7 +228,7 @@ SHARED_FUNCTION bool bvh_triangle_query(const SceneView *scene, __global const F
 
 #define BVH_FEATURES_CURVED (FEATURE_BILINEAR | FEATURE_SPHERE | FEATURE_DISK)
 
-/* The hit of a primitive's item; *id is which. */
+/* The hit of a primitive's item; *id: the primitive. */
 SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float4 *quads, const RayQuery *query,
                                     Hit *hit, uint *id)
 {
@@ -239,8 +239,8 @@ SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float
     return bvh_triangle_query(scene, quads, query, tag[0], hit);
 }
 
-/* Into instance `id`, whose object has the root `root`, with what is left of the leaf (BVH_EMPTY: nothing) to be done
- * after it. False when the ray cannot be traced there. */
+/* Enters instance `id`. rest: what is left of the leaf, to be visited afterwards (BVH_EMPTY: nothing). False if the ray
+ * cannot be traced in the instance's space. */
 SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, BvhEntry *stack, uint id, uint rest)
 {
     RayQuery query = ray_query_transform(scene->instances[id].object_from_world, &walk->query);
@@ -253,7 +253,8 @@ SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, B
     return true;
 }
 
-/* Asks the items of a leaf. Returns the word to go on with; BVH_EMPTY when `any` hit was asked for and is found. */
+/* Tests the items of a leaf. Returns the word to continue with; BVH_EMPTY if `any` hit was asked for and one is
+ * found. */
 SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh, uint word, bool any, BvhWalk *walk,
                               BvhEntry *stack)
 {
@@ -282,7 +283,7 @@ SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh
     return bvh_pop(walk, stack);
 }
 
-/* The closest hit, or when `any` is asked for, some primitive that lies within the ray. */
+/* The closest hit, or if `any`, some primitive that the ray hits. */
 SHARED_FUNCTION Hit bvh_walk(const SceneView *scene, __global const uint *words, Ray ray, bool any)
 {
     __global const Float4 *bvh = (__global const Float4 *)words;
@@ -313,7 +314,7 @@ SHARED_FUNCTION Hit bvh_closest(const SceneView *scene, __global const uint *bvh
     return bvh_walk(scene, bvh, ray, false);
 }
 
-/* Whether anything lies within the ray. */
+/* Whether the ray hits anything. */
 SHARED_FUNCTION bool bvh_occluded(const SceneView *scene, __global const uint *bvh, Ray ray)
 {
     return bvh_walk(scene, bvh, ray, true).primitive != NONE;

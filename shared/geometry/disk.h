@@ -14,7 +14,7 @@ SHARED_FUNCTION Vec2 disk_parameters(__global const Quadric *quadric, Vec3 p)
     return vec2(float_clamp(u, 0.0f, 1.0f), float_clamp(v, 0.0f, 1.0f));
 }
 
-/* The point of the disk that o + t d means, in object space, and in *world in the space around. */
+/* The point of the disk at o + t d, put back onto it, in object space; *world: in the space around. */
 SHARED_FUNCTION Vec3 disk_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
 {
     Vec3 p = vec3_mad(affine_point(quadric->object_from_world, o), t, affine_vector(quadric->object_from_world, d));

@@ -1,4 +1,4 @@
-/* The one test that decides whether a ray meets a primitive, whoever asks: Embree's callbacks, the device's traversal
+/* The one test that decides whether a ray hits a primitive, for all callers: Embree's callbacks, the device's traversal
  * and the brute force of the tests. */
 #ifndef TWINLIGHT_GEOMETRY_PRIMITIVE_H
 #define TWINLIGHT_GEOMETRY_PRIMITIVE_H
@@ -48,7 +48,7 @@ SHARED_FUNCTION Vec2 patch_uv(const SceneView *scene, const Shape *shape, uint p
                 w00 * corner[0].y + w10 * corner[1].y + w01 * corner[2].y + w11 * corner[3].y);
 }
 
-/* The point of the sphere or disk that o + t d means, in object space, and in *world in the space around. */
+/* The point of the sphere or disk at o + t d, put back onto it, in object space; *world: in the space around. */
 SHARED_FUNCTION Vec3 quadric_point(const SceneView *scene, const Primitive *primitive, Vec3 o, Vec3 d, float t,
                                    Vec3 *world)
 {
@@ -57,8 +57,8 @@ SHARED_FUNCTION Vec3 quadric_point(const SceneView *scene, const Primitive *prim
                                                                                  : disk_point(quadric, o, d, t, world);
 }
 
-/* Texture coordinates of a point of a sphere or disk in object space. Hits have none: four arcs a sphere, which only
- * textures ask for. */
+/* Texture coordinates of a point of a sphere or disk in object space. Hits do not store them: on a sphere they take
+ * four arc functions, and only textures need them. */
 SHARED_FUNCTION Vec2 quadric_uv(const SceneView *scene, const Primitive *primitive, Vec3 p)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
@@ -66,7 +66,7 @@ SHARED_FUNCTION Vec2 quadric_uv(const SceneView *scene, const Primitive *primiti
                                                                                  : disk_parameters(quadric, p);
 }
 
-/* Number of a sphere's far side in ray_hash: its own with this bit. */
+/* Hashes of a sphere's far side use the primitive's number with this bit set. */
 #define PRIMITIVE_FAR_SIDE 0x80000000u
 
 /* A number in [0, 1) that depends on the bits of the ray and on the primitive. */
@@ -92,8 +92,8 @@ SHARED_FUNCTION float ray_hash(const RayQuery *query, uint primitive)
     return (float)(h >> 8) * (1.0f / 16777216.0f);
 }
 
-/* Whether the alpha texture of the primitive's shape lets the hit count. Partly transparent surfaces are decided by
- * a hash of the ray, so that the answer is a function of the ray and not of the order of asking. */
+/* Whether the alpha texture of the primitive's shape lets the hit count. Partial transparency is decided by a hash of
+ * the ray, so that the answer depends on the ray and not on the order of traversal. */
 SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuery *query, uint id,
                                            const Primitive *primitive, const Hit *hit)
 {
@@ -116,8 +116,7 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     return alpha > 0.0f && ray_hash(query, id) <= alpha;
 }
 
-/* Whether a hit of the primitive counts: always, but for an alpha texture. `asked`: what the ray's hash is asked
- * with. */
+/* Whether the primitive's alpha texture, if any, lets the hit count. asked: primitive number for the ray's hash. */
 SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *query, uint id, uint asked, const Hit *hit)
 {
     if (!SCENE_HAS(scene, FEATURE_ALPHA))
@@ -127,7 +126,7 @@ SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *que
            primitive_alpha_keeps(scene, query, asked, &primitive, hit);
 }
 
-/* An intersection with what is no triangle, whatever its alpha texture says: the first; of a sphere the first beyond
+/* The first intersection with a primitive other than a triangle, alpha textures ignored; for a sphere, the first beyond
  * `after`. */
 SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primitive *primitive, const RayQuery *query,
                                            float after, Hit *hit)
@@ -144,8 +143,8 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
                                     : disk_query(quadric, query, &hit->t);
 }
 
-/* Whether a hit at hit->t counts: it lies in the primitive's box (to which hit->t may be moved), and an alpha texture
- * does not say otherwise. `asked`: the number that the hash of a partly transparent one takes. */
+/* Whether a hit at hit->t counts: it must lie in the primitive's box (hit->t may be moved into it) and be kept by the
+ * alpha texture. asked: primitive number for the ray's hash. */
 SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, uint asked, const RayQuery *query,
                                              Hit *hit)
 {
@@ -153,8 +152,8 @@ SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, ui
     return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, asked, hit);
 }
 
-/* primitive_query for what is no triangle. Through a hole in the near side of a sphere its far side is seen; were it
- * not, rays from inside would get out where rays from outside find nothing. Both sides ask a hash of their own. */
+/* primitive_query for all but triangles. A hole in the near side of a sphere shows its far side; otherwise rays from
+ * inside would escape where rays from outside hit nothing. Each side has a hash of its own. */
 SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];
@@ -169,8 +168,8 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
            primitive_curved_counts(scene, id, id ^ PRIMITIVE_FAR_SIDE, query, hit);
 }
 
-/* Whether a hit of a triangle with the corners a, b, c, as triangle_query finds it, counts: where its box and its alpha
- * texture say so. */
+/* Whether a hit of a triangle with the corners a, b, c, found by triangle_query, counts: its box and its alpha texture
+ * decide. */
 SHARED_FUNCTION bool primitive_triangle_counts(const SceneView *scene, uint id, Vec3 a, Vec3 b, Vec3 c,
                                                const RayQuery *query, Hit *hit)
 {
@@ -178,8 +177,8 @@ SHARED_FUNCTION bool primitive_triangle_counts(const SceneView *scene, uint id, 
     return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, id, hit);
 }
 
-/* The first intersection of the ray with the primitive, with 0 < t < t_max: fills hit's t, and but for quadrics u, v.
- * Depends on nothing but ray and primitive. */
+/* The first intersection of the ray with the primitive, with 0 < t < t_max. Sets hit->t and, except for quadrics, u and
+ * v. Depends on nothing but ray and primitive. */
 SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];
@@ -198,7 +197,7 @@ SHARED_FUNCTION bool hit_before(const Hit *a, const Hit *b)
     return a->instance != b->instance ? a->instance < b->instance : a->primitive < b->primitive;
 }
 
-/* The hit of a ray that has met nothing yet. */
+/* The hit of a ray that has hit nothing yet. */
 SHARED_FUNCTION Hit hit_none(float t_max)
 {
     Hit hit;
@@ -210,7 +209,7 @@ SHARED_FUNCTION Hit hit_none(float t_max)
     return hit;
 }
 
-/* Replaces *best by the hit (t, u, v) of the primitive when it comes before. */
+/* Replaces *best by `hit` on the primitive if that comes before it; returns whether it did. */
 SHARED_FUNCTION bool hit_improve(Hit *best, Hit hit, uint instance, uint primitive)
 {
     hit.primitive = primitive;
@@ -221,7 +220,7 @@ SHARED_FUNCTION bool hit_improve(Hit *best, Hit hit, uint instance, uint primiti
     return true;
 }
 
-/* Replaces *best when the primitive is met before it. `instance`: whose space the query is in, NONE for the world. */
+/* Replaces *best if the ray hits the primitive before it. instance: whose space the query is in; NONE: the world's. */
 SHARED_FUNCTION bool primitive_intersect(const SceneView *scene, uint primitive, uint instance, const RayQuery *query,
                                          Hit *best)
 {
@@ -229,7 +228,7 @@ SHARED_FUNCTION bool primitive_intersect(const SceneView *scene, uint primitive,
     return primitive_query(scene, primitive, query, &hit) && hit_improve(best, hit, instance, primitive);
 }
 
-/* Whether anything of the primitive lies between the ends of the ray. */
+/* Whether the primitive is hit between the ends of the ray. */
 SHARED_FUNCTION bool primitive_occludes(const SceneView *scene, uint primitive, const RayQuery *query)
 {
     Hit hit = hit_none(query->t_max);

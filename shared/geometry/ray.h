@@ -1,11 +1,11 @@
-/* Rays: how they leave surfaces, and the form in which primitives are asked about them.
+/* Rays: how they leave surfaces, and the form in which primitives test them.
  *
- * Two things together keep a ray from hitting the surface that it leaves. The origin is moved off the surface by a few
- * units in the last place of its largest coordinate (Waechter and Binder, "A Fast and Robust Method for Avoiding
- * Self-Intersection", Ray Tracing Gems, chapter 6, 2019), which outweighs the rounding of the point itself. And every
- * primitive refuses an intersection whose tangent plane contains an end of the ray within the rounding of its own
- * arithmetic, which outweighs what the first cannot know: that a point near (0,0,0) may lie on a triangle whose
- * corners are 10^4 away. */
+ * Two measures together keep a ray from hitting the surface that it leaves. Its origin is moved off the surface by a
+ * few units in the last place of its largest coordinate (Waechter and Binder, "A Fast and Robust Method for Avoiding
+ * Self-Intersection", Ray Tracing Gems, chapter 6, 2019), which exceeds the rounding error of the point itself. And
+ * every primitive refuses an intersection whose tangent plane contains an end of the ray to within the rounding of its
+ * own arithmetic. The offset cannot cover that error: a point near (0,0,0) may lie on a triangle whose corners are 10^4
+ * away. */
 #ifndef TWINLIGHT_GEOMETRY_RAY_H
 #define TWINLIGHT_GEOMETRY_RAY_H
 
@@ -41,7 +41,7 @@ SHARED_FUNCTION Vec3 ray_offset(Vec3 p, Vec3 normal)
     return vec3(float_step(moved.x, normal.x), float_step(moved.y, normal.y), float_step(moved.z, normal.z));
 }
 
-/* `normal` or its opposite, whichever lies on the side of `direction`. */
+/* `normal` or its opposite, whichever is on the side of `direction`. */
 SHARED_FUNCTION Vec3 ray_side(Vec3 normal, Vec3 direction)
 {
     return vec3_dot(normal, direction) < 0.0f ? vec3_negate(normal) : normal;
@@ -57,8 +57,8 @@ SHARED_FUNCTION Ray ray_spawn(Vec3 p, Vec3 ng, Vec3 wi)
     return ray;
 }
 
-/* Origins and directions of rays stay within this. Larger ones overflow the tests of primitives, and Embree may end the
- * program over them. */
+/* Largest component of origins and directions of rays. Larger ones overflow the tests of primitives, and Embree may end
+ * the program over them. */
 #define RAY_COMPONENT_MAX 1e18f
 
 /* Whether a ray can be traced: every component of origin and direction is finite and in range. One that is not hits
@@ -80,9 +80,9 @@ SHARED_FUNCTION bool vec3_before(Vec3 a, Vec3 b)
     return a.z < b.z;
 }
 
-/* The open segment between p and q, points of surfaces with geometric normals ngp and ngq (zero: not on a surface).
- * The ends are taken in a fixed order, so that asking whether q sees p gives the bits of asking whether p sees q.
- * t_max is 1, or 0 (nothing to trace) when the ends coincide. */
+/* The open segment between p and q, points of surfaces with geometric normals ngp and ngq (zero: not on a surface). Its
+ * direction does not depend on the order of the arguments, so that asking whether q sees p gives the bits of asking
+ * whether p sees q. t_max is 1, or 0 (nothing to trace) if the ends coincide. */
 SHARED_FUNCTION Ray ray_between(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
 {
     Vec3 w = vec3_sub(q, p);
@@ -96,16 +96,16 @@ SHARED_FUNCTION Ray ray_between(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
     return ray;
 }
 
-/* ---- the ray as primitives see it ------------------------------------------------------------------------------ */
+/* ---- the ray in tests of primitives ---------------------------------------------------------------------------- */
 
-/* A ray with what every primitive needs of it. kz is the axis along which d is largest, kx and ky the two others; the
- * shear (sx, sy, sz) takes the ray to the positive z axis with z = t (Woop, Benthin and Wald, "Watertight Ray/Triangle
+/* A ray with what every primitive's test needs. kz is the axis along which d is largest, kx and ky the two others; the
+ * shear (sx, sy, sz) maps the ray to the positive z axis with z = t (Woop, Benthin and Wald, "Watertight Ray/Triangle
  * Intersection", JCGT 2(1), 2013). */
 typedef struct RayQuery {
     Vec3 o;
     Vec3 d;
     float t_max;
-    Vec3 error; /* bound on what a transform's rounding did to each component of o */
+    Vec3 error; /* bound on the error of each component of o from a transform's rounding */
     float offset; /* by how much, relative to its largest coordinate, ray_offset moved each end; 0: unknown */
     uint kx, ky, kz;
     float ox, oy, oz; /* o along kx, ky, kz */
@@ -154,7 +154,7 @@ SHARED_FUNCTION Vec3 affine_magnitude(Affine a, Vec3 p)
     return affine_point(b, vec3_abs(p));
 }
 
-/* The ray in the space of an instance or quadric. d keeps its length in world space, so t stays what it is. */
+/* The ray in the space of an instance or quadric. d is not normalised, so t stays the same. */
 SHARED_FUNCTION RayQuery ray_query_transform(Affine object_from_world, const RayQuery *world)
 {
     Vec3 o = affine_point(object_from_world, world->o);
@@ -170,8 +170,7 @@ SHARED_FUNCTION bool ray_query_clear(const RayQuery *query, float t, float cosin
     return t * cosine > tolerance && (query->t_max - t) * cosine > tolerance;
 }
 
-/* Bound on the coordinates along the whole query, for the tolerance of primitives: the origin, and the far end when
- * there is one close enough to matter. */
+/* Bound on the coordinates of the ray from its origin to t, for the tolerance of primitives. */
 SHARED_FUNCTION float ray_query_reach(const RayQuery *query, float t)
 {
     return vec3_max_abs(query->o) + t * vec3_max_abs(query->d);

@@ -82,7 +82,7 @@ SHARED_FUNCTION bool sphere_roots(Vec3 f, Vec3 d, float r, float *t_near, float 
     return true;
 }
 
-/* The point of the sphere that o + t d means, in object space, and in *world in the space around. */
+/* The point of the sphere at o + t d, put back onto it, in object space; *world: in the space around. */
 SHARED_FUNCTION Vec3 sphere_point(__global const Quadric *quadric, Vec3 o, Vec3 d, float t, Vec3 *world)
 {
     if (quadric->whole) {

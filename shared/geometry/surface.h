@@ -7,7 +7,7 @@
 
 #include "geometry/primitive.h"
 
-/* Unit vector along a; zero or not finite gives `otherwise`. a may be so short or long that its squared length is no
+/* Unit vector along a; `otherwise` if a is zero or not finite. a may be so short or long that its squared length is no
  * normal float. */
 SHARED_FUNCTION Vec3 vec3_direction(Vec3 a, Vec3 otherwise)
 {
@@ -33,7 +33,7 @@ SHARED_FUNCTION void surface_tangents_from_normal(Surface *surface)
     surface->dpdv = frame.b;
 }
 
-/* Turns dpdu and dpdv into tangents orthogonal to ns, along dpdu as far as possible. */
+/* Turns dpdu and dpdv into tangents orthogonal to ns, with dpdu as close as possible to what it was. */
 SHARED_FUNCTION void surface_tangents_around_ns(Surface *surface)
 {
     Vec3 across = vec3_cross(surface->ns, surface->dpdu);
@@ -67,7 +67,8 @@ SHARED_FUNCTION Vec3 triangle_vertex_normal(const SceneView *scene, const Shape 
     return vec3_mad(n, v, scene->normals[primitive->c + first]);
 }
 
-/* dp/du and dp/dv by inverting the map from edges to differences of texture coordinates; false when it has none. */
+/* dp/du and dp/dv, by inverting the map from edges to differences of texture coordinates; false if it has no
+ * inverse. */
 SHARED_FUNCTION bool triangle_tangents(const SceneView *scene, const Shape *shape, const Primitive *primitive,
                                        Surface *surface)
 {
@@ -91,7 +92,7 @@ SHARED_FUNCTION void surface_from_triangle(const SceneView *scene, const Shape *
 {
     Vec3 a = scene->positions[primitive->a], b = scene->positions[primitive->b], c = scene->positions[primitive->c];
     Vec3 vertex_normal = vec3_splat(0.0f);
-    /* Along the edges: what is rounded away lies in the plane but for the last additions. */
+    /* Along the edges: the rounding errors lie in the plane, except for those of the last additions. */
     Vec3 inside = vec3_mad(vec3_scale(vec3_sub(b, a), hit->u), hit->v, vec3_sub(c, a));
     surface->p = vec3_add(a, inside);
     surface->uv = triangle_uv(scene, shape, primitive, hit->u, hit->v);
@@ -140,8 +141,8 @@ SHARED_FUNCTION Vec3 patch_vertex_normal(const SceneView *scene, const Shape *sh
     return patch_point(&n, u, v);
 }
 
-/* The normal where the derivatives at (u, v) vanish, as they do at the tip of a patch with two equal corners: the
- * cross product of the diagonals. */
+/* The normal; where the derivatives at (u, v) are parallel or vanish, as at the tip of a patch with two equal corners,
+ * the cross product of the diagonals. */
 SHARED_FUNCTION Vec3 patch_normal(const PatchCorners *q, Vec3 dpdu, Vec3 dpdv)
 {
     Vec3 normal = vec3_cross(dpdu, dpdv);
@@ -188,14 +189,14 @@ SHARED_FUNCTION void disk_tangents(__global const Quadric *quadric, Vec3 p, Vec3
     *dpdv = vec3_scale(vec3(x, y, 0.0f), quadric->inner_radius - quadric->radius);
 }
 
-/* o, d: the ray in the space that the quadric's transform leads to. */
+/* o, d: the ray in the space that world_from_object leads to. */
 SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *shape, const Primitive *primitive,
                                           Vec3 o, Vec3 d, const Hit *hit, Surface *surface)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
     bool sphere = (primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT) == PRIMITIVE_SPHERE;
     Vec3 p = quadric_point(scene, primitive, o, d, hit->t, &surface->p);
-    /* dp/du x dp/dv, which loses its direction near a sphere's poles */
+    /* the direction of dp/du x dp/dv, which itself loses it near a sphere's poles */
     Vec3 normal = sphere ? p : vec3(0.0f, 0.0f, 1.0f);
     surface_normals_set(surface, affine_normal(quadric->object_from_world, normal), vec3_splat(0.0f), shape->flags);
     surface->uv = SCENE_HAS(scene, FEATURE_TEXTURE) ? quadric_uv(scene, primitive, p) : vec2(0.0f, 0.0f);
@@ -223,8 +224,8 @@ SHARED_FUNCTION void surface_transform(Surface *surface, __global const Instance
     surface->ns = vec3_face_forward(surface->ns, surface->ng);
 }
 
-/* The surface at a hit of the world-space ray. Positions come from the hit's parameters (triangles, patches) or are
- * put back onto the surface (quadrics), so they are off it by rounding alone, however far the ray came. */
+/* The surface at a hit of the world-space ray. Positions come from the hit's parameters (triangles, patches) or are put
+ * back onto the surface (quadrics), so they are off it by rounding alone, however far the ray has travelled. */
 SHARED_FUNCTION Surface surface_from_hit(const SceneView *scene, const Ray *ray, Hit hit)
 {
     Primitive primitive = scene->primitives[hit.primitive];

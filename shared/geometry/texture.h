@@ -1,4 +1,4 @@
-/* Image lookups and texture programs: what a material's parameter is at a point. Conventions of pbrt-v4
+/* Image lookups and texture programs: the value of a material's parameter at a point. Conventions of pbrt-v4
  * (textures.cpp, mipmap.cpp), without its prefiltering: every lookup is of the finest level, and checkerboards have
  * hard edges. */
 #ifndef TWINLIGHT_GEOMETRY_TEXTURE_H
@@ -13,8 +13,8 @@ typedef struct TexturePoint {
     Vec2 uv;
 } TexturePoint;
 
-/* Brings a texture coordinate into a range whose texel numbers fit an int, without changing what the wrap mode makes
- * of it: [0, 1] for repeat (u - floor(u) rounds to 1 for -1e-9), [-1, 2] for black and clamp. Not finite: 0. */
+/* Brings a texture coordinate into a range whose texel numbers fit an int, without changing the result of wrapping: [0,
+ * 1] for repeat (u - floor(u) rounds to 1 for -1e-9), [-1, 2] for black and clamp. Not finite: 0. */
 SHARED_FUNCTION float image_coordinate(uint wrap, float u)
 {
     if (!float_finite(u))
@@ -26,7 +26,7 @@ SHARED_FUNCTION float image_coordinate(uint wrap, float u)
     return float_clamp(u, -1.0f, 2.0f);
 }
 
-/* The square's border is glued to itself, turned by 180 degrees about the middle of each side (Clarberg 2008, "Fast
+/* Each side of the square continues into itself, turned by 180 degrees about its middle (Clarberg 2008, "Fast
  * Equal-Area Mapping of the (Hemi)Sphere using SIMD"). x and y at most one texel outside. Texel -1 is the image of
  * texel 0; pbrt takes texel 1 there. */
 SHARED_FUNCTION void image_wrap_octahedral(int width, int height, int *x, int *y)
@@ -41,7 +41,7 @@ SHARED_FUNCTION void image_wrap_octahedral(int width, int height, int *x, int *y
     }
 }
 
-/* One axis: a texel number at most one image away becomes one inside; -1 where the border is black. */
+/* Wraps along one axis: a texel number at most one image away becomes one inside; -1 where the border is black. */
 SHARED_FUNCTION int image_wrap_axis(uint wrap, int size, int x)
 {
     if (x >= 0 && x < size)
@@ -110,7 +110,7 @@ SHARED_FUNCTION Vec3 image_filter(const SceneView *scene, const TextureImage *im
 }
 
 /* Colour of image `index` at (u, v), bilinear or nearest as the image says; grey is repeated in all channels. v = 1 is
- * the top of row 0. Any uv is allowed; what is not finite counts as 0. */
+ * the top of row 0. Any uv is allowed; non-finite coordinates count as 0. */
 SHARED_FUNCTION Vec3 image_lookup(const SceneView *scene, uint index, Vec2 uv)
 {
     TextureImage image = scene->images[index];

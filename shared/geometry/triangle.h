@@ -62,7 +62,7 @@ SHARED_FUNCTION Vec3 triangle_normal_terms(Vec3 a, Vec3 b, Vec3 c)
     return vec3(e.y * f.z + e.z * f.y, e.z * f.x + e.x * f.z, e.x * f.y + e.y * f.x);
 }
 
-/* A triangle's plane with what its rounding errors come from. */
+/* A triangle's plane with what bounds its rounding errors. */
 typedef struct TrianglePlane {
     Vec3 a; /* a point of it */
     Vec3 normal; /* not normalised */
@@ -77,9 +77,9 @@ typedef struct TrianglePlane {
 #define TRIANGLE_ULPS_SIZE 1.0f
 
 /* Which side of the plane p, an end of the query, is on: +1 (the side of the normal), -1, or 0 when rounding cannot
- * tell. Errors are bounded component by component, so that a large floor parallel to an axis loses nothing near it,
- * and only what exceeds the offset that ray_spawn gave to p makes the answer 0: a ray that starts in a corner, nearer
- * to the other wall than the offset, must still meet that wall. error: of each component of p. */
+ * tell. Errors are bounded component by component, so that nothing is lost near a large floor that is parallel to an
+ * axis. Only an error beyond the offset that ray_spawn gave to p makes the answer 0: a ray that starts in a corner,
+ * nearer to the other wall than the offset, must still hit that wall. error: of each component of p. */
 SHARED_FUNCTION int triangle_side(const TrianglePlane *plane, Vec3 p, Vec3 error, float offset)
 {
     Vec3 away = vec3_sub(p, plane->a);
@@ -108,9 +108,9 @@ SHARED_FUNCTION Vec3 triangle_end_error(const RayQuery *query)
     return vec3_add(vec3_scale(size, FLOAT_EPSILON), query->error);
 }
 
-/* The triangle that an end of the ray lies on must not be hit there, and what rounding makes of t cannot tell. So
- * where t is within its rounding of 0 or t_max, the sides of the plane that the ends are on decide. near, far: whether
- * they have to. */
+/* The triangle that an end of the ray lies on must not be hit there, and the rounded t cannot tell. So where t is
+ * within its error of 0 or t_max, the decision is made by the sides of the plane that the ends are on. near, far: which
+ * ends to check. */
 SHARED_FUNCTION bool triangle_between_ends(Vec3 a, Vec3 b, Vec3 c, Vec3 normal, const RayQuery *query, bool near,
                                            bool far)
 {
@@ -139,7 +139,8 @@ SHARED_FUNCTION float corner_extent(ShearedCorner a)
     return float_max(float_abs(a.x), float_abs(a.y));
 }
 
-/* Bound on the rounding of t times area: by the shear and the edge functions, and of the origin off the triangle. */
+/* Bound on the rounding error of t times area, from the shear, the edge functions, and an origin that is off the
+ * triangle. */
 #define TRIANGLE_ULPS_T 32.0f
 
 SHARED_FUNCTION float triangle_t_error(ShearedCorner a, ShearedCorner b, ShearedCorner c, const RayQuery *query)
@@ -150,8 +151,8 @@ SHARED_FUNCTION float triangle_t_error(ShearedCorner a, ShearedCorner b, Sheared
     return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
 }
 
-/* What is left to do for a triangle that the ray's line passes through (triangle_contains, area not zero): the hit
- * with 0 < t < t_max. sa, sb, sc, e: its sheared corners and their edge functions. */
+/* Completes the test of a triangle that the ray's line passes through (triangle_contains, area not zero): the hit with
+ * 0 < t < t_max. sa, sb, sc, e: its sheared corners and their edge functions. */
 SHARED_FUNCTION bool triangle_finish(Vec3 a, Vec3 b, Vec3 c, ShearedCorner sa, ShearedCorner sb, ShearedCorner sc,
                                      TriangleEdges e, const RayQuery *query, float *t, float *u, float *v)
 {

@@ -1,5 +1,5 @@
-/* What a pixel shows besides light (arbitrary output variables): the albedo, normal and distance of the surface seen
- * first, which denoisers and compositors ask for. A pass: pt_start_paths, (rays traced) aov_splat. */
+/* Auxiliary variables (AOVs) of a pixel, for denoisers and compositors: albedo, normal and distance of the first
+ * visible surface. A pass: pt_start_paths, (rays traced) aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 
@@ -11,8 +11,8 @@
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* The part of light arriving from everywhere that the surface sends along `back`, toward the viewer: the mean weight of
- * directions that its Bsdf draws. */
+/* An estimate of the directional albedo: the fraction of uniform incident light that the surface scatters along `back`,
+ * towards the viewer. It is the weight of one direction drawn from the Bsdf. */
 SHARED_FUNCTION Vec3 aov_albedo(const SceneView *scene, Random4 random, const Bsdf *bsdf, Frame shading, Vec3 back)
 {
     BsdfSample sample;
@@ -30,7 +30,7 @@ SHARED_FUNCTION bool aov_lamp(const SceneView *scene, const Surface *surface, ui
     return !vec3_is_zero(light_emitted(scene, light, surface->ng, back));
 }
 
-/* The albedo, 1 for a lamp; or the shading normal on the viewer's side; or the distance. */
+/* The albedo (1 for a lamp), the shading normal on the viewer's side, or the distance. */
 SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit hit)
 {
     __global const FrameParams *frame = scene->frame;
@@ -50,28 +50,28 @@ SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, 
                       back);
 }
 
-/* From: closest hits. To: one sample of the variable. Where nothing was hit albedo and normal are zero, and there is no
- * sample of the depth. */
+/* From: closest hits. To: one sample of the variable. Rays that miss give zero albedo and normal, and no sample of the
+ * distance. */
 __kernel void aov_splat(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                         __global const uint *restrict tables, __global const uint *restrict texels,
                         __global const uint *restrict paths, __global const uint *restrict rays,
                         __global const uint *restrict hits, __global uint *restrict splats)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint pixel = state_load(paths, stride, PATH_PIXEL, t), sample = state_load(paths, stride, PATH_SAMPLE, t);
-    Hit hit = hit_load(hits, stride, t);
-    bool met = state_load(paths, stride, PATH_DEPTH, t) != 0u && hit.primitive != NONE;
+    uint pixel = state_load(paths, stride, PATH_PIXEL, item), sample = state_load(paths, stride, PATH_SAMPLE, item);
+    Hit hit = hit_load(hits, stride, item);
+    bool met = state_load(paths, stride, PATH_DEPTH, item) != 0u && hit.primitive != NONE;
     Vec3 value = vec3_splat(0.0f);
     if (met) {
         KERNEL_SCENE(frame, geometry, tables, texels);
-        value = aov_value(scene, pixel, sample, ray_load(rays, stride, t), hit);
+        value = aov_value(scene, pixel, sample, ray_load(rays, stride, item), hit);
     }
     if (frame->aov != AOV_DEPTH)
-        value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, t));
-    state_store(splats, stride, SPLAT_PIXEL, t, met || frame->aov != AOV_DEPTH ? pixel : NONE);
-    state_store_vec3(splats, stride, SPLAT_COLOR, t, value);
+        value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
+    state_store(splats, stride, SPLAT_PIXEL, item, met || frame->aov != AOV_DEPTH ? pixel : NONE);
+    state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
 }
 
 #endif

@@ -7,7 +7,8 @@
 #include "path/bd_connect.h"
 #include "path/bd_weight.h"
 
-/* What roulette left of a walk up to its vertex number `count`; of one without segments all. */
+/* The probability with which a walk survived roulette up to its vertex number `count`; 1 for a walk without
+ * segments. */
 SHARED_FUNCTION float vertex_survival(__global const FrameParams *frame, __global const uint *vertices, uint item,
                                       uint side, uint count)
 {
@@ -62,8 +63,8 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
                           film_importance(frame, scene->guide, connection.film));
 }
 
-/* The pairs in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t = 2 ... D: s = 1
- * ... D + 1 - t. */
+/* Moves on to the next pair, in the order of the list of steps (render/integrator_bdpt.c): t = 1: s = 2 ... D; then t =
+ * 2 ... D: s = 1 ... D + 1 - t. */
 SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stride, uint item, uint max_depth)
 {
     uint s = state_load(paths, stride, BD_S, item) + 1u, t = state_load(paths, stride, BD_T, item);
@@ -75,7 +76,7 @@ SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stri
     state_store(paths, stride, BD_T, item, t);
 }
 
-/* The connection makes a path of so many segments: for the splat, wherever it goes. */
+/* Records the depth of the connected path for its splat, which goes to the pixel or elsewhere. */
 SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                           uint segments)
 {
@@ -88,7 +89,7 @@ SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __g
         state_store(paths, stride, BD_TARGET, item, target | splat_depth(frame->split_depths, segments));
 }
 
-/* From: traced shadow rays. To: visible connections gathered, or (t = 1) put out for the film; the next pair. */
+/* From: traced shadow rays. To: visible connections gathered, or (t = 1) splatted; the next pair. */
 __kernel void bd_add_connections(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                                  __global uint *restrict paths, __global uint *restrict shadows,
                                  __global uint *restrict splats, __global uint *restrict diagnostics)
@@ -99,7 +100,7 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     bool visible = shadow_take(shadows, stride, item);
     if (frame->pool != 0u && visible) {
-        /* Of a splat the weight is the cover, but for sign and the filter's own. */
+        /* The weight of a splat is its cover times the filter's own weight and a sign. */
         float cover = t == 1u
                           ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
                           : state_load_float(paths, stride, BD_COVER, item);
@@ -116,8 +117,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     connection_advance(paths, stride, item, frame->max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat; with frame->split_depths also from a path under way, and then
- * what has been gathered is gone. */
+/* From: what was gathered for the pixel. To: its splat. With frame->split_depths also in the course of a path; what was
+ * gathered is cleared then. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

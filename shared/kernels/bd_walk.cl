@@ -17,128 +17,128 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict vertices, __global uint *restrict densities,
                              __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    bd_header_begin(frame, paths, rays, shadows, t, pool_item_place(frame, guide, frame->first_item + t));
-    state_store(paths, stride, BD_LENGTHS, t, 0u);
-    state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
-    state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
-    state_store(paths, stride, BD_S, t, 2u);
-    state_store(paths, stride, BD_T, t, 1u);
-    if (frame->max_depth < 2u || (frame->pool != 0u && !pool_has_light(frame, frame->first_item + t)))
+    bd_header_begin(frame, paths, rays, shadows, item, pool_item_place(frame, guide, frame->first_item + item));
+    state_store(paths, stride, BD_LENGTHS, item, 0u);
+    state_store(paths, stride, BD_LIGHT_DELTA, item, 0u);
+    state_store(paths, stride, BD_CAMERA_DELTA, item, 0u);
+    state_store(paths, stride, BD_S, item, 2u);
+    state_store(paths, stride, BD_T, item, 1u);
+    if (frame->max_depth < 2u || (frame->pool != 0u && !pool_has_light(frame, frame->first_item + item)))
         return;
     float own;
-    if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, vertex_base(frame, SIDE_LIGHT, 0u),
-                          bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT),
+    if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, vertex_base(frame, SIDE_LIGHT, 0u),
+                          bd_random(frame, paths, item, BD_RANDOM_LIGHT), bd_random(frame, paths, item, BD_RANDOM_EMIT),
                           &own))
         return;
     if (frame->pool != 0u)
-        pool_roulette_weigh(frame, paths, t, 1.0f);
-    state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, t, own);
-    state_store(paths, stride, BD_LENGTHS, t, 1u);
+        pool_roulette_weigh(frame, paths, item, 1.0f);
+    state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, item, own);
+    state_store(paths, stride, BD_LENGTHS, item, 1u);
 }
 
-/* From: nothing more than the pixel. To: the camera's first ray. */
+/* From: the pixel. To: the camera's first ray. */
 __kernel void bd_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                               __global const uint *restrict geometry, __global const uint *restrict tables,
                               __global const uint *restrict texels, __global uint *restrict paths,
                               __global uint *restrict rays, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     if (frame->pool != 0u)
-        pool_start_camera(scene, paths, rays, diagnostics, t);
+        pool_start_camera(scene, paths, rays, diagnostics, item);
     else
-        walk_start_camera(scene, paths, rays, diagnostics, stride, t);
+        walk_start_camera(scene, paths, rays, diagnostics, stride, item);
 }
 
-/* s = 0: what is sent by lights that the walk has met after `depth` segments. */
-SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict paths, uint t, uint depth,
+/* s = 0: adds what the lights send that the camera walk has hit after `depth` segments. */
+SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
                                 Vec3 contribution)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     if (frame->pool != 0u)
-        contribution = reservoir_update(frame, scene->guide, paths, t, 0u, depth + 1u,
-                                        state_load_float(paths, stride, BD_SURVIVAL, t),
-                                        state_load_float(paths, stride, BD_COVER, t),
-                                        state_load_float(paths, stride, BD_IMPORTANCE, t), contribution);
+        contribution = reservoir_update(frame, scene->guide, paths, item, 0u, depth + 1u,
+                                        state_load_float(paths, stride, BD_SURVIVAL, item),
+                                        state_load_float(paths, stride, BD_COVER, item),
+                                        state_load_float(paths, stride, BD_IMPORTANCE, item), contribution);
     if (frame->split_depths != 0u)
-        state_store(paths, stride, BD_GATHERED, t, depth);
-    bd_add_radiance(paths, stride, t, contribution);
+        state_store(paths, stride, BD_GATHERED, item, depth);
+    bd_add_radiance(paths, stride, item, contribution);
 }
 
-/* From: closest hits. To: emission met by the camera's walk gathered; the vertex with its densities. Walks that miss
- * or are full end. */
+/* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex with its densities. Walks that
+ * miss or have max_depth segments end. */
 __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                             __global const uint *restrict geometry, __global const uint *restrict tables,
                             __global const uint *restrict texels, __global uint *restrict paths,
                             __global uint *restrict rays, __global const uint *restrict hits,
                             __global uint *restrict vertices, __global uint *restrict densities)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t);
+    uint depth = state_load(paths, stride, BD_DEPTH, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    uint side = state_load(paths, stride, BD_SIDE, t);
+    uint side = state_load(paths, stride, BD_SIDE, item);
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, t, vertex_base(frame, side, depth - 1u), &walk_hit);
-    Vec3 beta = state_load_vec3(paths, stride, BD_BETA, t);
-    DensityView view = bd_density_view(frame, paths, densities, t);
-    state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, t, walk_hit.own);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, vertex_base(frame, side, depth - 1u), &walk_hit);
+    Vec3 beta = state_load_vec3(paths, stride, BD_BETA, item);
+    DensityView view = bd_density_view(frame, paths, densities, item);
+    state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
             Vec3 sum = walk_environment(scene, view, walk_hit.ray.d, walk_hit.from_ng, depth);
-            bd_add_met(scene, paths, t, depth, vec3_mul(beta, sum));
+            bd_add_met(scene, paths, item, depth, vec3_mul(beta, sum));
         }
-        walk_end(paths, rays, stride, t);
+        walk_end(paths, rays, stride, item);
         return;
     }
     if (side == SIDE_CAMERA && walk_hit.light != NONE) {
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(scene, &walk_hit, &ends);
         if (!vec3_is_zero(radiance))
-            bd_add_met(scene, paths, t, depth,
+            bd_add_met(scene, paths, item, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
-    if (!walk_vertex(scene, paths, rays, vertices, t, vertex_base(frame, side, depth - 1u),
-                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, t, side, depth), &walk_hit))
+    if (!walk_vertex(scene, paths, rays, vertices, item, vertex_base(frame, side, depth - 1u),
+                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, item, side, depth), &walk_hit))
         return;
-    uint lengths = state_load(paths, stride, BD_LENGTHS, t);
+    uint lengths = state_load(paths, stride, BD_LENGTHS, item);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
-    state_store(paths, stride, BD_LENGTHS, t, lengths);
+    state_store(paths, stride, BD_LENGTHS, item, lengths);
 }
 
-/* From: the vertex. To: the density of the one before it as the other side makes it; the next ray, or the walk's end by
- * absorption or Russian roulette. Roulette leaves the weights alone: they need not know of it to sum to one. */
+/* From: the vertex. To: the density of the vertex before by the other side; the next ray, or the walk's end by
+ * absorption or Russian roulette. MIS weights ignore roulette: they sum to one without it. */
 __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                               __global const uint *restrict geometry, __global const uint *restrict tables,
                               __global const uint *restrict texels, __global uint *restrict paths,
                               __global uint *restrict rays, __global const uint *restrict vertices,
                               __global uint *restrict densities, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
+    Random4 random = bd_random(frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, vertex_base(frame, side, depth), random, &step))
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, item, vertex_base(frame, side, depth), random, &step))
         return;
-    walk_mark(paths, stride, t, side, depth, &step);
+    walk_mark(paths, stride, item, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u)
-        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, t, step.reverse);
-    walk_step_store(paths, rays, stride, t, depth, &step);
+        state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, item, step.reverse);
+    walk_step_store(paths, rays, stride, item, depth, &step);
 }
 
 #endif

@@ -1,19 +1,20 @@
-/* How many rays are alive: for the statistics, and to see that no path goes on. */
+/* Counts live rays: for the statistics, and to see when no path continues. */
 #ifndef TWINLIGHT_COUNT_CL
 #define TWINLIGHT_COUNT_CL
 
 #include "layout/scene_types.h"
 #include "layout/state.h"
 
-/* Adds the live rays among those of item g, which lie `groups` apart, so that neighbouring items read neighbours. */
+/* Adds the live rays among those of counting item g: rays g, g + groups, g + 2 groups ..., so that neighbouring items
+ * read neighbouring words. */
 SHARED_FUNCTION void rays_count(__global const FrameParams *frame, __global const uint *rays, __global uint *counter,
                                 uint g)
 {
     uint count = frame->item_count, groups = (count + COUNT_RAYS - 1u) / COUNT_RAYS, live = 0u;
     if (g >= groups)
         return;
-    for (uint t = g; t < count; t += groups)
-        live += state_load_float(rays, frame->stride, RAY_T_MAX, t) > 0.0f ? 1u : 0u;
+    for (uint item = g; item < count; item += groups)
+        live += state_load_float(rays, frame->stride, RAY_T_MAX, item) > 0.0f ? 1u : 0u;
     if (live != 0u)
         counter_add(counter, live);
 }

@@ -10,8 +10,8 @@
 /* From: splats. To: added to the sums of the film (film_words). */
 __kernel void film_add(__global const FrameParams *frame, __global const uint *splats, __global ulong *words)
 {
-    uint t = (uint)get_global_id(0);
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0);
+    if (item >= frame->item_count)
         return;
     FilmView film;
     film.width = frame->width;
@@ -23,7 +23,7 @@ __kernel void film_add(__global const FrameParams *frame, __global const uint *s
     film.depth_kinds = frame->split_depths;
     film.depth_last = frame->max_depth;
     film_view_words(&film, words, (film.x1 - film.x0) * (film.y1 - film.y0));
-    film_splat_add(&film, splats, frame->stride, t);
+    film_splat_add(&film, splats, frame->stride, item);
 }
 
 #endif

@@ -1,4 +1,4 @@
-/* Instant bidirectional path tracing: of all strategies the three that need no stored vertices, so that the state of a
+/* Instant bidirectional path tracing: only the three strategies that need no stored vertices, so that the state of a
  * path does not depend on its length (Frolov 2018, section 1; Bogolepov, Ulyanov, Sopin and Turlapov, "GPU-optimized
  * bi-directional path tracing", WSCG 2013). Per segment: (rays traced) ib_shade_hits, ib_connect, (shadow rays traced)
  * ib_add_connections, ib_extend_walks; around them ib_start_light, bd_start_camera, bd_splat. */
@@ -17,70 +17,71 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict shadows, __global uint *restrict vertices,
                              __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
-    bd_header_begin(frame, paths, rays, shadows, t, item_place(frame, t));
-    if (frame->max_depth >= 2u &&
-        walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, 0u,
-                         bd_random(frame, paths, t, BD_RANDOM_LIGHT), bd_random(frame, paths, t, BD_RANDOM_EMIT), &own))
-        state_store_float(paths, stride, IB_OWN_BEFORE, t, own);
+    bd_header_begin(frame, paths, rays, shadows, item, item_place(frame, item));
+    if (frame->max_depth >= 2u && walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, 0u,
+                                                   bd_random(frame, paths, item, BD_RANDOM_LIGHT),
+                                                   bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
+        state_store_float(paths, stride, IB_OWN_BEFORE, item, own);
 }
 
-/* s = 0: adds what a light met sends. */
-SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t, uint depth,
+/* s = 0: adds what a light sends that was hit. */
+SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item, uint depth,
                                 Vec3 radiance, const StrategyEnds *ends)
 {
-    bool delta = (state_load(paths, frame->stride, BD_WALK_FLAGS, t) & WALK_DELTA) != 0u;
+    bool delta = (state_load(paths, frame->stride, BD_WALK_FLAGS, item) & WALK_DELTA) != 0u;
     if (vec3_is_zero(radiance) || !strategy_wanted(frame, 0u, depth + 1u))
         return;
-    float weight = frame->unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, t, depth, delta, ends);
-    Vec3 beta = state_load_vec3(paths, frame->stride, BD_BETA, t);
-    bd_add_radiance(paths, frame->stride, t, vec3_scale(vec3_mul(beta, radiance), weight));
+    float weight = frame->unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, item, depth, delta, ends);
+    Vec3 beta = state_load_vec3(paths, frame->stride, BD_BETA, item);
+    bd_add_radiance(paths, frame->stride, item, vec3_scale(vec3_mul(beta, radiance), weight));
 }
 
-SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, uint depth,
+SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
                                         Vec3 d, Vec3 ng)
 {
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
-        ib_add_met(scene->frame, paths, t, depth, radiance, &ends);
+        ib_add_met(scene->frame, paths, item, depth, radiance, &ends);
     }
 }
 
-/* From: closest hits. To: emission met by the camera's walk gathered; the vertex. Walks that miss or are full end. */
+/* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex. Walks that miss or have
+ * max_depth segments end. */
 __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                             __global const uint *restrict tables, __global const uint *restrict texels,
                             __global uint *restrict paths, __global uint *restrict rays,
                             __global const uint *restrict hits, __global uint *restrict vertices)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t);
+    uint depth = state_load(paths, stride, BD_DEPTH, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    uint side = state_load(paths, stride, BD_SIDE, t);
-    /* The vertex takes the place of the one before it. */
+    uint side = state_load(paths, stride, BD_SIDE, item);
+    /* The vertex overwrites the one before it. */
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, t, 0u, &walk_hit);
-    state_store_float(paths, stride, IB_OWN, t, walk_hit.own);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, 0u, &walk_hit);
+    state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            ib_add_environment(scene, paths, t, depth, walk_hit.ray.d, walk_hit.from_ng);
-        walk_end(paths, rays, stride, t);
+            ib_add_environment(scene, paths, item, depth, walk_hit.ray.d, walk_hit.from_ng);
+        walk_end(paths, rays, stride, item);
         return;
     }
     if (side == SIDE_CAMERA && walk_hit.light != NONE) {
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(scene, &walk_hit, &ends);
-        ib_add_met(frame, paths, t, depth, radiance, &ends);
+        ib_add_met(frame, paths, item, depth, radiance, &ends);
     }
-    walk_vertex(scene, paths, rays, vertices, t, 0u, 0u, bd_random_mix(scene, paths, t, side, depth), &walk_hit);
+    walk_vertex(scene, paths, rays, vertices, item, 0u, 0u, bd_random_mix(scene, paths, item, side, depth), &walk_hit);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -116,7 +117,7 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     connection_store(paths, shadows, stride, item, &connection, weight);
 }
 
-/* From: traced shadow rays. To: visible connections gathered (the camera's walk), or put out for the film. */
+/* From: traced shadow rays. To: visible connections gathered (the camera walk) or splatted (the light walk). */
 __kernel void ib_add_connections(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                  __global uint *restrict shadows, __global uint *restrict splats,
                                  __global uint *restrict diagnostics)
@@ -135,19 +136,19 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict paths, __global uint *restrict rays,
                               __global const uint *restrict vertices, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Random4 random = bd_random(frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
+    Random4 random = bd_random(frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(scene, paths, rays, vertices, diagnostics, t, 0u, random, &step))
+    if (!walk_leave(scene, paths, rays, vertices, diagnostics, item, 0u, random, &step))
         return;
-    ib_leave(paths, stride, t, side, depth, step.reverse, step.delta != 0u);
-    walk_step_store(paths, rays, stride, t, depth, &step);
+    ib_leave(paths, stride, item, side, depth, step.reverse, step.delta != 0u);
+    walk_step_store(paths, rays, stride, item, depth, &step);
 }
 
 #endif

@@ -1,8 +1,8 @@
-/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths of one depth d and,
- * between large steps, one number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section 2). A pass:
- * mlt_begin; then per proposal mlt_propose, the light's walk, mlt_start_camera, the camera's walk, mlt_connect, (shadow
- * rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk. The first proposal of a
- * pass is the current path itself, so that its vertices are there. */
+/* Multiplexed Metropolis light transport: chains over the random numbers of bidirectional paths with a fixed depth d
+ * and, between large steps, a fixed number s of vertices from the light (Hachisuka et al. 2014; Frolov 2018, section
+ * 2). A pass: mlt_begin; then per proposal mlt_propose, the light walk, mlt_start_camera, the camera walk, mlt_connect,
+ * (shadow rays traced) mlt_accept; at the end mlt_end. Per segment of a walk: (rays traced) mlt_walk. The first
+ * proposal of a pass is the current path, so that its vertices exist. */
 #ifndef TWINLIGHT_MLT_CL
 #define TWINLIGHT_MLT_CL
 
@@ -12,190 +12,194 @@
 #include "path/bd_start.h"
 #include "path/bd_weight.h"
 
-/* Field of item t in BUFFER_PASS, which has a stride of its own. */
-SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint t)
+/* Index of a field of an item in BUFFER_PASS, which has its own stride. */
+SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint item)
 {
-    return (size_t)field * frame->pass_stride + (frame->first_item + t - frame->pass_first);
+    return (size_t)field * frame->pass_stride + (frame->first_item + item - frame->pass_first);
 }
 
-SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint t)
+SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint item)
 {
-    return pass[pass_place(frame, field, t)];
+    return pass[pass_place(frame, field, item)];
 }
 
-SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint *pass, uint field, uint t, uint value)
+SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint *pass, uint field, uint item,
+                                uint value)
 {
-    pass[pass_place(frame, field, t)] = value;
+    pass[pass_place(frame, field, item)] = value;
 }
 
-/* From: a pool's gathered candidates. To: what the sample is worth, and the path kept. */
+/* From: the candidates of a pool. To: the contribution weight of each sample, and the path kept of it. */
 __kernel void pool_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
                        __global uint *restrict pass)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    pass_store(frame, pass, POOL_WEIGHT, t, state_load(paths, stride, BD_CANDIDATE_SUM, t));
-    pass_store(frame, pass, POOL_KEY, t, state_load(paths, stride, BD_CANDIDATE, t));
-    pass_store(frame, pass, POOL_LUMINANCE, t, state_load(paths, stride, BD_CANDIDATE_LUMINANCE, t));
+    pass_store(frame, pass, POOL_WEIGHT, item, state_load(paths, stride, BD_CANDIDATE_SUM, item));
+    pass_store(frame, pass, POOL_KEY, item, state_load(paths, stride, BD_CANDIDATE, item));
+    pass_store(frame, pass, POOL_LUMINANCE, item, state_load(paths, stride, BD_CANDIDATE_LUMINANCE, item));
 }
 
-/* From: where each chain begins. To: its coordinates. */
+/* From: where each chain starts. To: its coordinates. */
 __kernel void mlt_begin(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                         __global const uint *restrict geometry, __global const uint *restrict tables,
                         __global const uint *restrict texels, __global const uint *restrict pass,
                         __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict shadows)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint key = pass_load(frame, pass, CHAIN_PASS_KEY, t), item = pass_load(frame, pass, CHAIN_PASS_ITEM, t);
+    uint key = pass_load(frame, pass, CHAIN_PASS_KEY, item), pool_item = pass_load(frame, pass, CHAIN_PASS_ITEM, item);
     uint words = NUMBER_VERTICES + (chain_key_depth(key) - 1u) * chain_vertex_numbers(frame);
-    state_store(paths, stride, CHAIN_KEY, t, key);
-    state_store(paths, stride, CHAIN_STEP, t, pass_load(frame, pass, CHAIN_PASS_STEP, t));
-    state_store(paths, stride, CHAIN_MOVE, t, MUTATION_REPLAY << MOVE_MUTATION);
-    state_store_float(paths, stride, CHAIN_LUMINANCE, t, 0.0f);
-    state_store(paths, stride, CHAIN_EXPECTED, t, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, t));
-    state_store_float(paths, stride, CHAIN_PENDING, t, 0.0f);
-    state_store(paths, stride, CHAIN_BAD, t, NONE);
-    state_store(paths, stride, CHAIN_RUN, t, run_begin(pass_load(frame, pass, CHAIN_PASS_RUN, t)));
+    state_store(paths, stride, CHAIN_KEY, item, key);
+    state_store(paths, stride, CHAIN_STEP, item, pass_load(frame, pass, CHAIN_PASS_STEP, item));
+    state_store(paths, stride, CHAIN_MOVE, item, MUTATION_REPLAY << MOVE_MUTATION);
+    state_store_float(paths, stride, CHAIN_LUMINANCE, item, 0.0f);
+    state_store(paths, stride, CHAIN_EXPECTED, item, pass_load(frame, pass, CHAIN_PASS_LUMINANCE, item));
+    state_store_float(paths, stride, CHAIN_PENDING, item, 0.0f);
+    state_store(paths, stride, CHAIN_BAD, item, NONE);
+    state_store(paths, stride, CHAIN_RUN, item, run_begin(pass_load(frame, pass, CHAIN_PASS_RUN, item)));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
-        state_store(paths, stride, CHAIN_TALLY + i, t, 0u);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    walk_end(paths, rays, stride, t);
-    if (item != NONE) {
+        state_store(paths, stride, CHAIN_TALLY + i, item, 0u);
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    walk_end(paths, rays, stride, item);
+    if (pool_item != NONE) {
         KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-        chain_numbers_of_pool(scene, paths, t, key, item);
+        chain_numbers_of_pool(scene, paths, item, key, pool_item);
         return;
     }
     for (uint i = 0u; i < words; ++i)
-        state_store(paths, stride, CHAIN_NUMBERS + i, t, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, t));
+        state_store(paths, stride, CHAIN_NUMBERS + i, item, pass_load(frame, pass, CHAIN_PASS_NUMBERS + i, item));
 }
 
-/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. Were the
- * current path's subpaths in different banks, the proposal's would lie over them: the camera subpath moves to where the
- * light's is. */
+/* A large step changes s, and with it which densities of a bank are the light's and which are the camera's. If the
+ * current path's subpaths are in different banks, the proposal's would overwrite them, so the camera subpath moves to
+ * the bank of the light subpath. */
 SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                      __global uint *restrict vertices, __global uint *restrict densities, uint t)
+                                      __global uint *restrict vertices, __global uint *restrict densities, uint item)
 {
-    uint stride = frame->stride, banks = chain_move(paths, stride, t, MOVE_BANKS);
-    uint light = banks & 1u, camera = banks >> 1 & 1u, key = state_load(paths, stride, CHAIN_KEY, t);
+    uint stride = frame->stride, banks = chain_move(paths, stride, item, MOVE_BANKS);
+    uint light = banks & 1u, camera = banks >> 1 & 1u, key = state_load(paths, stride, CHAIN_KEY, item);
     if (light == camera)
         return;
     for (uint i = chain_key_s(key); i < chain_key_depth(key); ++i)
-        state_store_float(densities, stride, light * frame->max_depth + i, t,
-                          state_load_float(densities, stride, camera * frame->max_depth + i, t));
+        state_store_float(densities, stride, light * frame->max_depth + i, item,
+                          state_load_float(densities, stride, camera * frame->max_depth + i, item));
     uint to = chain_subpath(SIDE_CAMERA, light), from = chain_subpath(SIDE_CAMERA, camera);
     for (uint i = 0u; i < CHAIN_CAMERA_SUBPATH_WORDS; ++i)
-        state_store(paths, stride, to + i, t, state_load(paths, stride, from + i, t));
+        state_store(paths, stride, to + i, item, state_load(paths, stride, from + i, item));
     to = chain_vertex_base(SIDE_CAMERA, light);
     from = chain_vertex_base(SIDE_CAMERA, camera);
     for (uint i = 0u; i < VERTEX_WORDS; ++i)
-        state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
+        state_store(vertices, stride, to + i, item, state_load(vertices, stride, from + i, item));
     to = shift_base(light);
     from = shift_base(camera);
     for (uint i = 0u; i < SHIFT_WORDS; ++i)
-        state_store(vertices, stride, to + i, t, state_load(vertices, stride, from + i, t));
-    chain_move_set(paths, stride, t, MOVE_BANKS, light != 0u ? SUBPATH_BOTH : 0u);
+        state_store(vertices, stride, to + i, item, state_load(vertices, stride, from + i, item));
+    chain_move_set(paths, stride, item, MOVE_BANKS, light != 0u ? SUBPATH_BOTH : 0u);
 }
 
-/* From: the current path. To: a proposal, and the first ray of its light's walk where that is new. */
+/* From: the current path. To: a proposal, and the first ray of its light walk if that is new. */
 __kernel void mlt_propose(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                           __global const uint *restrict geometry, __global const uint *restrict tables,
                           __global const uint *restrict texels, __global uint *restrict paths,
                           __global uint *restrict rays, __global uint *restrict vertices,
                           __global uint *restrict densities, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    chain_propose(frame, paths, vertices, t);
-    if (chain_move(paths, stride, t, MOVE_MUTATION) == MUTATION_LARGE)
-        chain_banks_join(frame, paths, vertices, densities, t);
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
-    state_store_vec3(paths, stride, BD_CONTRIBUTION, t, vec3_splat(0.0f));
-    state_store(paths, stride, BD_LIGHT_DELTA, t, 0u);
-    state_store(paths, stride, BD_CAMERA_DELTA, t, 0u);
-    walk_end(paths, rays, stride, t);
-    if ((chain_move(paths, stride, t, MOVE_REACHED) & SUBPATH_LIGHT) != 0u)
+    chain_propose(frame, paths, vertices, item);
+    if (chain_move(paths, stride, item, MOVE_MUTATION) == MUTATION_LARGE)
+        chain_banks_join(frame, paths, vertices, densities, item);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), s = chain_key_s(key);
+    state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_splat(0.0f));
+    state_store(paths, stride, BD_LIGHT_DELTA, item, 0u);
+    state_store(paths, stride, BD_CAMERA_DELTA, item, 0u);
+    walk_end(paths, rays, stride, item);
+    if ((chain_move(paths, stride, item, MOVE_REACHED) & SUBPATH_LIGHT) != 0u)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    uint bank = chain_bank(paths, stride, t, SIDE_LIGHT);
+    uint bank = chain_bank(paths, stride, item, SIDE_LIGHT);
     float own;
-    if (walk_start_light(scene, paths, rays, vertices, diagnostics, stride, t, chain_vertex_base(SIDE_LIGHT, bank),
-                         chain_select(frame, paths, t), chain_emit(frame, paths, t), &own))
-        state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), t, own);
+    if (walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, chain_vertex_base(SIDE_LIGHT, bank),
+                         chain_select(frame, paths, item), chain_emit(frame, paths, item), &own))
+        state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), item, own);
 }
 
-/* From: the light's walk done. To: the camera's first ray, where its subpath is new and the light's is there. */
+/* From: the finished light walk. To: the camera's first ray, if the camera subpath is new and the light subpath is
+ * there. */
 __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                                __global const uint *restrict geometry, __global const uint *restrict tables,
                                __global const uint *restrict texels, __global uint *restrict paths,
                                __global uint *restrict rays, __global uint *restrict vertices,
                                __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), reached = chain_move(paths, stride, t, MOVE_REACHED);
-    walk_end(paths, rays, stride, t);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
+         reached = chain_move(paths, stride, item, MOVE_REACHED);
+    walk_end(paths, rays, stride, item);
     if (reached != SUBPATH_LIGHT)
         return;
-    shift_density_set(vertices, stride, chain_bank(paths, stride, t, SIDE_CAMERA), t, 0.0f);
-    if (chain_key_s(key) == chain_key_depth(key)) { /* the lens alone */
-        chain_move_set(paths, stride, t, MOVE_REACHED, SUBPATH_BOTH);
+    shift_density_set(vertices, stride, chain_bank(paths, stride, item, SIDE_CAMERA), item, 0.0f);
+    if (chain_key_s(key) == chain_key_depth(key)) { /* the camera subpath is the lens alone */
+        chain_move_set(paths, stride, item, MOVE_REACHED, SUBPATH_BOTH);
         return;
     }
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    walk_start_film(scene, paths, rays, diagnostics, stride, t, chain_camera(frame, paths, t));
+    walk_start_film(scene, paths, rays, diagnostics, stride, item, chain_camera(frame, paths, item));
 }
 
-/* The last vertex of a side is there: what the connection needs of the walk. */
-SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint stride, uint t, uint side, uint bank)
+/* The walk has made the last vertex of its side: stores what the connection needs to know of it. */
+SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint stride, uint item, uint side, uint bank)
 {
     uint part = chain_subpath(side, bank), mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
     uint flag = side == SIDE_LIGHT ? SUBPATH_LIGHT : SUBPATH_CAMERA;
-    state_store(paths, stride, part + CHAIN_SUBPATH_DELTA, t, state_load(paths, stride, mask, t));
+    state_store(paths, stride, part + CHAIN_SUBPATH_DELTA, item, state_load(paths, stride, mask, item));
     if (side == SIDE_LIGHT) {
-        state_store(paths, stride, part + CHAIN_SUBPATH_EMITTER_FLAGS, t,
-                    state_load(paths, stride, BD_EMITTER_FLAGS, t));
-        state_store(paths, stride, part + CHAIN_SUBPATH_CONNECT, t, state_load(paths, stride, BD_CONNECT, t));
+        state_store(paths, stride, part + CHAIN_SUBPATH_EMITTER_FLAGS, item,
+                    state_load(paths, stride, BD_EMITTER_FLAGS, item));
+        state_store(paths, stride, part + CHAIN_SUBPATH_CONNECT, item, state_load(paths, stride, BD_CONNECT, item));
     }
-    chain_move_set(paths, stride, t, MOVE_REACHED, chain_move(paths, stride, t, MOVE_REACHED) | flag);
+    chain_move_set(paths, stride, item, MOVE_REACHED, chain_move(paths, stride, item, MOVE_REACHED) | flag);
 }
 
-/* Where the walk goes on from a vertex that is not its last. Nobody asks for that vertex any more but for its place. */
+/* Continues the walk from a vertex that is not its last; only its position and geometric normal are read later. */
 SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
                                    __global uint *restrict vertices, __global uint *restrict densities,
-                                   __global uint *restrict diagnostics, uint t, uint side, uint depth, uint d, uint s,
-                                   uint bank, Random4 numbers, Vertex *vertex)
+                                   __global uint *restrict diagnostics, uint item, uint side, uint depth, uint d,
+                                   uint s, uint bank, Random4 numbers, Vertex *vertex)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
     bool shifts = frame->shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
     WalkStep step = {0};
-    vertex_place_store(vertices, stride, chain_vertex_base(side, bank), t, vertex);
-    vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as the pool, which has stored it */
-    if (shifts && (chain_move(paths, stride, t, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
-        !shift_guide(scene, paths, vertices, t, d, depth, vertex, &numbers)) {
-        walk_end(paths, rays, stride, t);
+    vertex_place_store(vertices, stride, chain_vertex_base(side, bank), item, vertex);
+    vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as frame_load makes it of the pool's vertex */
+    if (shifts && (chain_move(paths, stride, item, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
+        !shift_guide(scene, paths, vertices, item, d, depth, vertex, &numbers)) {
+        walk_end(paths, rays, stride, item);
         return;
     }
-    if (!walk_leave_vertex(scene, paths, rays, diagnostics, t, vertex, numbers, &step))
+    if (!walk_leave_vertex(scene, paths, rays, diagnostics, item, vertex, numbers, &step))
         return;
     if (shifts)
-        shift_drawn(scene, paths, t, vertex, numbers, step.ray.d);
-    walk_mark(paths, stride, t, side, depth, &step);
+        shift_drawn(scene, paths, item, vertex, numbers, step.ray.d);
+    walk_mark(paths, stride, item, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u) {
         uint before = chain_density(frame, side, bank, s, depth - 1u);
-        state_store_float(densities, stride, before, t, step.reverse / state_load_float(densities, stride, before, t));
+        state_store_float(densities, stride, before, item,
+                          step.reverse / state_load_float(densities, stride, before, item));
     }
-    walk_step_store(paths, rays, stride, t, depth, &step);
+    walk_step_store(paths, rays, stride, item, depth, &step);
 }
 
-/* From: closest hits. To: the vertex with its density, the ratio of densities of the one before it, and the next ray;
- * s = 0: at the last one what the light sends. A walk ends with its last vertex, by absorption, or where nothing can be
- * made of it. */
+/* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s
+ * = 0, at the last vertex, what the light sends. A walk ends at its last vertex, by absorption, or where it can make no
+ * path. */
 __kernel void mlt_walk(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                        __global const uint *restrict geometry, __global const uint *restrict tables,
                        __global const uint *restrict texels, __global uint *restrict paths,
@@ -203,71 +207,72 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
                        __global uint *restrict vertices, __global uint *restrict densities,
                        __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, BD_DEPTH, t), side = state_load(paths, stride, BD_SIDE, t);
+    uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), d = chain_key_depth(key), s = chain_key_s(key);
-    uint bank = chain_bank(paths, stride, t, side), base = chain_vertex_base(side, bank);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), d = chain_key_depth(key), s = chain_key_s(key);
+    uint bank = chain_bank(paths, stride, item, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, t, base, &walk_hit);
-    state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), t, walk_hit.own);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, base, &walk_hit);
+    state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), item, walk_hit.own);
     if (frame->shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
-        !shift_hit(frame, paths, vertices, t, depth, &walk_hit)) {
-        walk_end(paths, rays, stride, t);
+        !shift_hit(frame, paths, vertices, item, depth, &walk_hit)) {
+        walk_end(paths, rays, stride, item);
         return;
     }
     if (s == 0u && depth == d)
-        chain_hit_light(scene, paths, densities, t, d, &walk_hit);
+        chain_hit_light(scene, paths, densities, item, d, &walk_hit);
     if (walk_hit.missed || (s == 0u && depth == d)) {
-        walk_end(paths, rays, stride, t);
+        walk_end(paths, rays, stride, item);
         return;
     }
     Random4 numbers = {{0u, 0u, 0u, 0u}};
     if (depth < last || SCENE_HAS(scene, FEATURE_MIX))
-        numbers = chain_vertex(frame, paths, t, side, d, depth);
+        numbers = chain_vertex(frame, paths, item, side, d, depth);
     float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(numbers.x[3]) : 0.5f;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, t, base, u_mix, &walk_hit, &vertex))
+    if (!walk_vertex_make(scene, paths, rays, vertices, item, base, u_mix, &walk_hit, &vertex))
         return;
     if (depth < last) {
-        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, t, side, depth, d, s, bank, numbers,
+        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, item, side, depth, d, s, bank, numbers,
                       &vertex);
         return;
     }
-    vertex_store(scene, vertices, stride, base, t, &vertex);
-    chain_subpath_store(paths, stride, t, side, bank);
-    walk_end(paths, rays, stride, t);
+    vertex_store(scene, vertices, stride, base, item, &vertex);
+    chain_subpath_store(paths, stride, item, side, bank);
+    walk_end(paths, rays, stride, item);
 }
 
-/* The connection of the two last vertices. film: chain_camera. */
+/* Connects the two last vertices. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
-                                   __global const uint *restrict vertices, uint t, uint s, uint camera, Random4 film,
+                                   __global const uint *restrict vertices, uint item, uint s, uint camera, Random4 film,
                                    Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->stride;
-    uint light_bank = chain_bank(paths, stride, t, SIDE_LIGHT), camera_bank = chain_bank(paths, stride, t, SIDE_CAMERA);
+    uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
+         camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     uint light_half = chain_subpath(SIDE_LIGHT, light_bank);
     Vertex y = {0}, z = {0};
     if (s > 1u)
-        y = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_LIGHT, light_bank), t);
+        y = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_LIGHT, light_bank), item);
     if (camera > 1u)
-        z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), t);
+        z = vertex_load(scene, vertices, stride, chain_vertex_base(SIDE_CAMERA, camera_bank), item);
     Random4 random = film;
     if (camera == 1u)
         random = connection_random_lens(film, film);
     else if (s == 1u)
-        random = connection_random_light(chain_select(frame, paths, t), chain_emit(frame, paths, t));
+        random = connection_random_light(chain_select(frame, paths, item), chain_emit(frame, paths, item));
     bool possible = connect_ends(scene, s, camera, &y, &z, random, connection);
     if (s >= 2u) {
-        uint flags = state_load(paths, stride, light_half + CHAIN_SUBPATH_EMITTER_FLAGS, t);
+        uint flags = state_load(paths, stride, light_half + CHAIN_SUBPATH_EMITTER_FLAGS, item);
         connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;
-        connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_SUBPATH_CONNECT, t);
+        connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_SUBPATH_CONNECT, item);
     }
     return possible && connection_traceable(connection);
 }
@@ -279,70 +284,71 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
                           __global uint *restrict shadows, __global const uint *restrict vertices,
                           __global const uint *restrict densities)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, t), s = chain_key_s(key);
+    uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), s = chain_key_s(key);
     uint camera = chain_key_depth(key) + 1u - s;
-    if (s == 0u || chain_move(paths, stride, t, MOVE_REACHED) != SUBPATH_BOTH)
+    if (s == 0u || chain_move(paths, stride, item, MOVE_REACHED) != SUBPATH_BOTH)
         return;
-    Random4 film = chain_camera(frame, paths, t);
+    Random4 film = chain_camera(frame, paths, item);
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Connection connection = {0};
-    if (!chain_connect(scene, paths, vertices, t, s, camera, film, &connection))
+    if (!chain_connect(scene, paths, vertices, item, s, camera, film, &connection))
         return;
-    DensityView view = chain_density_view(frame, paths, densities, t, s, camera);
+    DensityView view = chain_density_view(frame, paths, densities, item, s, camera);
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
-    connection_store(paths, shadows, stride, t, &connection, weights.own);
+    connection_store(paths, shadows, stride, item, &connection, weights.own);
     Vec2 position = camera == 1u ? connection.film : film_position(frame, film.x[0], film.x[1]);
-    chain_place(scene, paths, t, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
+    chain_place(scene, paths, item, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
 }
 
-/* From: the proposal's contribution, and whether it arrives. To: the next current path, and one splat. */
+/* From: the proposal's contribution and visibility. To: the next current path, and one splat. */
 __kernel void mlt_accept(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                          __global const uint *restrict geometry, __global const uint *restrict tables,
                          __global const uint *restrict texels, __global uint *restrict paths,
                          __global uint *restrict shadows, __global const uint *restrict vertices,
                          __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    bool cast = state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f;
-    bool visible = shadow_take(shadows, stride, t);
-    Vec3 color = state_load_vec3(paths, stride, BD_CONTRIBUTION, t);
+    bool cast = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
+    bool visible = shadow_take(shadows, stride, item);
+    Vec3 color = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
     if (cast && !visible)
         color = vec3_splat(0.0f);
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    chain_decide(scene, paths, splats, diagnostics, t, color, shift_ratio(paths, vertices, stride, t));
+    chain_decide(scene, paths, splats, diagnostics, item, color, shift_ratio(paths, vertices, stride, item));
 }
 
-/* From: the chains. To: what the film has not got of them, and where they ended. */
+/* From: the chains. To: splats of the visits that are still pending, and where the chains have ended. */
 __kernel void mlt_end(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                       __global const uint *restrict geometry, __global const uint *restrict tables,
                       __global const uint *restrict texels, __global uint *restrict paths,
                       __global uint *restrict splats, __global uint *restrict pass, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    chain_splat_current(scene, paths, splats, diagnostics, t, state_load_float(paths, stride, CHAIN_PENDING, t),
-                        chain_random(frame, t, state_load(paths, stride, CHAIN_STEP, t), CHAIN_BLOCK_DECIDE));
-    uint key = state_load(paths, stride, CHAIN_KEY, t), d = chain_key_depth(key);
-    pass_store(frame, pass, CHAIN_PASS_KEY, t, chain_key(d, chain_key_s(key)));
-    pass_store(frame, pass, CHAIN_PASS_LUMINANCE, t, state_load(paths, stride, CHAIN_LUMINANCE, t));
-    pass_store(frame, pass, CHAIN_PASS_STEP, t, state_load(paths, stride, CHAIN_STEP, t));
-    pass_store(frame, pass, CHAIN_PASS_BAD, t, state_load(paths, stride, CHAIN_BAD, t));
-    pass_store(frame, pass, CHAIN_PASS_RUN, t, state_load(paths, stride, CHAIN_RUN, t));
-    pass_store(frame, pass, CHAIN_PASS_CELL, t, importance_cell(frame, chain_film_load(paths, stride, CHAIN_FILM, t)));
+    chain_splat_current(scene, paths, splats, diagnostics, item, state_load_float(paths, stride, CHAIN_PENDING, item),
+                        chain_random(frame, item, state_load(paths, stride, CHAIN_STEP, item), CHAIN_BLOCK_DECIDE));
+    uint key = state_load(paths, stride, CHAIN_KEY, item), d = chain_key_depth(key);
+    pass_store(frame, pass, CHAIN_PASS_KEY, item, chain_key(d, chain_key_s(key)));
+    pass_store(frame, pass, CHAIN_PASS_LUMINANCE, item, state_load(paths, stride, CHAIN_LUMINANCE, item));
+    pass_store(frame, pass, CHAIN_PASS_STEP, item, state_load(paths, stride, CHAIN_STEP, item));
+    pass_store(frame, pass, CHAIN_PASS_BAD, item, state_load(paths, stride, CHAIN_BAD, item));
+    pass_store(frame, pass, CHAIN_PASS_RUN, item, state_load(paths, stride, CHAIN_RUN, item));
+    pass_store(frame, pass, CHAIN_PASS_CELL, item,
+               importance_cell(frame, chain_film_load(paths, stride, CHAIN_FILM, item)));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
-        pass_store(frame, pass, CHAIN_PASS_TALLY + i, t, state_load(paths, stride, CHAIN_TALLY + i, t));
+        pass_store(frame, pass, CHAIN_PASS_TALLY + i, item, state_load(paths, stride, CHAIN_TALLY + i, item));
     if (frame->keep_chains == 0u)
         return;
     uint words = NUMBER_VERTICES + (d - 1u) * chain_vertex_numbers(frame);
     for (uint i = 0u; i < words; ++i)
-        pass_store(frame, pass, CHAIN_PASS_NUMBERS + i, t, state_load(paths, stride, CHAIN_NUMBERS + i, t));
+        pass_store(frame, pass, CHAIN_PASS_NUMBERS + i, item, state_load(paths, stride, CHAIN_NUMBERS + i, item));
 }
 
 #endif

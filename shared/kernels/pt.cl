@@ -1,6 +1,6 @@
-/* Path tracing, one kernel a stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
+/* Path tracing, one kernel per stage. Per segment: (rays traced) pt_shade_hits, pt_sample_lights, (shadow rays traced)
  * pt_add_lights, pt_extend_paths; around them pt_start_paths and pt_splat. Next-event estimation with multiple
- * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9), Russian roulette by throughput. */
+ * importance sampling over the strategies s = 0 and s = 1 (Veach 1997, chapter 9); Russian roulette by throughput. */
 #ifndef TWINLIGHT_PT_CL
 #define TWINLIGHT_PT_CL
 
@@ -18,19 +18,19 @@
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* The first vertices always survive. */
+/* Vertices before this one always survive Russian roulette. */
 #define ROULETTE_FIRST_DEPTH 2u
 
-/* Path tracing beside chains (frame->split_direct) shows light of longer paths than these up to the frame's limit. */
+/* With frame->split_direct, path tracing clamps the light of paths that are deeper than this. */
 #define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
 
-/* And roulette leaves at least so many of them alive: what it takes from some others carry, above the limit. */
+/* Minimum probability of such a path to survive roulette; below it, reweighted survivors would exceed the clamp. */
 #define SURVIVED_LEAST 0.125f
 
-SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint item)
 {
-    state_store(paths, stride, PATH_DEPTH, t, 0u);
-    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+    state_store(paths, stride, PATH_DEPTH, item, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
 }
 
 /* From: nothing. To: the path's first ray, throughput 1. */
@@ -40,11 +40,11 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict rays, __global uint *restrict shadows,
                              __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    ItemPlace place = item_place(frame, t);
+    ItemPlace place = item_place(frame, item);
     uint pixel = place.pixel, sample = place.sample;
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
     float weight;
@@ -54,216 +54,219 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
-    ray_store(rays, stride, t, ray);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    state_store(paths, stride, PATH_PIXEL, t, pixel);
-    state_store(paths, stride, PATH_SAMPLE, t, sample);
-    state_store(paths, stride, PATH_DEPTH, t, 1u);
-    state_store(paths, stride, PATH_FLAGS, t, PATH_FLAG_DELTA);
-    state_store_float(paths, stride, PATH_WEIGHT, t, weight);
-    state_store_vec3(paths, stride, PATH_BETA, t, vec3_splat(1.0f));
-    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
-    state_store_float(paths, stride, PATH_PDF_W, t, 1.0f);
-    state_store_float(paths, stride, PATH_ETA_SCALE, t, 1.0f);
+    ray_store(rays, stride, item, ray);
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    state_store(paths, stride, PATH_PIXEL, item, pixel);
+    state_store(paths, stride, PATH_SAMPLE, item, sample);
+    state_store(paths, stride, PATH_DEPTH, item, 1u);
+    state_store(paths, stride, PATH_FLAGS, item, PATH_FLAG_DELTA);
+    state_store_float(paths, stride, PATH_WEIGHT, item, weight);
+    state_store_vec3(paths, stride, PATH_BETA, item, vec3_splat(1.0f));
+    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
+    state_store_float(paths, stride, PATH_PDF_W, item, 1.0f);
+    state_store_float(paths, stride, PATH_ETA_SCALE, item, 1.0f);
     if (frame->split_depths != 0u)
-        state_store(paths, stride, PATH_GATHERED, t, 0u);
+        state_store(paths, stride, PATH_GATHERED, item, 0u);
     if (frame->split_direct != 0u) {
-        state_store_float(paths, stride, PATH_LIMIT, t,
+        state_store_float(paths, stride, PATH_LIMIT, item,
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
-        state_store_float(paths, stride, PATH_SURVIVED, t, 1.0f);
+        state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
     }
-    state_store_vec3(paths, stride, PATH_POINT, t, ray.o);
+    state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
     }
 }
 
-/* Light of a path of so many segments. */
-SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+/* Adds light of a path of `segments` segments. */
+SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                        uint segments, Vec3 radiance)
 {
     uint stride = frame->stride;
     if (frame->split_depths != 0u)
-        state_store(paths, stride, PATH_GATHERED, t, segments);
-    Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, t);
-    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_add(sum, radiance));
+        state_store(paths, stride, PATH_GATHERED, item, segments);
+    Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, item);
+    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_add(sum, radiance));
 }
 
-/* The part that a path of so many segments shows of its contribution. path_tracing: the luminance of f over the sum of
- * the densities of s = 0 and 1, the same whichever of them made it. With chains beside (frame->split_direct) as much of
- * that is shown as the limit, and they show the rest (chain/mutation.h). */
-SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint t,
+/* The part of its contribution that a path of `segments` segments shows. path_tracing: the luminance of f over the sum
+ * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->split_direct what is below the
+ * clamping threshold is shown; chains show the rest (chain/mutation.h). */
+SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint item,
                                  uint segments, float path_tracing)
 {
     if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
         return 1.0f;
-    float limit = state_load_float(paths, frame->stride, PATH_LIMIT, t);
-    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, t); /* chains know no roulette */
+    float limit = state_load_float(paths, frame->stride, PATH_LIMIT, item);
+    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, item); /* chains have no roulette */
     return partition_shown(path_tracing, limit);
 }
 
-/* s = 0: the camera's path meets `radiance`, which light sampling would have found with density `pdf_other` (0:
+/* s = 0: the camera's path hits `radiance`, which light sampling would have found with density `pdf_other` (0:
  * never). */
-SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint t,
+SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                   Vec3 radiance, float pdf_other)
 {
     uint stride = frame->stride;
     float weight = 1.0f, balance = 1.0f;
     if (pdf_other > 0.0f) {
-        float pdf = state_load_float(paths, stride, PATH_PDF_W, t);
+        float pdf = state_load_float(paths, stride, PATH_PDF_W, item);
         weight = mis_power(pdf, pdf_other);
         balance = mis_balance(pdf, pdf_other);
     }
-    Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), radiance);
-    uint segments = state_load(paths, stride, PATH_DEPTH, t);
-    weight *= path_shown(frame, paths, t, segments, rgb_luminance(light) * balance);
-    path_add_radiance(frame, paths, t, segments, vec3_scale(light, weight));
+    Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), radiance);
+    uint segments = state_load(paths, stride, PATH_DEPTH, item);
+    weight *= path_shown(frame, paths, item, segments, rgb_luminance(light) * balance);
+    path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight));
 }
 
-/* What the environment sends along d (unit) to a path that was scattered there, weighted against light sampling. */
-SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint t, Vec3 d)
+/* Adds what the environment sends along d (unit) to a path that was scattered in that direction, weighted against light
+ * sampling. */
+SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 d)
 {
-    uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, t);
+    uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, item);
     for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
         float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
             pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-        path_add_met(scene->frame, paths, t, environment_light_radiance(scene, light, d), pdf_light);
+        path_add_met(scene->frame, paths, item, environment_light_radiance(scene, light, d), pdf_light);
     }
 }
 
 /* The same for the area light at `surface`. */
-SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *restrict paths, uint t, uint light,
+SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *restrict paths, uint item, uint light,
                                        const Surface *surface, Vec3 d)
 {
-    uint stride = scene->frame->stride, flags = state_load(paths, stride, PATH_FLAGS, t);
+    uint stride = scene->frame->stride, flags = state_load(paths, stride, PATH_FLAGS, item);
     Vec3 radiance = light_emitted(scene, light, surface->ng, vec3_negate(d));
     float pdf_light = 0.0f;
     if (vec3_is_zero(radiance))
         return;
     if ((flags & PATH_FLAG_DELTA) == 0u)
         pdf_light = scene->lights[light].select_pdf *
-                    light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, t), d, surface);
-    path_add_met(scene->frame, paths, t, radiance, pdf_light);
+                    light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, item), d, surface);
+    path_add_met(scene->frame, paths, item, radiance, pdf_light);
 }
 
-/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or are full end. */
+/* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or have max_depth segments
+ * end. */
 __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                             __global const uint *restrict tables, __global const uint *restrict texels,
                             __global uint *restrict paths, __global uint *restrict rays,
                             __global const uint *restrict hits)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Ray ray = ray_load(rays, stride, t);
-    Hit hit = hit_load(hits, stride, t);
+    Ray ray = ray_load(rays, stride, item);
+    Hit hit = hit_load(hits, stride, item);
     if (hit.primitive == NONE) {
         if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            path_add_environment(scene, paths, t, ray.d);
-        path_end(paths, rays, stride, t);
+            path_add_environment(scene, paths, item, ray.d);
+        path_end(paths, rays, stride, item);
         return;
     }
     Surface surface = surface_from_hit(scene, &ray, hit);
     uint first_light = scene->shapes[surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE) {
         uint light = first_light + hit.primitive - scene->shapes[surface.shape].first_primitive;
-        path_add_emission(scene, paths, t, light, &surface, ray.d);
+        path_add_emission(scene, paths, item, light, &surface, ray.d);
     }
     if (depth >= frame->max_depth) {
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
         return;
     }
     float u_mix = 0.5f;
     if (SCENE_HAS(scene, FEATURE_MIX)) {
-        Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
-                                     state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_MIX));
+        Random4 random =
+            path_random(frame, state_load(paths, stride, PATH_PIXEL, item),
+                        state_load(paths, stride, PATH_SAMPLE, item), path_random_block(depth, RANDOM_MIX));
         u_mix = random_float(random.x[0]);
     }
     Bsdf bsdf;
     Frame shading;
     material_resolve(scene, u_mix, &surface, &bsdf, &shading);
     if (bsdf.kind == MATERIAL_DIFFUSE && vec3_is_zero(bsdf.color0)) {
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
         return;
     }
-    state_store_vec3(paths, stride, PATH_POINT, t, surface.p);
-    state_store_vec3(paths, stride, PATH_NG, t, surface.ng);
-    state_store_vec3(paths, stride, PATH_WO, t, frame_to_local(shading, vec3_negate(ray.d)));
-    frame_store(paths, stride, PATH_FRAME, t, shading);
-    bsdf_store(scene, paths, stride, PATH_BSDF, t, &bsdf);
+    state_store_vec3(paths, stride, PATH_POINT, item, surface.p);
+    state_store_vec3(paths, stride, PATH_NG, item, surface.ng);
+    state_store_vec3(paths, stride, PATH_WO, item, frame_to_local(shading, vec3_negate(ray.d)));
+    frame_store(paths, stride, PATH_FRAME, item, shading);
+    bsdf_store(scene, paths, stride, PATH_BSDF, item, &bsdf);
 }
 
-/* From: the vertex. To: one light sample, its shadow ray and what it contributes when visible. */
+/* From: the vertex. To: one light sample, its shadow ray, and its contribution if visible. */
 __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                                __global const uint *restrict tables, __global const uint *restrict texels,
                                __global uint *restrict paths, __global uint *restrict shadows)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, PATH_DEPTH, t);
-    if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u)
+    uint depth = state_load(paths, stride, PATH_DEPTH, item);
+    if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
-                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_LIGHT));
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, item),
+                                 state_load(paths, stride, PATH_SAMPLE, item), path_random_block(depth, RANDOM_LIGHT));
     uint light = light_select(scene, random.x[0], random.x[1]);
-    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item), ng = state_load_vec3(paths, stride, PATH_NG, item);
     LightSample sample = {0};
     if (!light_sample(scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
         return;
-    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
-    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
-    BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t),
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, item);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, item);
+    BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, item),
                                 frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
     if (vec3_is_zero(value.f_cos))
         return;
     float pdf = scene->lights[light].select_pdf * sample.pdf_w;
     float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
-    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, t);
+    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
     float path_tracing = rgb_luminance(light_term) / (pdf + pdf_other);
     light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
-    light_term = vec3_scale(light_term, path_shown(frame, paths, t, depth + 1u, path_tracing));
+    light_term = vec3_scale(light_term, path_shown(frame, paths, item, depth + 1u, path_tracing));
     Ray shadow = light_shadow_ray(p, ng, &sample);
     if (!ray_traceable(shadow.o, shadow.d))
         return;
-    state_store_vec3(paths, stride, PATH_LIGHT, t, light_term);
-    ray_store(shadows, stride, t, shadow);
+    state_store_vec3(paths, stride, PATH_LIGHT, item, light_term);
+    ray_store(shadows, stride, item, shadow);
 }
 
-/* From: traced shadow rays. To: visible light samples gathered, no shadow ray left. */
+/* From: traced shadow rays. To: visible light samples gathered, shadow rays cleared. */
 __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
                             __global uint *restrict shadows)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    if (!(state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f))
+    if (!(state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f))
         return;
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    if (state_load(shadows, stride, SHADOW_OCCLUDED, t) == 0u)
-        path_add_radiance(frame, paths, t, state_load(paths, stride, PATH_DEPTH, t) + 1u,
-                          state_load_vec3(paths, stride, PATH_LIGHT, t));
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    if (state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
+        path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item) + 1u,
+                          state_load_vec3(paths, stride, PATH_LIGHT, item));
 }
 
-/* The probability with which Russian roulette lets the path live: its throughput, 1 or more for certainly. */
-SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global uint *restrict paths, uint t, Vec3 beta,
-                                    float eta_scale)
+/* The probability with which Russian roulette lets the path live: its throughput; 1 or more: certainly. */
+SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                    Vec3 beta, float eta_scale)
 {
     float survival = vec3_max_component(beta) * eta_scale;
     if (frame->split_direct == 0u || !(survival > 0.0f))
         return survival;
-    float before = state_load_float(paths, frame->stride, PATH_SURVIVED, t);
+    float before = state_load_float(paths, frame->stride, PATH_SURVIVED, item);
     survival = float_clamp(survival, SURVIVED_LEAST / before, 1.0f);
-    state_store_float(paths, frame->stride, PATH_SURVIVED, t, before * survival);
+    state_store_float(paths, frame->stride, PATH_SURVIVED, item, before * survival);
     return survival;
 }
 
@@ -273,83 +276,85 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict paths, __global uint *restrict rays,
                               __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint depth = state_load(paths, stride, PATH_DEPTH, t);
+    uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, t),
-                                 state_load(paths, stride, PATH_SAMPLE, t), path_random_block(depth, RANDOM_SCATTER));
-    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, t);
+    Random4 random =
+        path_random(frame, state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
+                    path_random_block(depth, RANDOM_SCATTER));
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, item);
     BsdfSample sample;
-    if (!bsdf_sample(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, t), random_float(random.x[0]),
+    if (!bsdf_sample(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, item), random_float(random.x[0]),
                      vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
         return;
     }
-    Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, t), sample.weight);
-    float eta_scale = state_load_float(paths, stride, PATH_ETA_SCALE, t) * sample.eta * sample.eta;
-    float survival = depth >= ROULETTE_FIRST_DEPTH ? path_survival(frame, paths, t, beta, eta_scale) : 1.0f;
+    Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), sample.weight);
+    float eta_scale = state_load_float(paths, stride, PATH_ETA_SCALE, item) * sample.eta * sample.eta;
+    float survival = depth >= ROULETTE_FIRST_DEPTH ? path_survival(frame, paths, item, beta, eta_scale) : 1.0f;
     if (!(random_float(random.x[3]) < survival)) {
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
         return;
     }
     if (survival < 1.0f)
         beta = vec3_scale(beta, 1.0f / survival);
-    Frame shading = frame_load(paths, stride, PATH_FRAME, t);
-    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, t), ng = state_load_vec3(paths, stride, PATH_NG, t);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, item);
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item), ng = state_load_vec3(paths, stride, PATH_NG, item);
     Vec3 wi = vec3_normalize(frame_to_world(shading, sample.wi));
     Ray ray = ray_spawn(p, ng, wi);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
-        path_end(paths, rays, stride, t);
+        path_end(paths, rays, stride, item);
         return;
     }
-    ray_store(rays, stride, t, ray);
-    state_store_vec3(paths, stride, PATH_BETA, t, beta);
-    state_store_float(paths, stride, PATH_PDF_W, t, sample.pdf_w);
-    state_store_float(paths, stride, PATH_ETA_SCALE, t, eta_scale);
-    state_store(paths, stride, PATH_FLAGS, t, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
-    state_store(paths, stride, PATH_DEPTH, t, depth + 1u);
+    ray_store(rays, stride, item, ray);
+    state_store_vec3(paths, stride, PATH_BETA, item, beta);
+    state_store_float(paths, stride, PATH_PDF_W, item, sample.pdf_w);
+    state_store_float(paths, stride, PATH_ETA_SCALE, item, eta_scale);
+    state_store(paths, stride, PATH_FLAGS, item, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
+    state_store(paths, stride, PATH_DEPTH, item, depth + 1u);
 }
 
-/* What the path has gathered goes to its pixel, and is gone. A sum that is not finite counts as zero and is counted. */
+/* Splats what the path has gathered to its pixel, and clears it. A sum that is not finite is counted, and splatted as
+ * zero. */
 SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *restrict splats,
-                                __global uint *restrict diagnostics, uint stride, uint t, uint flags)
+                                __global uint *restrict diagnostics, uint stride, uint item, uint flags)
 {
-    Vec3 radiance =
-        vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, t), state_load_float(paths, stride, PATH_WEIGHT, t));
+    Vec3 radiance = vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, item),
+                               state_load_float(paths, stride, PATH_WEIGHT, item));
     if (!vec3_finite(radiance)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
         radiance = vec3_splat(0.0f);
     }
-    state_store(splats, stride, SPLAT_PIXEL, t, flags | state_load(paths, stride, PATH_PIXEL, t));
-    state_store_vec3(splats, stride, SPLAT_COLOR, t, radiance);
-    state_store_vec3(paths, stride, PATH_RADIANCE, t, vec3_splat(0.0f));
+    state_store(splats, stride, SPLAT_PIXEL, item, flags | state_load(paths, stride, PATH_PIXEL, item));
+    state_store_vec3(splats, stride, SPLAT_COLOR, item, radiance);
+    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
 }
 
-/* From: paths of two segments. To: their light, as a sample of the pixel; frame->split_direct. */
+/* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->split_direct. */
 __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
                               __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0);
-    if (t < frame->item_count)
-        path_splat(paths, splats, diagnostics, frame->stride, t, 0u);
+    uint item = (uint)get_global_id(0);
+    if (item < frame->item_count)
+        path_splat(paths, splats, diagnostics, frame->stride, item, 0u);
 }
 
-/* From: the finished path. To: what it adds to its pixel; when direct light has gone there before, to the sums of what
- * is no sample of it. With frame->split_depths also from a path under way: what its latest segment has brought. */
+/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's
+ * sample before. With frame->split_depths also in the course of a path: what its latest segment has brought. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint t = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
+    if (item >= frame->item_count)
         return;
     if (frame->split_depths != 0u)
-        flags |= splat_depth(frame->split_depths, state_load(paths, frame->stride, PATH_GATHERED, t));
-    path_splat(paths, splats, diagnostics, frame->stride, t, flags);
+        flags |= splat_depth(frame->split_depths, state_load(paths, frame->stride, PATH_GATHERED, item));
+    path_splat(paths, splats, diagnostics, frame->stride, item, flags);
 }
 
 #endif

@@ -1,11 +1,11 @@
-/* Quotients and square roots of chosen numbers: whether a device rounds them as IEEE 754 asks (rounding_probe.h). No
- * rendering uses this. */
+/* Quotients and square roots of selected numbers, to find out whether a device rounds them as IEEE 754 requires
+ * (backend_ocl/rounding_probe.h). No rendering uses this. */
 #ifndef TWINLIGHT_ROUNDING_CL
 #define TWINLIGHT_ROUNDING_CL
 
 #include "math/rng.h"
 
-/* What the kernel computes of each item: a / b, 1 / b, a / 3, sqrt(c), 1 / sqrt(c), which has one of both. */
+/* Results of an item: a / b, 1 / b, a / 3, sqrt(c), and 1 / sqrt(c), which takes two operations. */
 #define ROUNDING_WORDS 5u
 #define ROUNDING_OPERATIONS 6u
 
@@ -19,8 +19,8 @@ SHARED_FUNCTION float rounding_scale(uint x, int exponent)
     return bits_float(float_bits((float)x) + ((uint)exponent << 23));
 }
 
-/* The a in [0, b) whose a 2^25 is r modulo b; b is odd, 0 < r < b. With an odd r, or b less an odd number, a / b lies
- * next to k / 2^25 for an odd k: halfway between two floats where a is more than b / 2, and next to a float where it is
+/* The a in [0, b) for which a 2^25 is r modulo b; b is odd, 0 < r < b. If r is odd, or b less an odd number, a / b is
+ * next to k / 2^25 for an odd k: halfway between two floats if a is more than b / 2, and next to a float if it is
  * less. */
 SHARED_FUNCTION uint rounding_hard_dividend(uint b, uint r)
 {
@@ -29,8 +29,8 @@ SHARED_FUNCTION uint rounding_hard_dividend(uint b, uint r)
     return r;
 }
 
-/* The x of 24 bits with x 2^shift = s^2 - r, s an odd number of 25 bits; r is small and 1 modulo 8. Its root lies next
- * to s, which is halfway between two floats. The root of r modulo 2^26 is found bit by bit. */
+/* The x of 24 bits with x 2^shift = s^2 - r, for an odd s of 25 bits; r is small and 1 modulo 8. The root is next to s,
+ * which is halfway between two floats. The root of r modulo 2^26 is found bit by bit. */
 SHARED_FUNCTION uint rounding_hard_radicand(int r, uint *shift)
 {
     uint s = 1u;
@@ -44,8 +44,8 @@ SHARED_FUNCTION uint rounding_hard_radicand(int r, uint *shift)
     return (uint)(square >> *shift);
 }
 
-/* Operands of item i, by i modulo 8: 0 ... 3 any bits; 4 a denormal and any bits; 5 quotients about the least normal
- * number and denormal radicands; 6, 7 quotients and roots next to where rounding changes. */
+/* Operands of item i, by i modulo 8: 0 ... 3 any bits; 4 a denormal and any bits; 5 quotients around the least normal
+ * number, and denormal radicands; 6, 7 quotients and roots next to where rounding changes. */
 SHARED_FUNCTION RoundingOperands rounding_operands(uint i)
 {
     Random4 random = random_four(i, 0u, 0u, 0u, 0x726f756eu, 0x64696e67u);

@@ -1,5 +1,5 @@
-/* Ray queries by the hierarchy in BUFFER_BVH, for backends that have none of their own. A ray with t_max <= 0 is not
- * traced, and its hit or visibility stays what it was. */
+/* Ray queries with the hierarchy in BUFFER_BVH, for backends that have none of their own. Rays with t_max <= 0 are not
+ * traced, and their hits or visibility stay unchanged. */
 #ifndef TWINLIGHT_TRACE_CL
 #define TWINLIGHT_TRACE_CL
 
@@ -11,28 +11,28 @@ __kernel void trace_closest(__global const FrameParams *restrict frame, __global
                             __global const uint *restrict bvh, __global const uint *restrict rays,
                             __global uint *restrict hits)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    Ray ray = ray_load(rays, stride, t);
+    Ray ray = ray_load(rays, stride, item);
     if (!(ray.t_max > 0.0f))
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    hit_store(hits, stride, t, bvh_closest(scene, bvh, ray));
+    hit_store(hits, stride, item, bvh_closest(scene, bvh, ray));
 }
 
 __kernel void trace_shadow(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                            __global const uint *restrict tables, __global const uint *restrict texels,
                            __global const uint *restrict bvh, __global uint *restrict shadows)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    Ray ray = ray_load(shadows, stride, t);
+    Ray ray = ray_load(shadows, stride, item);
     if (!(ray.t_max > 0.0f))
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    state_store(shadows, stride, SHADOW_OCCLUDED, t, bvh_occluded(scene, bvh, ray) ? 1u : 0u);
+    state_store(shadows, stride, SHADOW_OCCLUDED, item, bvh_occluded(scene, bvh, ray) ? 1u : 0u);
 }
 
 #endif

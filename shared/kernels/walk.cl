@@ -1,6 +1,6 @@
-/* Random walks that ask for rays and nothing else: what the tests of the backends run, so that the bits
- * of hits can be compared across threads, backends and devices without a light or material in play. The walk
- * leaves each hit in a uniform direction on a random side, and draws a segment to an earlier point of itself. */
+/* Random walks that need ray queries and nothing else, for the tests of backends: the bits of hits can be compared
+ * across threads, backends and devices without a light or material in play. A walk leaves each hit in a uniform
+ * direction, on either side, and casts a shadow ray to its previous point. */
 #ifndef TWINLIGHT_WALK_CL
 #define TWINLIGHT_WALK_CL
 
@@ -23,42 +23,42 @@ SHARED_FUNCTION uint walk_hash(uint h, uint word)
     return h ^ (h >> 15);
 }
 
-SHARED_FUNCTION Random4 walk_random(__global const FrameParams *frame, uint t, uint step)
+SHARED_FUNCTION Random4 walk_random(__global const FrameParams *frame, uint item, uint step)
 {
-    return random_four(frame->first_item + t, frame->sample_index, step, WALK_STREAM, frame->seed_low,
+    return random_four(frame->first_item + item, frame->sample_index, step, WALK_STREAM, frame->seed_low,
                        frame->seed_high);
 }
 
 /* To: a ray from the middle of the scene in a uniform direction. */
 __kernel void walk_start(__global const FrameParams *frame, __global uint *paths, __global uint *rays)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    Random4 random = walk_random(frame, t, 0u);
+    Random4 random = walk_random(frame, item, 0u);
     Vec3 d = warp_sphere(vec2(random_float(random.x[0]), random_float(random.x[1])));
-    state_store(paths, stride, WALK_STEP, t, 1u);
-    state_store(paths, stride, WALK_HASH, t, 0x811c9dc5u);
-    state_store_vec3(paths, stride, WALK_POINT, t, frame->world_center);
-    state_store_vec3(paths, stride, WALK_NG, t, vec3_splat(0.0f));
-    ray_store(rays, stride, t, ray_spawn(frame->world_center, vec3_splat(0.0f), d));
+    state_store(paths, stride, WALK_STEP, item, 1u);
+    state_store(paths, stride, WALK_HASH, item, 0x811c9dc5u);
+    state_store_vec3(paths, stride, WALK_POINT, item, frame->world_center);
+    state_store_vec3(paths, stride, WALK_NG, item, vec3_splat(0.0f));
+    ray_store(rays, stride, item, ray_spawn(frame->world_center, vec3_splat(0.0f), d));
 }
 
-/* From: a hit. To: the next ray, and a shadow ray to the point before. A walk that misses starts again. */
+/* From: a hit. To: the next ray, and a shadow ray to the previous point. A walk that misses starts again. */
 __kernel void walk_extend(__global const FrameParams *frame, __global const uint *geometry, __global const uint *tables,
                           __global const uint *texels, __global uint *paths, __global uint *rays,
                           __global const uint *hits, __global uint *shadows)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    uint step = state_load(paths, stride, WALK_STEP, t), h = state_load(paths, stride, WALK_HASH, t);
+    uint step = state_load(paths, stride, WALK_STEP, item), h = state_load(paths, stride, WALK_HASH, item);
     for (uint field = 0; field < HIT_WORDS; ++field)
-        h = walk_hash(h, state_load(hits, stride, field, t));
-    Ray ray = ray_load(rays, stride, t);
-    Hit hit = hit_load(hits, stride, t);
-    Random4 random = walk_random(frame, t, step);
+        h = walk_hash(h, state_load(hits, stride, field, item));
+    Ray ray = ray_load(rays, stride, item);
+    Hit hit = hit_load(hits, stride, item);
+    Random4 random = walk_random(frame, item, step);
     Vec3 d = warp_sphere(vec2(random_float(random.x[0]), random_float(random.x[1])));
     Vec3 p = frame->world_center, ng = vec3_splat(0.0f);
     if (hit.primitive != NONE) {
@@ -66,30 +66,30 @@ __kernel void walk_extend(__global const FrameParams *frame, __global const uint
         p = surface.p;
         ng = surface.ng;
     }
-    ray_store(
-        shadows, stride, t,
-        ray_between(p, ng, state_load_vec3(paths, stride, WALK_POINT, t), state_load_vec3(paths, stride, WALK_NG, t)));
-    ray_store(rays, stride, t, ray_spawn(p, ng, d));
-    state_store_vec3(paths, stride, WALK_POINT, t, p);
-    state_store_vec3(paths, stride, WALK_NG, t, ng);
-    state_store(paths, stride, WALK_STEP, t, step + 1u);
-    state_store(paths, stride, WALK_HASH, t, h);
+    ray_store(shadows, stride, item,
+              ray_between(p, ng, state_load_vec3(paths, stride, WALK_POINT, item),
+                          state_load_vec3(paths, stride, WALK_NG, item)));
+    ray_store(rays, stride, item, ray_spawn(p, ng, d));
+    state_store_vec3(paths, stride, WALK_POINT, item, p);
+    state_store_vec3(paths, stride, WALK_NG, item, ng);
+    state_store(paths, stride, WALK_STEP, item, step + 1u);
+    state_store(paths, stride, WALK_HASH, item, h);
 }
 
-/* To: the hash as a colour, the last shadow ray's answer beside it. */
+/* To: the hash as a colour, and the last shadow ray's answer. */
 __kernel void walk_splat(__global const FrameParams *frame, __global const uint *paths, __global const uint *shadows,
                          __global uint *splats, __global uint *diagnostics)
 {
-    uint t = (uint)get_global_id(0), stride = frame->stride;
-    if (t >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->stride;
+    if (item >= frame->item_count)
         return;
-    uint h = state_load(paths, stride, WALK_HASH, t);
-    bool traced = state_load_float(shadows, stride, RAY_T_MAX, t) > 0.0f;
+    uint h = state_load(paths, stride, WALK_HASH, item);
+    bool traced = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
     if (!traced)
         diagnostic_count(diagnostics, DIAGNOSTIC_ZERO_DIRECTION);
-    uint occluded = traced ? state_load(shadows, stride, SHADOW_OCCLUDED, t) : 2u;
-    state_store(splats, stride, SPLAT_PIXEL, t, frame->first_item + t);
-    state_store_vec3(splats, stride, SPLAT_COLOR, t, vec3((float)(h >> 16), (float)(h & 0xffffu), (float)occluded));
+    uint occluded = traced ? state_load(shadows, stride, SHADOW_OCCLUDED, item) : 2u;
+    state_store(splats, stride, SPLAT_PIXEL, item, frame->first_item + item);
+    state_store_vec3(splats, stride, SPLAT_COLOR, item, vec3((float)(h >> 16), (float)(h & 0xffffu), (float)occluded));
 }
 
 #endif

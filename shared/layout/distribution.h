@@ -4,9 +4,9 @@
 
 #include "layout/scene_types.h"
 
-/* An index below count (> 0) from an alias table. bits0 and bits1 together are one 64-bit fraction: its product with
- * `count` has the bucket above the point and, below it, what decides whether the bucket's own index is kept. Every
- * bucket is met with the same probability to within count 2^-64. */
+/* Draws an index below `count` (> 0) from an alias table. bits0 and bits1 form one 64-bit fraction. The integer part of
+ * its product with `count` is the bucket, the fractional part decides whether the bucket's own index is kept. All
+ * buckets are equally probable to within count 2^-64. */
 SHARED_FUNCTION uint alias_sample(__global const AliasBucket *buckets, uint count, uint bits0, uint bits1)
 {
     ulong low = (ulong)bits1 * count;
@@ -16,8 +16,8 @@ SHARED_FUNCTION uint alias_sample(__global const AliasBucket *buckets, uint coun
     return rest < buckets[bucket].q ? bucket : buckets[bucket].alias;
 }
 
-/* The cell i < count of a CDF of count + 1 values with cdf[first + i] <= u < cdf[first + i + 1]: never one of width 0.
- * cdf[first] <= u < cdf[first + count] must hold. */
+/* The cell i < count of a CDF of count + 1 values with cdf[first + i] <= u < cdf[first + i + 1]; never an empty one.
+ * Requires cdf[first] <= u < cdf[first + count]. */
 SHARED_FUNCTION uint distribution_cell(__global const float *lookup, uint first, uint count, float u)
 {
     uint low = 0u, high = count;
@@ -31,7 +31,7 @@ SHARED_FUNCTION uint distribution_cell(__global const float *lookup, uint first,
     return low;
 }
 
-/* The cell that x in [0, 1] lies in when [0, 1) is cut into `count` equal cells. */
+/* The cell of x in [0, 1] if [0, 1) is cut into `count` equal cells. */
 SHARED_FUNCTION uint distribution_cell_of(float x, uint count)
 {
     float cell = x * (float)count;
@@ -41,7 +41,7 @@ SHARED_FUNCTION uint distribution_cell_of(float x, uint count)
 }
 
 /* The point at `fraction` of cell `cell`: a float x < 1 with distribution_cell_of(x, count) == cell. Rounding may put
- * (cell + fraction) / count an ulp or two beyond the cell's border; it is brought back. count < 2^22. */
+ * (cell + fraction) / count an ulp or two beyond the cell's border; it is stepped back. count < 2^22. */
 SHARED_FUNCTION float distribution_place(uint cell, float fraction, uint count)
 {
     float x = float_min(((float)cell + fraction) / (float)count, 0.99999994f);
@@ -54,7 +54,7 @@ SHARED_FUNCTION float distribution_place(uint cell, float fraction, uint count)
     return x;
 }
 
-/* Density of one cell over the unit square. */
+/* Density of one cell, over the unit square. */
 SHARED_FUNCTION float distribution2d_cell_pdf(__global const float *lookup, Distribution2D d, uint x, uint y)
 {
     uint row = d.first_conditional + y * (d.width + 1u);
@@ -63,7 +63,7 @@ SHARED_FUNCTION float distribution2d_cell_pdf(__global const float *lookup, Dist
     return (marginal * (float)d.height) * (conditional * (float)d.width);
 }
 
-/* Density over the unit square at uv. Zero where the table is. */
+/* Density at uv, over the unit square. Zero where the table is. */
 SHARED_FUNCTION float distribution2d_pdf(__global const float *lookup, Distribution2D d, Vec2 uv)
 {
     return distribution2d_cell_pdf(lookup, d, distribution_cell_of(uv.x, d.width),
@@ -71,9 +71,9 @@ SHARED_FUNCTION float distribution2d_pdf(__global const float *lookup, Distribut
 }
 
 /* Draws a point uv of the unit square by inverting the marginal CDF at u.y, then that row's CDF at u.x. *pdf is exactly
- * distribution2d_pdf(uv), positive unless the whole table is zero: then it is 0 and the point means nothing. Exact for
- * u of random_float: the host puts every CDF value on a multiple of 2^-23, so that the share of such u that fall into a
- * cell *is* the cell's probability. */
+ * distribution2d_pdf(uv), positive unless the whole table is zero: then it is 0 and the point is meaningless. Exact for
+ * u from random_float: the host puts every CDF value on a multiple of 2^-23, so that the fraction of such u that fall
+ * into a cell *is* the cell's probability. */
 SHARED_FUNCTION Vec2 distribution2d_sample(__global const float *lookup, Distribution2D d, Vec2 u, float *pdf)
 {
     float ux = float_clamp(u.x, 0.0f, 0.99999994f);

@@ -1,4 +1,4 @@
-/* Which sample of which pixel an item of a pass is. */
+/* Which sample of which pixel an item of a pass is for. */
 #ifndef TWINLIGHT_LAYOUT_ITEM_H
 #define TWINLIGHT_LAYOUT_ITEM_H
 
@@ -9,13 +9,13 @@ typedef struct ItemPlace {
     uint sample;
 } ItemPlace;
 
-/* Cell `i` of an axis of `size` pixels begins with this one: pixel x is of cell x * IMPORTANCE_SIDE / size. */
+/* The first pixel of cell `i` along an axis of `size` pixels: pixel x is in cell x * IMPORTANCE_SIDE / size. */
 SHARED_FUNCTION uint cell_begin(uint i, uint size)
 {
     return (i * size + IMPORTANCE_SIDE - 1u) / IMPORTANCE_SIDE;
 }
 
-/* The cell that visit `slot` is of: the last that does not begin after it. */
+/* The cell of visit `slot`: the last cell that does not begin after it. */
 SHARED_FUNCTION uint visits_cell(__global const Guide *guide, uint slot)
 {
     uint first = 0u, last = IMPORTANCE_CELLS - 1u;
@@ -29,8 +29,8 @@ SHARED_FUNCTION uint visits_cell(__global const Guide *guide, uint slot)
     return first;
 }
 
-/* Of item `item` counted from the beginning of a pool that visits some pixels more often than others. Visits of one
- * pixel stand behind each other, and each is another sample. */
+/* The place of item `item`, counted from the beginning of a pool that visits some pixels more often than others. The
+ * visits of one pixel are consecutive, and each is another sample. */
 SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, __global const Guide *guide, uint item)
 {
     uint width = frame->crop_x1 - frame->crop_x0, height = frame->crop_y1 - frame->crop_y0;
@@ -47,7 +47,8 @@ SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, 
     return place;
 }
 
-/* By how much more rarely a pool visits the pixel than if it visited all alike: what a sample there counts for. */
+/* The density ratio of a pool at a pixel: how much more rarely the pool visits it than if it visited all alike. A
+ * sample there counts for as much more. */
 SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __global const Guide *guide, uint pixel)
 {
     uint all = frame->pool_visits;
@@ -63,7 +64,7 @@ SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __gl
     return (float)all / ((float)each * (float)(width * height));
 }
 
-/* Of item `item` of the pass, counted from pixel_first, where all pixels are visited alike. */
+/* The place of item `item`, counted from the beginning of the pixels' order, if all pixels are visited alike. */
 SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uint item)
 {
     uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
@@ -75,17 +76,17 @@ SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uin
     return place;
 }
 
-/* Of item `item` of a pass of a pool, or of one that visits all pixels alike. */
+/* The place of item `item` of a pass: a pool's, or one that visits all pixels alike. */
 SHARED_FUNCTION ItemPlace pool_item_place(__global const FrameParams *frame, __global const Guide *guide, uint item)
 {
     item += frame->pixel_first;
     return frame->pool_visits != 0u ? item_place_visited(frame, guide, item) : item_place_even(frame, item);
 }
 
-/* Of item t of a launch of any other pass. */
-SHARED_FUNCTION ItemPlace item_place(__global const FrameParams *frame, uint t)
+/* The place of item `item` of a launch, in a pass that is no pool's. */
+SHARED_FUNCTION ItemPlace item_place(__global const FrameParams *frame, uint item)
 {
-    return item_place_even(frame, frame->first_item + t + frame->pixel_first);
+    return item_place_even(frame, frame->first_item + item + frame->pixel_first);
 }
 
 #endif

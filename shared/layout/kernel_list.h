@@ -1,6 +1,6 @@
-/* Every kernel with its arguments, for the backends: the CPU makes a loop for each, a device looks them up by name.
- * Kernels themselves never include this file. A launch may have more items than the pass: a kernel returns at once
- * when its item is not below item_count. */
+/* Every kernel with its arguments, for the backends: the CPU backend makes a loop of each, a device looks them up by
+ * name. Kernels themselves never include this file. A launch may have more work items than the pass has items: a kernel
+ * returns at once if its item is not below item_count. */
 #ifndef TWINLIGHT_LAYOUT_KERNEL_LIST_H
 #define TWINLIGHT_LAYOUT_KERNEL_LIST_H
 
@@ -21,7 +21,7 @@
     X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
       BUFFER_HITS, BUFFER_SPLATS)
 
-/* Rays, sums, and the walks of tests. */
+/* Ray queries, film sums, and the walks of tests. */
 #define KERNEL_LIST_OTHERS(X)                                                                                          \
     X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
     X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
@@ -77,7 +77,7 @@
 
 #define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
 
-/* KERNEL_pt_start_paths ...: what Step.kernel holds. */
+/* KERNEL_pt_start_paths, ...: the values of Step.kernel. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,
 enum { KERNEL_LIST(KERNEL_ENUMERATE) KERNEL_COUNT };
 #undef KERNEL_ENUMERATE

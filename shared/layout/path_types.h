@@ -12,8 +12,8 @@ typedef struct Ray {
     float t_max;
 } Ray;
 
-/* The closest intersection is the smallest (t, instance, primitive), in that order. primitive NONE: a miss.
- * u, v: triangle: barycentric weights of vertices b and c. Patch: its (u, v). Of quadrics 0. */
+/* The closest intersection is the smallest (t, instance, primitive), in that order. primitive NONE: a miss. u and v:
+ * barycentric weights of vertices b and c for a triangle, (u, v) of a patch, 0 for quadrics. */
 typedef struct Hit {
     float t;
     uint primitive;
@@ -43,23 +43,21 @@ typedef struct Bsdf {
     uint kind;
     uint flags; /* BSDF_* */
     Vec3 color0; /* diffuse, coated, transmission: reflectance. conductor: eta or reflectance. */
-    Vec3
-        color1; /* conductor: k. diffuse transmission: transmittance. coated: optical thickness, round trip (bsdf/coat.h) */
+    Vec3 color1; /* conductor: k. diffuse transmission: transmittance. coated: thickness, round trip (bsdf/coat.h) */
     float alpha_x, alpha_y; /* GGX; below ALPHA_DELTA the lobe is a delta */
     float eta; /* inside over outside of the surface */
     uint coat_table; /* first float in `lookup`, NONE when smooth */
 } Bsdf;
 
 #define BSDF_REFLECTANCE 0x1u /* conductor given by reflectance at normal incidence */
-#define BSDF_SMOOTH 0x2u /* every lobe is a delta: light sampling is pointless */
+#define BSDF_SMOOTH 0x2u /* every lobe is a delta, so lights need not be sampled */
 #define BSDF_ROUGH 0x4u /* the specular lobe is a microfacet lobe, not a delta */
 
 #define ALPHA_DELTA 1e-3f
 
-/* A direction drawn from a Bsdf, in the shading frame (z = ns, directions point away from the surface).
- * weight = f |cos wi| / pdf_w: what the throughput is multiplied by. For a delta lobe, pdf_w is the discrete
- * probability of having chosen the lobe (densities of deltas never enter an MIS ratio). pdf_rev_w: the density of
- * drawing wo from wi. */
+/* A direction drawn from a Bsdf, in the shading frame (z = ns, directions point away from the surface). weight, the
+ * factor of the throughput, is f |cos wi| / pdf_w. For a delta lobe, pdf_w is the probability of having chosen the lobe
+ * (densities of deltas never enter an MIS ratio). pdf_rev_w: density of drawing wo from wi. */
 typedef struct BsdfSample {
     Vec3 wi;
     Vec3 weight;
@@ -77,7 +75,7 @@ typedef struct BsdfValue {
     float pdf_rev_w;
 } BsdfValue;
 
-/* Light arriving at a reference point from one light. */
+/* Light from one light that arrives at a reference point. */
 typedef struct LightSample {
     Vec3 wi; /* unit, from the reference point to the light */
     Vec3 p; /* point on the light; unused when `infinite` */
@@ -85,8 +83,8 @@ typedef struct LightSample {
     Vec3 radiance; /* arriving; for delta lights already divided by the squared distance */
     float pdf_w; /* solid-angle density given the light; 1 for delta lights */
     float pdf_emit; /* area lights: area density of emitting from p (light/emit.h) */
-    uint delta; /* 1: point, spot, distant: cannot be hit by a sampled direction */
-    uint infinite; /* 1: no end point; trace to infinity along wi */
+    uint delta; /* 1: point, spot, distant: no sampled direction can hit it */
+    uint infinite; /* 1: at infinity; trace along wi without end */
 } LightSample;
 
 #endif

@@ -7,33 +7,39 @@
 #ifndef TWINLIGHT_LAYOUT_SCENE_TYPES_H
 #define TWINLIGHT_LAYOUT_SCENE_TYPES_H
 
+#include "layout/material_list.h"
 #include "math/vec.h"
 
 /* ---- what a scene uses: the feature mask ---------------------------------------------------------------------- */
 
-#define FEATURE_TRIANGLE 0x1u
-#define FEATURE_BILINEAR 0x2u
-#define FEATURE_SPHERE 0x4u
-#define FEATURE_DISK 0x8u
-#define FEATURE_INSTANCE 0x10u
-#define FEATURE_ALPHA 0x20u /* alpha-textured shapes */
-#define FEATURE_NORMALS 0x40u /* per-vertex normals */
-#define FEATURE_TEXTURE 0x80u /* any parameter that is not constant */
-#define FEATURE_BUMP 0x100u /* normal maps or displacement */
-#define FEATURE_MIX 0x200u /* mix materials */
-#define FEATURE_DIFFUSE 0x400u
-#define FEATURE_CONDUCTOR 0x800u
-#define FEATURE_DIELECTRIC 0x1000u
-#define FEATURE_THIN_DIELECTRIC 0x2000u
-#define FEATURE_COATED_DIFFUSE 0x4000u
-#define FEATURE_DIFFUSE_TRANSMISSION 0x8000u
-#define FEATURE_ROUGH 0x10000u /* a microfacet lobe that is not a delta */
-#define FEATURE_AREA_LIGHT 0x20000u
-#define FEATURE_INFINITE_LIGHT 0x40000u
-#define FEATURE_DELTA_LIGHT 0x80000u /* point, spot, distant */
-#define FEATURE_LENS 0x100000u /* a camera with a lens of non-zero radius */
-#define FEATURE_TANGENTS 0x200000u /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
-#define FEATURE_COUNT 22
+/* Features: X(NAME, name, text, 0u). Between the two lists come the BSDFs, whose bits are in the order of their
+ * kinds. */
+#define FEATURE_LIST_BEFORE(X)                                                                                         \
+    X(TRIANGLE, triangle, "triangle", 0u)                                                                              \
+    X(BILINEAR, bilinear, "bilinear", 0u)                                                                              \
+    X(SPHERE, sphere, "sphere", 0u)                                                                                    \
+    X(DISK, disk, "disk", 0u)                                                                                          \
+    X(INSTANCE, instance, "instance", 0u)                                                                              \
+    X(ALPHA, alpha, "alpha", 0u) /* alpha-textured shapes */                                                           \
+    X(NORMALS, normals, "normals", 0u) /* per-vertex normals */                                                        \
+    X(TEXTURE, texture, "texture", 0u) /* any parameter that is not constant */                                        \
+    X(BUMP, bump, "bump", 0u) /* normal maps or displacement */                                                        \
+    X(MIX, mix, "mix", 0u) /* mix materials */
+#define FEATURE_LIST_AFTER(X)                                                                                          \
+    X(ROUGH, rough, "rough", 0u) /* a microfacet lobe that is not a delta */                                           \
+    X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
+    X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
+    X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
+    X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
+    X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
+#define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
+
+#define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
+enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
+#undef FEATURE_NUMBER
+#define FEATURE_BIT(NAME, name, text, traits) FEATURE_##NAME = 1 << FEATURE_NUMBER_##NAME,
+enum { FEATURE_LIST(FEATURE_BIT) FEATURE_NONE = 0 };
+#undef FEATURE_BIT
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
 
@@ -54,9 +60,9 @@ typedef struct Primitive {
 #define PRIMITIVE_KIND_SHIFT 29
 
 /* Shape flags. */
-#define SHAPE_FLIP_NORMAL                                                                                              \
-    0x1u /* ReverseOrientation xor a transform that swaps handedness: the geometric normal is
-                                  negated. Quadrics and meshes without vertex normals; see geometry/surface.h for the others */
+/* ReverseOrientation xor a transform that swaps handedness: the geometric normal is negated. For quadrics and meshes
+ * without vertex normals; see geometry/surface.h for the others. */
+#define SHAPE_FLIP_NORMAL 0x1u
 #define SHAPE_REVERSE 0x2u /* ReverseOrientation alone */
 #define SHAPE_HAS_NORMALS 0x4u
 #define SHAPE_HAS_UV 0x8u
@@ -172,14 +178,6 @@ typedef struct FloatParam {
 
 /* ---- materials ------------------------------------------------------------------------------------------------- */
 
-#define MATERIAL_DIFFUSE 0u
-#define MATERIAL_CONDUCTOR 1u
-#define MATERIAL_DIELECTRIC 2u
-#define MATERIAL_THIN_DIELECTRIC 3u
-#define MATERIAL_COATED_DIFFUSE 4u
-#define MATERIAL_DIFFUSE_TRANSMISSION 5u
-#define MATERIAL_MIX 6u
-
 #define MATERIAL_REMAP_ROUGHNESS 0x1u
 #define MATERIAL_CONDUCTOR_REFLECTANCE 0x2u /* color0 is reflectance at normal incidence; else eta color0, k color1 */
 
@@ -206,12 +204,19 @@ typedef struct Material {
 
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
-#define LIGHT_AREA 0u
-#define LIGHT_POINT 1u
-#define LIGHT_SPOT 2u
-#define LIGHT_DISTANT 3u
-#define LIGHT_INFINITE 4u /* constant environment */
-#define LIGHT_INFINITE_IMAGE 5u
+/* X(NAME, text, feature): LIGHT_NAME, its name in `twinlight info`, and the group of lights that it is dispatched with.
+ * Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment. */
+#define LIGHT_LIST(X)                                                                                                  \
+    X(AREA, "area", FEATURE_AREA_LIGHT)                                                                                \
+    X(POINT, "point", FEATURE_DELTA_LIGHT)                                                                             \
+    X(SPOT, "spot", FEATURE_DELTA_LIGHT)                                                                               \
+    X(DISTANT, "distant", FEATURE_DELTA_LIGHT)                                                                         \
+    X(INFINITE, "infinite", FEATURE_INFINITE_LIGHT)                                                                    \
+    X(INFINITE_IMAGE, "infinite image", FEATURE_INFINITE_LIGHT)
+
+#define LIGHT_ENUMERATE(NAME, text, feature) LIGHT_##NAME,
+enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
+#undef LIGHT_ENUMERATE
 
 #define LIGHT_TWO_SIDED 0x1u
 #define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
@@ -282,12 +287,12 @@ typedef struct PixelFilter {
     float radius_x, radius_y;
     uint table_x, table_y; /* first float in `lookup`: cells + 1 of the CDF of |f|, then cells of the sign (+1, -1);
                               NONE for box and triangle */
-    float weight; /* (integral of |f|) / (integral of f) over the plane: what a splat of sign +1 weighs */
+    float weight; /* (integral of |f|) / (integral of f) over the plane: the weight of a splat of sign +1 */
 } PixelFilter;
 
 /* ---- what a kernel gets ---------------------------------------------------------------------------------------- */
 
-/* First word of every array inside its buffer. */
+/* Index of the first word of every array in its buffer. */
 typedef struct SceneLayout {
     /* geometry */
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
@@ -298,24 +303,24 @@ typedef struct SceneLayout {
 /* Which integrator a random number is for (math/rng.h, counter word 3). */
 #define PATH_STREAM_PT 0u
 #define PATH_STREAM_BD 1u
-#define PATH_STREAM_POOL 2u /* samples from which chains begin */
-#define PATH_STREAM_CHAIN 3u /* mutations */
-#define PATH_STREAM_MUTATION 4u /* which kind of them */
+#define PATH_STREAM_POOL 2u /* samples that chains start from */
+#define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
+#define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
 
-/* Variables of a pixel besides light (kernels/aov.cl). */
+/* Auxiliary variables of a pixel, besides light (kernels/aov.cl). */
 #define AOV_ALBEDO 0u
 #define AOV_NORMAL 1u
 #define AOV_DEPTH 2u
 #define AOV_COUNT 3u
 
-/* Lights that chains look for. */
+/* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
 
-/* Cells of the importance a side. */
+/* Cells of the target importance, per side. */
 #define IMPORTANCE_SIDE 32u
 #define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
 
-/* A pool visits a pixel no more often than this while it visits the least of them once. */
+/* A pool visits any pixel at most this many times as often as the one that it visits least. */
 #define VISITS_MOST 32u
 
 typedef struct FrameParams {
@@ -328,51 +333,50 @@ typedef struct FrameParams {
     uint width, height; /* of the whole film, pixels */
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
     uint aov; /* AOV_*: the variable that a pass of kernels/aov.cl is for */
-    uint split_direct; /* 1: path tracing keeps light of up to two segments apart (kernels/pt.cl) */
-    uint split_depths; /* kinds of sums that the film has of every depth (camera/film_sum.h); 0: splats name no depth */
-    uint max_depth; /* path segments, >= 1 */
-    uint min_depth; /* of bidirectional integrators: shorter paths are left to another */
+    uint split_direct; /* 1: path tracing splats light of up to two segments apart (kernels/pt.cl) */
+    uint split_depths; /* kinds of sums that the film has per depth (camera/film_sum.h); 0: splats carry no depth */
+    uint max_depth; /* largest depth of a path, >= 1 */
+    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
     uint pool; /* 1: bidirectional samples are a pool for chains (chain/pool.h) */
-    uint pool_items; /* of a pool: all of its items */
-    uint pool_lights, pool_lights_first; /* so many of them, from that one on, have a walk from the light */
-    float pool_lights_weight; /* all of its items over those */
+    uint pool_items; /* of a pool: number of its items */
+    uint pool_lights, pool_lights_first; /* this many of them, from pool_lights_first on, have a light walk */
+    float pool_lights_weight; /* pool_items over pool_lights */
     uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
-    uint unweighted; /* 1: weights are taken for 1 */
-    uint mutations; /* bit MUTATION_*: small steps that chains make (chain/chain.h) */
-    uint group_mutations; /* 1: at a step all chains make the same kind */
-    float shifts; /* of the steps of the camera subpath so many are shifts (chain/shift.h) */
-    uint keep_chains; /* 1: a pass hands the chains' coordinates over to the next */
+    uint unweighted; /* 1: all MIS weights are 1 */
+    uint mutations; /* bit MUTATION_*: the kinds of small steps that chains make (chain/chain_numbers.h) */
+    uint group_mutations; /* 1: all chains make the same kind of mutation at a step */
+    float shifts; /* fraction of the camera subpath's mutations that are shifts (chain/shift.h) */
+    uint keep_chains; /* 1: a pass hands the chains' coordinates on to the next */
     float large_step; /* probability of a large step */
-    float
-        clamp_threshold; /* a pool shows no more of a path's worth (importance too); what chains see above it they keep apart */
-    float brightness; /* what a chain's step carries to the film: mean worth of a pool's sample */
-    uint guide_count; /* of chains and their pools: lights that directions count from (light/light_guide.h) */
-    uint pool_visits; /* of a pool: visits of all pixels together (Guide.visits); 0: one of each */
+    float clamp_threshold; /* of a path's luminance times importance: pools show up to it, chains the excess */
+    float brightness; /* what a chain's step brings to the film: mean contribution weight of the pool's samples */
+    uint guide_count; /* light guides of chains and their pools (light/light_guide.h) */
+    uint pool_visits; /* of a pool: visits to all pixels together (Guide.visits); 0: one to each pixel */
     uint seed_low, seed_high;
-    uint stride; /* items that the state buffers hold: field f of item t is at f * stride + t */
-    uint first_item; /* of the pass: item t of a launch is pass item first_item + t */
+    uint stride; /* items that the state buffers hold: field f of an item is at f * stride + item */
+    uint first_item; /* item i of a launch is item first_item + i of the pass */
     uint item_count;
-    uint sample_index; /* of the pass: pass item k takes sample sample_index + k / (crop pixels) ... */
-    uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k at f * pass_stride + k - pass_first */
-    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 but for pilots and pools */
-    uint pixel_first; /* and k counted from here; 0 but for pools */
+    uint sample_index; /* item k of the pass is sample sample_index + k / (crop pixels) ... */
+    uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k is at f * pass_stride + k - pass_first */
+    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 except for pilots and pools */
+    uint pixel_first; /* added to k in both; 0 except for pools */
     int film_exponent; /* one unit of the film's sums is 2^film_exponent (camera/film_sum.h) */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;
-    float ray_reach; /* no coordinate of the origin of a ray is larger: boxes are widened for it (geometry/box.h) */
+    float ray_reach; /* no coordinate of a ray's origin is larger: boxes are widened for it (geometry/box.h) */
 } FrameParams;
 
-/* Where chains and pools go. In a buffer of its own (BUFFER_GUIDE), for FrameParams are copied for every chunk of items. */
+/* What guides chains and pools. In a buffer of its own (BUFFER_GUIDE), because FrameParams are copied for every chunk
+ * of items. */
 typedef struct Guide {
     Vec3 lights[LIGHT_GUIDES_MAX]; /* FrameParams.guide_count positions, or directions (light/light_guide.h) */
-    float lights_near[LIGHT_GUIDES_MAX]; /* 1 of positions, 0 of directions */
-    float lights_power
-        [LIGHT_GUIDES_MAX]; /* what they send to a place, times the square of the distance or of the length */
+    float lights_near[LIGHT_GUIDES_MAX]; /* 1: a position, 0: a direction */
+    float lights_power[LIGHT_GUIDES_MAX]; /* what arrives, times the squared length of the vector to the guide */
     float importance[IMPORTANCE_CELLS]; /* target importance of the cells of the crop window, row by row */
-    uint visits[IMPORTANCE_CELLS + 1u]; /* of a pool: those of all pixels before each cell, and of all */
+    uint visits[IMPORTANCE_CELLS + 1u]; /* of a pool: visits to all pixels before each cell, and to all */
 } Guide;
 
 #endif

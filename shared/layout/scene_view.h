@@ -1,5 +1,5 @@
-/* Typed pointers into the scene's buffers. On a device a SceneView lives in private memory and is made anew at the head
- * of every kernel; pointers that a kernel does not use cost nothing there. */
+/* Typed pointers into the scene's buffers. On a device a SceneView lives in private memory and is made at the start of
+ * every kernel; pointers that a kernel does not use cost nothing there. */
 #ifndef TWINLIGHT_LAYOUT_SCENE_VIEW_H
 #define TWINLIGHT_LAYOUT_SCENE_VIEW_H
 
@@ -7,7 +7,7 @@
 
 typedef struct SceneView {
     __global const FrameParams *frame;
-    __global const Guide *guide; /* NULL in kernels that have none */
+    __global const Guide *guide; /* NULL in kernels without one */
     uint features;
     /* geometry */
     __global const Vec3 *positions;
@@ -67,8 +67,8 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     return view;
 }
 
-/* At the head of a kernel: `scene` is a pointer to its view. The loops of the CPU backend make one for all items, and
- * say so before (backend_cpu/kernel_loop.h). */
+/* Goes at the start of a kernel: declares `scene`, a pointer to its view. The loops of the CPU backend define it
+ * beforehand, to make one view for all items (backend_cpu/kernel_loop.h). */
 #ifndef KERNEL_SCENE
 #define KERNEL_SCENE(frame, geometry, tables, texels)                                                                  \
     SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \

@@ -3,6 +3,7 @@ SHARED_FILES += \
 	shared/layout/distribution.h \
 	shared/layout/item.h \
 	shared/layout/kernel_list.h \
+	shared/layout/material_list.h \
 	shared/layout/path_types.h \
 	shared/layout/scene_types.h \
 	shared/layout/scene_view.h \

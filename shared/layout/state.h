@@ -1,49 +1,50 @@
-/* Access to structure-of-arrays state: field f of item t lives at f * stride + t, so that
- * neighbouring items touch neighbouring words. Every buffer is an array of 32-bit words. */
+/* Access to structure-of-arrays state: field f of an item is at f * stride + item, so that neighbouring items touch
+ * neighbouring words. Every buffer is an array of 32-bit words. */
 #ifndef TWINLIGHT_LAYOUT_STATE_H
 #define TWINLIGHT_LAYOUT_STATE_H
 
 #include "layout/path_types.h"
 
-/* A backend whose buffers all have one stride may name it before: then every field has a constant address but for t. */
+/* A backend whose buffers all have the same stride may define STATE_STRIDE beforehand: then the address of a field is a
+ * constant plus the item. */
 #ifdef STATE_STRIDE
-#define STATE_PLACE(stride, field, t) ((void)(stride), (size_t)(field)*STATE_STRIDE + (t))
+#define STATE_PLACE(stride, field, item) ((void)(stride), (size_t)(field)*STATE_STRIDE + (item))
 #else
-#define STATE_PLACE(stride, field, t) ((size_t)(field) * (stride) + (t))
+#define STATE_PLACE(stride, field, item) ((size_t)(field) * (stride) + (item))
 #endif
 
-SHARED_FUNCTION uint state_load(__global const uint *buffer, uint stride, uint field, uint t)
+SHARED_FUNCTION uint state_load(__global const uint *buffer, uint stride, uint field, uint item)
 {
-    return buffer[STATE_PLACE(stride, field, t)];
+    return buffer[STATE_PLACE(stride, field, item)];
 }
 
-SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field, uint t, uint value)
+SHARED_FUNCTION void state_store(__global uint *buffer, uint stride, uint field, uint item, uint value)
 {
-    buffer[STATE_PLACE(stride, field, t)] = value;
+    buffer[STATE_PLACE(stride, field, item)] = value;
 }
 
-SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint t)
+SHARED_FUNCTION float state_load_float(__global const uint *buffer, uint stride, uint field, uint item)
 {
-    return word_float(buffer + STATE_PLACE(stride, field, t));
+    return word_float(buffer + STATE_PLACE(stride, field, item));
 }
 
-SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint t, float value)
+SHARED_FUNCTION void state_store_float(__global uint *buffer, uint stride, uint field, uint item, float value)
 {
-    word_set_float(buffer + STATE_PLACE(stride, field, t), value);
+    word_set_float(buffer + STATE_PLACE(stride, field, item), value);
 }
 
 /* A Vec3 takes three fields from `field` on. */
-SHARED_FUNCTION Vec3 state_load_vec3(__global const uint *buffer, uint stride, uint field, uint t)
+SHARED_FUNCTION Vec3 state_load_vec3(__global const uint *buffer, uint stride, uint field, uint item)
 {
-    return vec3(state_load_float(buffer, stride, field, t), state_load_float(buffer, stride, field + 1, t),
-                state_load_float(buffer, stride, field + 2, t));
+    return vec3(state_load_float(buffer, stride, field, item), state_load_float(buffer, stride, field + 1, item),
+                state_load_float(buffer, stride, field + 2, item));
 }
 
-SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint field, uint t, Vec3 value)
+SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint field, uint item, Vec3 value)
 {
-    state_store_float(buffer, stride, field, t, value.x);
-    state_store_float(buffer, stride, field + 1, t, value.y);
-    state_store_float(buffer, stride, field + 2, t, value.z);
+    state_store_float(buffer, stride, field, item, value.x);
+    state_store_float(buffer, stride, field + 1, item, value.y);
+    state_store_float(buffer, stride, field + 2, item, value.z);
 }
 
 /* Fields of BUFFER_RAYS and of the first part of BUFFER_SHADOWS. A ray with t_max <= 0 is not traced. */
@@ -52,7 +53,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define RAY_T_MAX 6u
 #define RAY_WORDS 7u
 
-/* BUFFER_SHADOWS: after the ray, 1 when something lies between. */
+/* BUFFER_SHADOWS: after the ray, 1 if it is occluded. */
 #define SHADOW_OCCLUDED 7u
 #define SHADOW_WORDS 8u
 
@@ -64,17 +65,18 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_V 4u
 #define HIT_WORDS 5u
 
-/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: nothing), linear RGB. A splat is in one of three layers: a
- * sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a path over
- * what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess has the sums of samples. It may
- * be in a fourth layer besides: what path tracing leaves of a path. */
+/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), and linear RGB. A splat is in one of three
+ * layers: a sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a
+ * path over what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess uses the sums of
+ * samples. A splat may be in a fourth layer as well: what path tracing does not show of the path. */
 #define SPLAT_SAMPLE 0u
 #define SPLAT_LIGHT 0x80000000u
 #define SPLAT_EXCESS SPLAT_SAMPLE
 #define SPLAT_RARE 0x40000000u
 #define SPLAT_LAYERS (SPLAT_LIGHT | SPLAT_RARE)
 
-/* With frame->split_depths, between flags and pixel: how many segments the path has, from this to that. */
+/* With frame->split_depths the bits between layers and pixel hold the path's depth, from SPLAT_DEPTH_MIN to
+ * SPLAT_DEPTH_MAX. */
 #define SPLAT_DEPTH_SHIFT 25u
 #define SPLAT_DEPTH_MIN 3u
 #define SPLAT_DEPTH_MAX 31u
@@ -93,43 +95,43 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
 #define COUNT_SHADOW 1u
 #define COUNT_WORDS 2u
 
-/* Rays that one item of a counting launch looks at: few enough for the device to be busy, many enough for the sums to
- * meet seldom. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
+/* Rays that one item of a counting launch looks at: few enough to keep the device busy, many enough for its atomic
+ * additions to be rare. Such a launch has (item_count + COUNT_RAYS - 1) / COUNT_RAYS items. */
 #define COUNT_RAYS 64u
 
-SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint t, Ray ray)
+SHARED_FUNCTION void ray_store(__global uint *rays, uint stride, uint item, Ray ray)
 {
-    state_store_vec3(rays, stride, RAY_ORIGIN, t, ray.o);
-    state_store_vec3(rays, stride, RAY_DIRECTION, t, ray.d);
-    state_store_float(rays, stride, RAY_T_MAX, t, ray.t_max);
+    state_store_vec3(rays, stride, RAY_ORIGIN, item, ray.o);
+    state_store_vec3(rays, stride, RAY_DIRECTION, item, ray.d);
+    state_store_float(rays, stride, RAY_T_MAX, item, ray.t_max);
 }
 
-SHARED_FUNCTION Ray ray_load(__global const uint *rays, uint stride, uint t)
+SHARED_FUNCTION Ray ray_load(__global const uint *rays, uint stride, uint item)
 {
     Ray ray;
-    ray.o = state_load_vec3(rays, stride, RAY_ORIGIN, t);
-    ray.d = state_load_vec3(rays, stride, RAY_DIRECTION, t);
-    ray.t_max = state_load_float(rays, stride, RAY_T_MAX, t);
+    ray.o = state_load_vec3(rays, stride, RAY_ORIGIN, item);
+    ray.d = state_load_vec3(rays, stride, RAY_DIRECTION, item);
+    ray.t_max = state_load_float(rays, stride, RAY_T_MAX, item);
     return ray;
 }
 
-SHARED_FUNCTION void hit_store(__global uint *hits, uint stride, uint t, Hit hit)
+SHARED_FUNCTION void hit_store(__global uint *hits, uint stride, uint item, Hit hit)
 {
-    state_store_float(hits, stride, HIT_T, t, hit.t);
-    state_store(hits, stride, HIT_PRIMITIVE, t, hit.primitive);
-    state_store(hits, stride, HIT_INSTANCE, t, hit.instance);
-    state_store_float(hits, stride, HIT_U, t, hit.u);
-    state_store_float(hits, stride, HIT_V, t, hit.v);
+    state_store_float(hits, stride, HIT_T, item, hit.t);
+    state_store(hits, stride, HIT_PRIMITIVE, item, hit.primitive);
+    state_store(hits, stride, HIT_INSTANCE, item, hit.instance);
+    state_store_float(hits, stride, HIT_U, item, hit.u);
+    state_store_float(hits, stride, HIT_V, item, hit.v);
 }
 
-SHARED_FUNCTION Hit hit_load(__global const uint *hits, uint stride, uint t)
+SHARED_FUNCTION Hit hit_load(__global const uint *hits, uint stride, uint item)
 {
     Hit hit;
-    hit.t = state_load_float(hits, stride, HIT_T, t);
-    hit.primitive = state_load(hits, stride, HIT_PRIMITIVE, t);
-    hit.instance = state_load(hits, stride, HIT_INSTANCE, t);
-    hit.u = state_load_float(hits, stride, HIT_U, t);
-    hit.v = state_load_float(hits, stride, HIT_V, t);
+    hit.t = state_load_float(hits, stride, HIT_T, item);
+    hit.primitive = state_load(hits, stride, HIT_PRIMITIVE, item);
+    hit.instance = state_load(hits, stride, HIT_INSTANCE, item);
+    hit.u = state_load_float(hits, stride, HIT_U, item);
+    hit.v = state_load_float(hits, stride, HIT_V, item);
     return hit;
 }
 

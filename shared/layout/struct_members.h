@@ -1,5 +1,5 @@
 /* Every struct that crosses between host and device, and every member of it, in order: STRUCT(type), then MEMBER(type,
- * member) for each of its members. math/test_platform_bits.c holds that it is complete. */
+ * member) for each of its members. tests/math/test_platform_bits.c checks that it is complete. */
 #ifndef TWINLIGHT_LAYOUT_STRUCT_MEMBERS_H
 #define TWINLIGHT_LAYOUT_STRUCT_MEMBERS_H
 

@@ -1,25 +1,25 @@
-/* Points on the surfaces that emit: triangles, bilinear patches, spheres, disks; in world space, of the world's own
- * geometry (an object instance does not emit, as in pbrt).
+/* Points on emitting surfaces: triangles, bilinear patches, spheres and disks, in world space. Only the world's own
+ * geometry emits; object instances do not, as in pbrt.
  *
- * A full sphere seen from outside is sampled in the cone that it subtends, in solid angle. Everything else is sampled
- * on its surface with a density per area, converted to solid angle at the reference point. */
+ * A full sphere seen from outside is sampled in the cone that it subtends, uniformly in solid angle. Everything else is
+ * sampled on its surface with a density per area, which is converted to solid angle at the reference point. */
 #ifndef TWINLIGHT_LIGHT_AREA_H
 #define TWINLIGHT_LIGHT_AREA_H
 
 #include "geometry/surface.h"
 #include "math/warp.h"
 
-/* A point on an area light. pdf: of having drawn it; per solid angle at the reference point when by_angle is 1, else
- * per surface area. */
+/* A point on an area light. pdf: its density, per solid angle at the reference point if by_angle is 1, else per surface
+ * area. */
 typedef struct AreaPoint {
     Vec3 p;
-    Vec3 ng; /* unit, the side that emits */
+    Vec3 ng; /* unit, on the side that emits */
     Vec2 uv; /* texture coordinates, for alpha */
     float pdf;
     uint by_angle;
 } AreaPoint;
 
-/* ng as surface_from_hit finds it: `normal` need not be a unit vector. */
+/* The geometric normal as surface_from_hit finds it; `normal` need not be a unit vector. */
 SHARED_FUNCTION Vec3 area_light_normal(Vec3 normal, Vec3 vertex_normal, uint flags)
 {
     Vec3 ng = vec3_direction(normal, vec3(0.0f, 0.0f, 1.0f));
@@ -73,10 +73,10 @@ SHARED_FUNCTION AreaPoint patch_light_sample(const SceneView *scene, const Primi
     return point;
 }
 
-/* ---- sphere and disk ---------------------------------------------------------------------------------------------- */
+/* ---- sphere and disk --------------------------------------------------------------------------------------------- */
 
-/* Density per world area of a point drawn uniformly on a quadric of `object_area` in its object space, where the unit
- * normal in world space is `ng`: an affine map M with n' = M^-T n / |M^-T n| scales areas by |det M| |M^-T n| =
+/* Density per world area, at the unit world-space normal `ng`, of a point drawn uniformly in object space from a
+ * quadric with area `object_area` there: an affine map M with n' = M^-T n / |M^-T n| scales areas by |det M| |M^-T n| =
  * |det M| / |M^T n'|. */
 SHARED_FUNCTION float quadric_light_pdf(__global const Quadric *quadric, float object_area, Vec3 ng)
 {
@@ -86,7 +86,7 @@ SHARED_FUNCTION float quadric_light_pdf(__global const Quadric *quadric, float o
     return vec3_length(vec3(vec3_dot(x, ng), vec3_dot(y, ng), vec3_dot(z, ng))) / (determinant * object_area);
 }
 
-/* The heights between which a sphere is kept. */
+/* The heights at which a sphere is clipped. */
 SHARED_FUNCTION float sphere_low(__global const Quadric *quadric)
 {
     return float_max(quadric->z_min, -quadric->radius);
@@ -109,7 +109,7 @@ SHARED_FUNCTION float disk_object_area(__global const Quadric *quadric)
            (quadric->radius + quadric->inner_radius);
 }
 
-/* The point and normal of a quadric that are p and n in its object space. uv is the caller's. */
+/* The point of a quadric whose position and normal in object space are p and n. The caller sets uv. */
 SHARED_FUNCTION AreaPoint quadric_light_point(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec3 n,
                                               float object_area)
 {
@@ -155,12 +155,13 @@ SHARED_FUNCTION AreaPoint sphere_light_sample_area(const SceneView *scene, const
     return point;
 }
 
-/* Squared distance from the centre, in squared radii, from which on a point counts as outside. A point on the sphere
- * itself, which sees the rest of the inside, must not fall outside by rounding; the area form is right for both. */
+/* Squared distance from the centre, in squared radii, beyond which a point counts as outside. A point on the sphere
+ * itself, which sees the rest of the inside, must not fall outside by rounding; sampling by area is right on both
+ * sides. */
 #define SPHERE_OUTSIDE 1.0001f
 
-/* The cone that a whole sphere subtends at a point outside: square of the sine of its half-angle, 0 when `ref` is not
- * outside or the sphere is not whole. */
+/* Squared sine of the half-angle of the cone that a whole sphere subtends at `ref`; 0 if `ref` is not outside or the
+ * sphere is not whole. */
 SHARED_FUNCTION float sphere_light_sin2(__global const Quadric *quadric, Vec3 ref)
 {
     float distance2 = vec3_length_squared(vec3_sub(quadric->center, ref));
@@ -168,17 +169,17 @@ SHARED_FUNCTION float sphere_light_sin2(__global const Quadric *quadric, Vec3 re
     return quadric->whole != 0u && distance2 > SPHERE_OUTSIDE * radius2 ? radius2 / distance2 : 0.0f;
 }
 
-/* 1 - cos of the half-angle, without the cancellation that makes it 0 below 2e-4 radians. */
+/* 1 - cos of the half-angle, without the cancellation that gives 0 below 2e-4 radians. */
 SHARED_FUNCTION float sphere_light_versine(float sin2)
 {
     return sin2 / (1.0f + float_sqrt(1.0f - sin2));
 }
 
-/* The unit vector from the centre to a point of the near side, uniform over the directions to a whole sphere from
- * outside; u goes through the disk, as in warp_cone. It is found from angles at the sphere's centre rather than along
- * the ray, so that the point lies on the sphere however small that is: with theta the angle at `ref` between axis and
- * ray, the sine of the angle between ray and normal is s = sin(theta) / sin(theta_max), and the angle at the centre is
- * asin(s) - theta. Sines are kept divided by the radius r in the disk, which is zero on the axis. */
+/* The unit vector from the centre to a point of the near side, such that the directions to a whole sphere from outside
+ * are uniform; u is mapped through the disk, as in warp_cone. It is computed from angles at the sphere's centre rather
+ * than along the ray, so that the point lies on the sphere however small that is: with theta the angle at `ref` between
+ * axis and ray, the sine of the angle between ray and normal is s = sin(theta) / sin(theta_max), and the angle at the
+ * centre is asin(s) - theta. Sines are kept divided by the radius r in the disk, which is zero on the axis. */
 SHARED_FUNCTION Vec3 sphere_light_cone(Vec3 axis, float sin2, Vec2 u)
 {
     float r;
@@ -214,8 +215,8 @@ SHARED_FUNCTION AreaPoint sphere_light_sample(const SceneView *scene, const Prim
     return point;
 }
 
-/* Cone sampling only finds the near side of a sphere; the far side shows through the holes of an alpha texture.
- * By the place of the point p: its normal may be that of either side. */
+/* Cone sampling only finds the near side of a sphere; the far side shows through the holes of an alpha texture. Decided
+ * by the position of p, since the normal may be that of either side. */
 SHARED_FUNCTION bool sphere_light_hidden(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec3 wi)
 {
     if ((primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
@@ -223,9 +224,9 @@ SHARED_FUNCTION bool sphere_light_hidden(const SceneView *scene, const Primitive
     return vec3_dot(vec3_sub(p, scene->quadrics[primitive->a].center), wi) > 0.0f;
 }
 
-/* ---- area lights -------------------------------------------------------------------------------------------------- */
+/* ---- area lights ------------------------------------------------------------------------------------------------- */
 
-/* Radiance that leaves the area light `light` towards `w` (unit, away from the surface) at a point with the geometric
+/* Radiance that the area light `light` emits towards `w` (unit, away from the surface) at a point with the geometric
  * normal `ng`: on the side of ng, or on both. */
 SHARED_FUNCTION Vec3 light_emitted(const SceneView *scene, uint light, Vec3 ng, Vec3 w)
 {
@@ -235,15 +236,14 @@ SHARED_FUNCTION Vec3 light_emitted(const SceneView *scene, uint light, Vec3 ng, 
     return emitter->emission;
 }
 
-/* Density per solid angle from one per area; 0 where the direction lies in the surface. */
+/* Solid-angle density from area density; 0 if the direction lies in the surface. */
 SHARED_FUNCTION float area_light_pdf_from_area(float pdf_a, float distance2, float cosine)
 {
     float pdf_w = pdf_a * (distance2 / float_abs(cosine));
     return cosine != 0.0f && float_finite(pdf_w) ? pdf_w : 0.0f;
 }
 
-/* How much of the surface is there at a point: a ray that meets it is kept with this probability
- * (primitive_alpha_keeps). */
+/* Opacity at a point: the probability with which a ray that hits it is kept (primitive_alpha_keeps). */
 SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *primitive, const AreaPoint *point)
 {
     if (!SCENE_HAS(scene, FEATURE_ALPHA) || (primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
@@ -255,7 +255,7 @@ SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *
     return float_clamp(texture_eval_float(scene, alpha, &at), 0.0f, 1.0f);
 }
 
-/* A point drawn by area, for whoever may look at it. */
+/* Draws a point by area, independently of any reference point. */
 SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, const Primitive *primitive, Vec2 u)
 {
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
@@ -288,7 +288,7 @@ SHARED_FUNCTION float area_light_pdf_a(const SceneView *scene, uint light, const
     return 1.0f / scene->lights[light].area;
 }
 
-/* A point for whoever stands at `ref`. */
+/* Draws a point as seen from `ref`. */
 SHARED_FUNCTION AreaPoint area_light_point_from(const SceneView *scene, uint light, const Primitive *primitive,
                                                 Vec3 ref, Vec2 u)
 {
@@ -314,7 +314,7 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
         sample->pdf_w = area_light_pdf_from_area(point.pdf, distance2, vec3_dot(point.ng, sample->wi));
     sample->pdf_emit = point.pdf;
     if (SCENE_HAS(scene, FEATURE_SPHERE) && point.by_angle != 0u) {
-        Surface hit = {0}; /* spheres ask for the normal alone */
+        Surface hit = {0}; /* spheres read the normal alone */
         hit.ng = point.ng;
         sample->pdf_emit = area_light_pdf_a(scene, light, &primitive, &hit);
     }

@@ -1,12 +1,12 @@
-/* Lights without extent: point, spot, distant. No sampled direction can meet them. */
+/* Lights without extent: point, spot, distant. No sampled direction can hit them. */
 #ifndef TWINLIGHT_LIGHT_DELTA_H
 #define TWINLIGHT_LIGHT_DELTA_H
 
 #include "layout/path_types.h"
 #include "layout/scene_view.h"
 
-/* pbrt-v4's falloff: a cubic step in the cosine, from 0 at the cone's edge to 1 inside the falloff angle. A light
- * without falloff has cos_falloff = cos_total, and a step. */
+/* pbrt-v4's falloff: a cubic step in the cosine, from 0 at the cone's edge to 1 inside the falloff angle. Without
+ * falloff cos_falloff = cos_total, which gives a step. */
 SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_falloff)
 {
     if (cosine >= cos_falloff)
@@ -17,7 +17,7 @@ SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_fall
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* Radiance times solid angle that arrives: the sample's pdf_w is 1. */
+/* sample->radiance is the arriving radiance integrated over solid angle, so pdf_w is 1. */
 SHARED_FUNCTION bool delta_light_sample(const SceneView *scene, uint light, Vec3 ref, LightSample *sample)
 {
     __global const Light *source = scene->lights + light;

@@ -1,15 +1,14 @@
-/* Light as light paths see it: a ray that leaves a light, and the densities of that. light/light.h is the view from a
- * point that the light shines on. */
+/* Emission, for light paths: rays that leave a light, and their densities. light/light.h is the counterpart for points
+ * that are lit. */
 #ifndef TWINLIGHT_LIGHT_EMIT_H
 #define TWINLIGHT_LIGHT_EMIT_H
 
 #include "light/light.h"
 
-/* A ray that leaves a light from p along w. The throughput of the ray is
- * radiance * cosine / (select_pdf * pdf_p * pdf_w). */
+/* A ray that leaves a light from p along w. Its throughput is radiance * cosine / (select_pdf * pdf_p * pdf_w). */
 typedef struct LightEmission {
     Vec3 p;
-    Vec3 ng; /* area: geometric normal on the side that w leaves. Zero for the others */
+    Vec3 ng; /* area: geometric normal on the side that w leaves. Zero for other lights */
     Vec3 w; /* unit */
     Vec3 radiance; /* area, infinite: radiance. point, spot: intensity. distant: irradiance on a plane facing it */
     float pdf_p; /* area: per area of the light. infinite, distant: per area perpendicular to w. point, spot: 1 */
@@ -17,13 +16,13 @@ typedef struct LightEmission {
     float cosine; /* area: |ng.w|; else 1 */
     uint delta_position; /* 1: point, spot */
     uint delta_direction; /* 1: distant */
-    uint infinite; /* 1: infinite, distant: p is no place of the light's */
+    uint infinite; /* 1: infinite, distant: p is not on the light */
 } LightEmission;
 
 /* ---- the disc that light from infinity comes through ------------------------------------------------------------- */
 
-/* Radius of the disc: that of the scene's bounding sphere, and what the rounding of the centre and of points on the
- * disc may take away where the scene is small and far from (0,0,0). 0 when there is nothing to shine on. */
+/* Radius of the disc: that of the scene's bounding sphere, plus what rounding of the centre and of points on the disc
+ * may take away in a small scene far from (0,0,0). 0 if there is nothing to light. */
 SHARED_FUNCTION float light_emit_disc_radius(const SceneView *scene)
 {
     float radius = scene->frame->world_radius;
@@ -31,15 +30,15 @@ SHARED_FUNCTION float light_emit_disc_radius(const SceneView *scene)
     return radius > 0.0f ? radius + 4.0f * FLOAT_EPSILON * size : 0.0f;
 }
 
-/* Density of points on the disc, 1 / (pi R^2); 0 when there is nothing to shine on. */
+/* Density of points on the disc, 1 / (pi R^2); 0 if there is nothing to light. */
 SHARED_FUNCTION float light_emit_pdf_disc(const SceneView *scene)
 {
     float radius = light_emit_disc_radius(scene);
     return radius > 0.0f ? INV_PI / (radius * radius) : 0.0f;
 }
 
-/* Sets p, pdf_p and what all light from infinity has in common, w given: p on a disc across w that touches the bounding
- * sphere on the side that w comes from. */
+/* Sets p, pdf_p and `infinite` for light from infinity, given w. p is uniform on a disc perpendicular to w that touches
+ * the bounding sphere on the side that w comes from. */
 SHARED_FUNCTION bool light_emit_from_disc(const SceneView *scene, Vec2 u, LightEmission *emission)
 {
     float radius = light_emit_disc_radius(scene);
@@ -65,8 +64,9 @@ SHARED_FUNCTION bool light_emit_infinite(const SceneView *scene, uint light, Vec
 
 /* ---- point, spot, distant ---------------------------------------------------------------------------------------- */
 
-/* Integral over cosines of the spot's proposal: 1 inside the falloff angle, falling linearly in the cosine to 0 at the
- * edge. The cubic step has the same integral, and is at most 9/8 of the line. */
+/* Integral over cosines of the unnormalised density from which a spot's directions are drawn: 1 inside the falloff
+ * angle, linear in the cosine down to 0 at the edge. The cubic falloff has the same integral, and is at most 9/8 of the
+ * line. */
 SHARED_FUNCTION float spot_emit_integral(__global const Light *spot)
 {
     return (1.0f - spot->cos_falloff) + 0.5f * (spot->cos_falloff - spot->cos_total);
@@ -82,7 +82,8 @@ SHARED_FUNCTION float spot_emit_pdf_w(__global const Light *spot, float cosine)
     return pdf * ((cosine - spot->cos_total) / (spot->cos_falloff - spot->cos_total));
 }
 
-/* Through the disk, as warp_cone: the square of the radius is the share of the proposal's integral within the angle. */
+/* Mapped through the disk, as in warp_cone: the squared radius is the fraction of spot_emit_integral within the
+ * angle. */
 SHARED_FUNCTION Vec3 spot_emit_direction(__global const Light *spot, Vec2 u)
 {
     float r;
@@ -161,10 +162,10 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
 
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
-/* Draws a ray that leaves `light`. Area lights: the point as area_light_point, also on spheres that light_sample draws
- * by solid angle; the direction with the cosine on the side or sides that emit. Point lights: all directions alike;
- * spots: about as they shine. Light from infinity: the direction as light_sample, the point on a disc that covers the
- * scene. False: nothing; then *emission means nothing. */
+/* Draws a ray that leaves `light`. Area lights: the point by area_light_point, even on spheres, which light_sample
+ * draws by solid angle; the direction with the cosine, on the side or sides that emit. Point lights: a uniform
+ * direction; spots: roughly in proportion to their intensity. Light from infinity: the direction as in light_sample,
+ * the point on a disc that covers the scene. False: no emission; *emission is then meaningless. */
 SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                 LightEmission *emission)
 {
@@ -184,8 +185,8 @@ SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point
     return done && !vec3_is_zero(emission->radiance);
 }
 
-/* pdf_p of light_emit: for an area light at its point `hit` (ng, u, v are read), per area; the others do not read
- * `hit`. Infinite and distant: per area perpendicular to the light's direction. Point and spot: 1. */
+/* pdf_p of light_emit. Area lights: at their point `hit` (ng, u, v are read), per area; other lights do not read `hit`.
+ * Infinite and distant: per area perpendicular to the light's direction. Point and spot: 1. */
 SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const Surface *hit)
 {
     uint kind = scene->lights[light].kind;
@@ -197,8 +198,8 @@ SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const
     return kind == LIGHT_POINT || kind == LIGHT_SPOT ? 1.0f : light_emit_pdf_disc(scene);
 }
 
-/* pdf_w of light_emit: of leaving along w (unit, the way that light travels), from a point with normal ng when it is an
- * area light (either normal of one with two sides). Distant: 1. */
+/* pdf_w of light_emit, of leaving along w (unit, the direction in which light travels). Area lights: from a point with
+ * normal ng (either of the two if both sides emit). Distant: 1. */
 SHARED_FUNCTION float light_emit_pdf_w(const SceneView *scene, uint light, Vec3 ng, Vec3 w)
 {
     __global const Light *source = scene->lights + light;

@@ -1,4 +1,4 @@
-/* Light from infinitely far away, out of every direction: constant or an image. */
+/* Light at infinity from all directions: constant, or an image. */
 #ifndef TWINLIGHT_LIGHT_INFINITE_H
 #define TWINLIGHT_LIGHT_INFINITE_H
 
@@ -8,8 +8,8 @@
 #include "layout/scene_view.h"
 #include "math/warp.h"
 
-/* Radiance of an image at the point uv of its parametrisation (v = 0 is row 0), bilinear as the image says, in every
- * channel not below 0. Across the poles of a latitude-longitude image nothing is interpolated. */
+/* Radiance of the light's image at uv (v = 0 is row 0), filtered as the image says and clamped to >= 0 in every
+ * channel. Latitude-longitude images are not interpolated across the poles. */
 SHARED_FUNCTION Vec3 environment_image(const SceneView *scene, uint light, Vec2 uv)
 {
     __global const Light *source = scene->lights + light;
@@ -22,10 +22,10 @@ SHARED_FUNCTION Vec3 environment_image(const SceneView *scene, uint light, Vec2 
     return vec3(float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f));
 }
 
-/* The point of the image's parametrisation that the world direction d (unit) looks at; *pdf_uniform: density per solid
- * angle of the direction of a uniform point. Where the transform M from world to light stretches, d -> M d / |M d|
- * scales solid angles by |det M| / |M d|^3: a cone of height 1 has the volume of a third of its solid angle, M scales
- * that by |det M|, and the cone ends at |M d| instead of 1. */
+/* Image coordinates of the world direction d (unit); *pdf_uniform: solid-angle density of d if uv is uniform. If the
+ * transform M from world to light stretches, d -> M d / |M d| scales solid angles by |det M| / |M d|^3: a cone of
+ * height 1 has a third of its solid angle as volume, M scales that by |det M|, and the resulting cone has height |M d|
+ * instead of 1. */
 SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, float *pdf_uniform)
 {
     __global const Light *source = scene->lights + light;
@@ -43,7 +43,7 @@ SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, 
     return sphere_to_octahedral(w);
 }
 
-/* Radiance that arrives from the direction d (unit, away from the scene) of one infinite light. */
+/* Radiance that arrives from direction d (unit, away from the scene) of one infinite light. */
 SHARED_FUNCTION Vec3 environment_light_radiance(const SceneView *scene, uint light, Vec3 d)
 {
     if (scene->lights[light].kind != LIGHT_INFINITE_IMAGE)
@@ -52,7 +52,7 @@ SHARED_FUNCTION Vec3 environment_light_radiance(const SceneView *scene, uint lig
     return environment_image(scene, light, environment_uv(scene, light, d, &pdf_uniform));
 }
 
-/* The same of all infinite lights together. */
+/* The sum of environment_light_radiance over all infinite lights. */
 SHARED_FUNCTION Vec3 environment_radiance(const SceneView *scene, Vec3 d)
 {
     Vec3 sum = vec3_splat(0.0f);

@@ -1,4 +1,4 @@
-/* Lights as path tracing sees them: choose one, draw a point or direction on it, ask for the density of that. */
+/* Lights as path tracing sees them: choosing one, drawing a point or direction on it, and the density of that. */
 #ifndef TWINLIGHT_LIGHT_LIGHT_H
 #define TWINLIGHT_LIGHT_LIGHT_H
 
@@ -8,14 +8,14 @@
 #include "light/delta.h"
 #include "light/infinite.h"
 
-/* A light, with probability lights[i].select_pdf (proportional to power). The scene must have one. */
+/* Draws a light with probability lights[i].select_pdf (proportional to power). The scene must have at least one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
 {
     return alias_sample(scene->light_alias, scene->frame->light_count, bits0, bits1);
 }
 
-/* Draws light that arrives at `ref` from `light` when nothing lies between. False: no contribution; then *sample means
- * nothing. */
+/* Draws light that arrives at `ref` from `light`, occlusion ignored. False: no contribution; *sample is then
+ * meaningless. */
 SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
 {
     uint kind = scene->lights[light].kind;
@@ -28,7 +28,7 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     return false;
 }
 
-/* The segment between the point p of a surface with geometric normal ng and its light sample. */
+/* The shadow ray from the point p of a surface with geometric normal ng to its light sample. */
 SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
 {
     if (sample->infinite != 0u)
@@ -36,9 +36,9 @@ SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
     return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
 }
 
-/* Solid-angle density at `ref` that light_sample, given the light, has for the direction `wi` (unit): to the point
- * `hit` on it (p, ng, u, v are read) when it is an area light; `hit` is not read for infinite lights. 0 for delta
- * lights. */
+/* Solid-angle density at `ref` with which light_sample, given the light, draws the direction `wi` (unit). Area lights:
+ * `hit` is the point on the light that wi leads to (p, ng, u, v are read). Infinite lights do not read `hit`. 0 for
+ * delta lights. */
 SHARED_FUNCTION float light_pdf_w(const SceneView *scene, uint light, Vec3 ref, Vec3 wi, const Surface *hit)
 {
     uint kind = scene->lights[light].kind;

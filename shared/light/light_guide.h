@@ -1,12 +1,12 @@
-/* Where chains look for light. The numbers that draw a direction from a cosine lobe count from the direction to a
- * light: 0, 0 draws that one, and a step away from them is one away from it.
+/* Light guides: the numbers that draw a direction from a cosine lobe count from the direction to a light, so that (0,
+ * 0) draws that direction, and a step away from (0, 0) is a step away from the light.
  *
- * A light that no vertex can be connected with, for it is behind glass, is met by chance, in a small part of all
- * directions. With numbers that count from the surface's own axes these would be others at every point, so that a chain
- * which has met the light loses it with the first step across the film; counted from the light they are the same
- * wherever it stands. The shift is of integers modulo 2^32, hence a permutation, and keeps all probabilities as they
- * are (Cranley and Patterson, "Randomization of number theoretic methods for multiple integration", 1976, shift points
- * so, to randomise them). */
+ * A light behind glass cannot be connected to any vertex; walks hit it by chance, in a small part of all directions. If
+ * the numbers counted from the surface's own axes, those that hit the light would differ from point to point, and a
+ * chain that had found the light would lose it with the first step across the film; counted from the light they are the
+ * same everywhere. The offset is an addition of integers modulo 2^32, hence a permutation, and preserves all
+ * probabilities (Cranley and Patterson, "Randomization of number theoretic methods for multiple integration", 1976,
+ * shift points in this way to randomise them). */
 #ifndef TWINLIGHT_LIGHT_LIGHT_GUIDE_H
 #define TWINLIGHT_LIGHT_LIGHT_GUIDE_H
 
@@ -14,8 +14,8 @@
 #include "math/rng.h"
 #include "math/warp.h"
 
-/* Towards the light guide that sends most to p, were nothing between: not a unit vector, zero at the light guide itself
- * and without any. */
+/* The vector from p to the light guide that would send most to p if nothing lay between. Not normalised; zero at the
+ * guide itself and where there is none. */
 SHARED_FUNCTION Vec3 light_guide_from(uint count, __global const Guide *guide, Vec3 p)
 {
     Vec3 best = vec3_splat(0.0f);
@@ -23,7 +23,7 @@ SHARED_FUNCTION Vec3 light_guide_from(uint count, __global const Guide *guide, V
     for (uint i = 0u; i < count; ++i) {
         Vec3 d = vec3_sub(guide->lights[i], vec3_scale(p, guide->lights_near[i]));
         float sent = guide->lights_power[i] / vec3_length_squared(d);
-        if (!(sent > most)) /* not what is not a number */
+        if (!(sent > most)) /* rejects NaN */
             continue;
         most = sent;
         best = d;
@@ -31,14 +31,15 @@ SHARED_FUNCTION Vec3 light_guide_from(uint count, __global const Guide *guide, V
     return best;
 }
 
-/* A number from 0 to 1 as a part of 2^32. */
+/* x in [0, 1] as a fraction of 2^32. */
 SHARED_FUNCTION uint light_guide_bits(float x)
 {
     return (uint)(float_min(x, 0.99999994f) * 4294967296.0f);
 }
 
-/* random.x[1] and x[2], which draw a direction at p by warp_cosine_hemisphere in the frame `shading`, counted from the
- * light guide. A light behind the surface counts as the one that it mirrors, so that nothing jumps where it rises. */
+/* Offsets random.x[1] and x[2], which draw a direction at p by warp_cosine_hemisphere in the frame `shading`, to count
+ * from the light guide. A light below the surface counts as its mirror image, so that the offset is continuous where
+ * the light rises. */
 SHARED_FUNCTION Random4 light_guide_numbers(const SceneView *scene, Vec3 p, Frame shading, Random4 random)
 {
     Vec3 d = light_guide_from(scene->frame->guide_count, scene->guide, p);

@@ -1,5 +1,5 @@
 /* Elementary functions from + - * / and the square root of float32 alone, so that they give the same bits in C and in
- * OpenCL C, whose own versions differ by an ulp from one library to the next. No fused multiply-add, no double.
+ * OpenCL C; the languages' own versions differ by an ulp between libraries. No fused multiply-add, no double.
  *
  * Bounds on the error, in units in the last place of the exact result (tests/math/test_math_elementary.c measures them
  * against MPFR):
@@ -24,7 +24,8 @@
 
 /* ---- exact building blocks (Dekker 1971) ---------------------------------------------------------------------- */
 
-/* The upper 12 of 24 bits of x; x minus it has the lower 12, so products of halves are exact. */
+/* The upper 12 of the 24 significant bits of x. The rest, x minus that, has the lower 12, so products of such parts are
+ * exact. */
 SHARED_FUNCTION float float_upper_half(float x)
 {
     return bits_float(float_bits(x) & 0xfffff000u);

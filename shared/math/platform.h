@@ -1,7 +1,7 @@
-/* The one place that knows which language is being compiled: C11 or OpenCL C 1.2.
+/* The only file that tests for the language being compiled: C11 or OpenCL C 1.2.
  *
- * Every other file of shared/ is written as OpenCL C with three restrictions that make it C11 as well: own vector
- * structs instead of float3, the names below instead of the language's mathematics, and no pointers, bool, size_t,
+ * All other files of shared/ are OpenCL C that also compiles as C11, under three restrictions: vector structs of their
+ * own instead of float3; the names below instead of either language's math functions; and no pointers, bool, size_t,
  * enums or doubles in structs that cross between host and device. */
 #ifndef TWINLIGHT_MATH_PLATFORM_H
 #define TWINLIGHT_MATH_PLATFORM_H
@@ -18,11 +18,11 @@
 #define float_sqrt(x) sqrt(x)
 #define float_abs(x) fabs(x)
 #define float_floor(x) floor(x)
-/* Items run at once and share the counters. */
+/* Work-items run concurrently and share the counters. */
 #define counter_increment(counter) atomic_inc((volatile __global uint *)(counter))
 #define counter_add(counter, n) atomic_add((volatile __global uint *)(counter), n)
-/* Additions that meet, to 64-bit sums and 32-bit counts; they give the value before. So does an exchange, which is made
- * if that was `before`. */
+/* Atomic operations on 64-bit sums and 32-bit counts; all return the old value. atomic_sum_exchange is a
+ * compare-and-swap: it stores `after` if the sum equals `before`. */
 #define atomic_count_add(count, n) atomic_add((volatile __global uint *)(count), n)
 #ifdef cl_khr_int64_base_atomics
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
@@ -68,8 +68,8 @@ typedef uint64_t ulong;
 #define SHARED_FUNCTION static inline __attribute__((unused))
 #endif
 
-/* The item that a kernel works on. One copy per translation unit and thread; the thunks of layout/kernel_list.h set
- * it. */
+/* Index of the work item that a kernel runs for, which whoever calls a kernel sets (backend_cpu/kernel_loop.h). One
+ * copy per translation unit and thread. */
 static _Thread_local uint platform_item __attribute__((unused));
 #define get_global_id(dimension) ((size_t)platform_item)
 
@@ -91,7 +91,7 @@ SHARED_FUNCTION float bits_float(uint bits)
     return x;
 }
 
-/* The float that a word of state holds. */
+/* Read and write a float in a 32-bit word of state. */
 #define word_float(word) bits_float(*(word))
 #define word_set_float(word, value) (*(word) = float_bits(value))
 
@@ -99,10 +99,9 @@ SHARED_FUNCTION float bits_float(uint bits)
 #define float_abs(x) fabsf(x)
 #define float_floor(x) floorf(x)
 
-/* Four lanes at once: 16 bytes in memory and aligned to them, whatever type they were stored as. + - * and the
- * operators of integers work lane by lane; a scalar beside them counts for every lane. The last bits of float4_mad
- * differ from device to device, and so do float4_min and float4_max of a NaN or of zeros of both signs: only boxes use
- * them, which decide no bit of a result. */
+/* Vectors of four lanes: 16 bytes, 16-byte aligned, and allowed to alias any type. + - * and the operators of integers
+ * work lane by lane; a scalar operand is broadcast. float4_mad may or may not be fused, and float4_min and float4_max
+ * may differ for NaN and for zeros of both signs: only bounding boxes use them, which decide no bit of a result. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 #define float4_splat(x) ((Float4){(x), (x), (x), (x)})
 #define float4_mad(a, b, c) ((a) * (b) + (c))
@@ -116,7 +115,7 @@ typedef uint Uint4 __attribute__((vector_size(16), may_alias));
 #define float4_at_most(a, b) ((Uint4)((a) <= (b)))
 
 #if defined(__SSE__)
-/* gcc makes six instructions of the text below. */
+/* gcc compiles the portable text below to six instructions. */
 #define float4_min(a, b) ((Float4)__builtin_ia32_minps(a, b))
 #define float4_max(a, b) ((Float4)__builtin_ia32_maxps(a, b))
 #else
@@ -133,10 +132,10 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 }
 #endif
 
-/* Every thread has its own counters. */
+/* Each thread has its own counters. */
 #define counter_increment(counter) (++*(counter))
 #define counter_add(counter, n) (*(counter) += (n))
-/* The film is everybody's. */
+/* All threads share the film. */
 #define atomic_count_add(count, n) __atomic_fetch_add(count, n, __ATOMIC_RELAXED)
 #define atomic_sum_add(sum, n) __atomic_fetch_add(sum, n, __ATOMIC_RELAXED)
 #define atomic_sum_load(sum) __atomic_load_n(sum, __ATOMIC_RELAXED)
@@ -144,8 +143,8 @@ SHARED_FUNCTION Float4 float4_max(Float4 a, Float4 b)
 
 #endif
 
-/* fmin and fmax leave open which of +0/-0 and which operand of a NaN pair they return; these do not: a NaN in `a`
- * gives `b`. */
+/* Unlike fmin and fmax, defined for NaN and for zeros of both signs: `b` unless the comparison holds, so also where
+ * either operand is NaN. */
 #define float_min(a, b) ((a) < (b) ? (a) : (b))
 #define float_max(a, b) ((a) > (b) ? (a) : (b))
 #define float_clamp(x, low, high) float_min(float_max(x, low), high)
@@ -160,7 +159,7 @@ SHARED_FUNCTION bool float_finite(float x)
     return (float_bits(x) & 0x7f800000u) != 0x7f800000u;
 }
 
-/* What --enable-double has its own of (math/platform_double.h). */
+/* Builds with --enable-double take these from math/platform_double.h. */
 #ifndef PLATFORM_DOUBLE
 
 #define PI 3.14159265358979323846f
@@ -172,7 +171,7 @@ SHARED_FUNCTION bool float_finite(float x)
 
 #define FLOAT_SIGN_BIT 0x80000000u
 
-/* a or b by selecting among integers, which compiles to moves and not to branches that nobody can predict. */
+/* condition ? a : b, selected among integers, which compiles to conditional moves instead of unpredictable branches. */
 #define float_select(condition, a, b) bits_float((condition) ? float_bits(a) : float_bits(b))
 
 SHARED_FUNCTION float float_copy_sign(float magnitude, float sign)
@@ -180,7 +179,8 @@ SHARED_FUNCTION float float_copy_sign(float magnitude, float sign)
     return bits_float((float_bits(magnitude) & ~FLOAT_SIGN_BIT) | (float_bits(sign) & FLOAT_SIGN_BIT));
 }
 
-/* The next float after x in the direction of `toward` (x itself when that is 0 or x is not finite). */
+/* The next float after x, upwards if `toward` > 0, downwards if it is < 0; x itself if `toward` is 0 or x is not
+ * finite. */
 SHARED_FUNCTION float float_step(float x, float toward)
 {
     if (toward == 0.0f || !float_finite(x))
@@ -191,7 +191,7 @@ SHARED_FUNCTION float float_step(float x, float toward)
     return bits_float((x > 0.0f) == (toward > 0.0f) ? bits + 1u : bits - 1u);
 }
 
-/* The mantissa in [1, 2) of a positive finite x, which is it times 2^exponent. */
+/* The mantissa in [1, 2) of a positive finite x, with x = mantissa * 2^exponent. */
 SHARED_FUNCTION float float_mantissa(float x, int *exponent)
 {
     int shift = 0;

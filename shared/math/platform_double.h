@@ -1,14 +1,15 @@
-/* Double arithmetic under the name of float: the yardstick that --enable-double compiles the CPU backend's kernels
- * with. From the end of this file on `float` means double, in every function, struct and cast of shared/; only bits
- * stay those of a float. What takes floats apart, or knows how many bits they have, is here a second time.
+/* Double precision under the name `float`: --enable-double compiles the CPU backend's kernels with it, as a reference.
+ * From the end of this file on, `float` means double in every function, struct and cast of shared/; only bit patterns
+ * stay those of a 32-bit float. What takes floats apart or depends on their width in bits is defined here a second
+ * time.
  *
- * Included by math/platform.h, and before the first header that has floats of its own, Embree's for one. */
+ * Included by math/platform.h. Headers with floats of their own, such as Embree's, must be included before that. */
 #if defined(TWINLIGHT_DOUBLE) && !defined(TWINLIGHT_MATH_PLATFORM_DOUBLE_H)
 #define TWINLIGHT_MATH_PLATFORM_DOUBLE_H
 
 #define PLATFORM_DOUBLE 1
 
-/* The nearest float's. Whole numbers, hashes and what leaves the kernels need no more. */
+/* Bits of the nearest float: integers, hashes and the output of kernels need no more. */
 SHARED_FUNCTION uint float_bits(double x)
 {
     float narrow = (float)x;
@@ -24,9 +25,9 @@ SHARED_FUNCTION double bits_float(uint bits)
     return (double)narrow;
 }
 
-/* A float in state has its word as ever, so that who reads words, or the film, or another pass, finds it. The double is
- * kept beside it: state lies in the lower quarter of an aligned block, at offset p, and the double at half the block
- * plus 2 p. A word that was copied as a word has no double that fits it, and counts as it is. */
+/* A float in state keeps its 32-bit word for whatever reads words: the film, other passes. Its double is kept beside
+ * it: state lies in the lower quarter of an aligned block, and the double of the word at offset p at half the block
+ * plus 2 p. If the word does not match its double, because it was copied as a word, the word counts. */
 #define STATE_BLOCK ((size_t)1 << 26)
 
 SHARED_FUNCTION double *state_double(const uint *word)
@@ -47,7 +48,7 @@ SHARED_FUNCTION void word_set_float(uint *word, double value)
     *state_double(word) = value;
 }
 
-/* Hierarchies of boxes stay floats; no ray of this build walks them. */
+/* Hierarchies of boxes stay in single precision; no ray of this build traverses them. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 #define float4_splat(x) ((Float4){(x), (x), (x), (x)})
 #define float4_mad(a, b, c) ((a)*float4_splat(b) + float4_splat(c))
@@ -56,7 +57,7 @@ typedef float Float4 __attribute__((vector_size(16), may_alias));
 #define float_abs(x) fabs(x)
 #define float_floor(x) floor(x)
 
-/* Instead of math/elementary.h's. */
+/* Replace those of math/elementary.h. */
 #define float_sin(x) sin(x)
 #define float_cos(x) cos(x)
 #define float_exp(x) exp(x)
@@ -80,7 +81,7 @@ SHARED_FUNCTION double float_step(double x, double toward)
     return toward == 0.0 || !isfinite(x) ? x : nextafter(x, toward > 0.0 ? HUGE_VAL : -HUGE_VAL);
 }
 
-/* The mantissa in [1, 2) of a positive finite x. */
+/* The mantissa in [1, 2) of a positive finite x, with x = mantissa * 2^exponent. */
 SHARED_FUNCTION double float_mantissa(double x, int *exponent)
 {
     double half = frexp(x, exponent);

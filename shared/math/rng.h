@@ -1,5 +1,5 @@
-/* The generator: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
- * Four random words are a function of a counter and a key, so nothing is stored and nothing is seeded twice. */
+/* Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1,
+ * 2, 3", SC 2011). Four random words are a function of a counter and a key: there is no state to store or to seed. */
 #ifndef TWINLIGHT_MATH_RNG_H
 #define TWINLIGHT_MATH_RNG_H
 

@@ -1,14 +1,14 @@
-/* Numbers with the precision of a float and an exponent that does not run out: products of ratios of densities along a
- * path leave float's range long before the weights that are made of them do (Veach 1997, section 10.2.2). */
+/* Non-negative numbers with the precision of a float and an exponent that does not overflow: products of density ratios
+ * along a path leave the range of a float long before the MIS weights made of them do (Veach 1997, section 10.2.2). */
 #ifndef TWINLIGHT_MATH_SCALED_H
 #define TWINLIGHT_MATH_SCALED_H
 
 #include "math/platform.h"
 
-/* value 2^exponent, never negative. The value is SCALED_LEAST or more and below SCALED_MOST, so that products,
- * quotients and sums of two are normal floats: as long as they are within these bounds, too, which is nearly always,
- * there is no more to do than plain arithmetic, and the rounding is that of any other exponent. Zero and infinity are
- * the float's, with exponent 0. Infinity stays it but for a product with zero, which is zero. */
+/* value * 2^exponent, never negative. The value lies in [SCALED_LEAST, SCALED_MOST), so that products, quotients and
+ * sums of two values are normal floats; if the result lies in that range too, as it nearly always does, it needs no
+ * renormalisation, and its rounding does not depend on the exponent. Zero and infinity have the float's value and
+ * exponent 0. Infinity follows the float's rules, except that infinity * 0 = 0 and infinity / infinity = 1. */
 typedef struct Scaled {
     float value;
     int exponent;
@@ -17,7 +17,7 @@ typedef struct Scaled {
 #define SCALED_LEAST 8.673617380e-19f /* 2^-60 */
 #define SCALED_MOST 1.152921505e18f /* 2^60 */
 
-/* value 2^exponent with a value in [1, 2), from a positive finite one. */
+/* value * 2^exponent with the result's value in [1, 2); `value` must be positive and finite. */
 SHARED_FUNCTION Scaled scaled_normalize(float value, int exponent)
 {
     int shift;
@@ -27,7 +27,7 @@ SHARED_FUNCTION Scaled scaled_normalize(float value, int exponent)
     return result;
 }
 
-/* value 2^exponent for any float; NaN and negative numbers give 0. */
+/* value * 2^exponent for any float `value`; NaN and negative values give 0. */
 SHARED_FUNCTION Scaled scaled_make(float value, int exponent)
 {
     Scaled result;
@@ -57,7 +57,7 @@ SHARED_FUNCTION bool scaled_is_infinite(Scaled a)
     return !float_finite(a.value);
 }
 
-/* Zero where it underflows, infinity where it overflows. */
+/* As a float: what is below the normal range gives 0, what is above it infinity. */
 SHARED_FUNCTION float scaled_float(Scaled a)
 {
     if (a.exponent == 0)
@@ -75,7 +75,7 @@ SHARED_FUNCTION Scaled scaled_multiply(Scaled a, Scaled b)
     return scaled_make(a.value * b.value, a.exponent + b.exponent);
 }
 
-/* a / b; anything over zero is infinite, but zero over anything is zero. Infinite over infinite is 1. */
+/* a / b, where 0 / b = 0 for every b, a / 0 = infinity for a > 0, and infinity / infinity = 1. */
 SHARED_FUNCTION Scaled scaled_divide(Scaled a, Scaled b)
 {
     float value = a.value / b.value;

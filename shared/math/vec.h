@@ -132,8 +132,8 @@ SHARED_FUNCTION float rgb_luminance(Vec3 c)
     return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z;
 }
 
-/* A frame around the unit vector n that depends on n alone and is continuous but at n.z = 0-
- * (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
+/* A frame around the unit vector n: a function of n alone, continuous except where n.z changes sign (Duff et al.,
+ * "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
 SHARED_FUNCTION Frame frame_from_normal(Vec3 n)
 {
     float sign = n.z < 0.0f ? -1.0f : 1.0f;

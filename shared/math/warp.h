@@ -1,17 +1,18 @@
-/* Maps from the unit square to disks, triangles and directions that keep areas (so a uniform point stays uniform), and
- * the two parametrisations of the sphere by images. Directions are unit vectors in a frame with z up.
+/* Maps that take uniform points of the unit square to the stated densities on disks, triangles and directions, and the
+ * two image parametrisations of the sphere. Directions are unit vectors in a frame with z up.
  *
  * The disk, the triangle, cones narrower than the whole sphere and the octahedral map are continuous with bounded
- * distortion: a small step in the square is a small step in the target, which Markov chains live on. The cosine
- * hemisphere is continuous, but steep at its rim; warp_sphere and the equirectangular map have a seam and poles. */
+ * distortion: a small step in the square is a small step in the target, as mutations of Markov chains require. The
+ * cosine hemisphere is continuous, but steep at its rim; warp_sphere and the equirectangular map have a seam and
+ * poles. */
 #ifndef TWINLIGHT_MATH_WARP_H
 #define TWINLIGHT_MATH_WARP_H
 
 #include "math/elementary.h"
 #include "math/vec.h"
 
-/* A point of the unit disk, density 1/pi, and *radius, its distance from the centre without rounding error of the
- * coordinates (Shirley and Chiu, "A low distortion map between disk and square", 1997). */
+/* A uniform point of the unit disk, density 1/pi (Shirley and Chiu, "A low distortion map between disk and square",
+ * 1997). *radius: its distance from the centre, free of the rounding errors of the coordinates. */
 SHARED_FUNCTION Vec2 warp_disk_polar(Vec2 u, float *radius)
 {
     float a = 2.0f * u.x - 1.0f;
@@ -32,8 +33,8 @@ SHARED_FUNCTION Vec2 warp_disk_concentric(Vec2 u)
     return warp_disk_polar(u, &radius);
 }
 
-/* The point of the square that warp_disk_polar takes to d, which is in the disk but for rounding; the middle for d =
- * 0. */
+/* The inverse of warp_disk_polar: the point of the square that maps to d, which may lie outside the disk by rounding;
+ * the middle for d = 0. */
 SHARED_FUNCTION Vec2 warp_disk_inverse(Vec2 d)
 {
     bool wide = float_abs(d.x) > float_abs(d.y);
@@ -44,7 +45,7 @@ SHARED_FUNCTION Vec2 warp_disk_inverse(Vec2 d)
     return vec2(0.5f * ((wide ? r : other) + 1.0f), 0.5f * ((wide ? other : r) + 1.0f));
 }
 
-/* A direction with density cos(theta)/pi (Malley). cos(theta) > 0 for u of random_float. */
+/* A direction with density cos(theta)/pi (Malley). cos(theta) > 0 for u from random_float. */
 SHARED_FUNCTION Vec3 warp_cosine_hemisphere(Vec2 u)
 {
     float r;
@@ -66,9 +67,9 @@ SHARED_FUNCTION Vec3 warp_sphere(Vec2 u)
     return vec3(r * c, r * s, 1.0f - 2.0f * u.x);
 }
 
-/* A direction uniform in solid angle in the cone of directions around +z with 1 - cos(theta) <= one_minus_cos_max; the
- * whole sphere for 2. Through the disk: area of the disk is proportional to 1 - cos, so z = 1 - r^2 (1 - cos_max).
- * Nothing is subtracted from a number close to it, so cones of any size keep their full precision. */
+/* A direction uniform in solid angle in the cone around +z with 1 - cos(theta) <= one_minus_cos_max; the whole sphere
+ * for 2. Mapped through the disk, whose areas are proportional to 1 - cos: z = 1 - r^2 (1 - cos_max). Nothing cancels,
+ * so cones of any size keep their full precision. */
 SHARED_FUNCTION Vec3 warp_cone(Vec2 u, float one_minus_cos_max)
 {
     float r;
@@ -105,7 +106,7 @@ SHARED_FUNCTION Vec3 octahedral_to_sphere(Vec2 uv)
     float u = 2.0f * uv.x - 1.0f;
     float v = 2.0f * uv.y - 1.0f;
     float au = float_abs(u), av = float_abs(v);
-    float distance = 1.0f - (au + av); /* from the square's inner diamond, the equator */
+    float distance = 1.0f - (au + av); /* from the inner diamond, which is the equator */
     float r = 1.0f - float_abs(distance);
     float ratio = r == 0.0f ? 0.0f : (av - au) / r;
     float s, c;
@@ -150,8 +151,9 @@ SHARED_FUNCTION Vec3 equirectangular_to_sphere(Vec2 uv)
     return vec3(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
 }
 
-/* Density over solid angle of the direction of a uniform uv: a density over the square times this is one over solid
- * angle. Infinite at the poles of the map; callers treat a non-finite density as 0. d must be a unit vector. */
+/* Solid-angle density of the direction that a uniform uv maps to: the factor that turns a density over the square into
+ * one over solid angle. Infinite at the poles of the map; callers treat a non-finite density as 0. d must be a unit
+ * vector. */
 SHARED_FUNCTION float equirectangular_pdf(Vec3 d)
 {
     return 0.5f * INV_PI * INV_PI / float_sqrt(d.x * d.x + d.y * d.y);

@@ -1,4 +1,4 @@
-/* Connections of bidirectional paths: what they contribute and the densities that only they know. */
+/* Connections of bidirectional paths: their contributions, and the densities that only a connection determines. */
 #ifndef TWINLIGHT_PATH_BD_CONNECT_H
 #define TWINLIGHT_PATH_BD_CONNECT_H
 
@@ -9,11 +9,11 @@
 #include "path/bd_walk.h"
 #include "path/strategy.h"
 
-/* A connection before it is known whether anything lies between. */
+/* A connection whose visibility is not known yet. */
 typedef struct Connection {
     Vec3 contribution; /* unweighted */
     Ray shadow;
-    Vec2 film; /* t = 1: where the film sees y */
+    Vec2 film; /* t = 1: film position of y */
     uint target; /* t = 1: pixel of the splat */
     float target_weight; /* of the pixel filter */
     StrategyEnds ends;
@@ -30,7 +30,7 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
     return value;
 }
 
-/* t = 1: y = y_{s-1}, s >= 2, seen from a point on the lens. random: lens. */
+/* t = 1: connects y = y_{s-1}, s >= 2, to a point on the lens. random: lens. */
 SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Random4 random, Connection *connection)
 {
     CameraConnection camera;
@@ -46,7 +46,7 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Ran
     return true;
 }
 
-/* s = 1: a point on a light drawn for z = z_{t-1}, t >= 2. random: which light (x, y), where on it. */
+/* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: which light (x, y), where on it. */
 SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
 {
     if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
@@ -75,7 +75,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Rand
     ends->light_z1 = light_emit_pdf_w(scene, light, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
     if (sample.delta != 0u) {
         ends->own_y0 = select;
-        ends->camera_y1 = 0.0f; /* never met */
+        ends->camera_y1 = 0.0f; /* cannot be hit */
         return true;
     }
     float to_area = solid_angle_to_area(sample.wi, sample.ng, distance2);
@@ -85,7 +85,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Rand
     return true;
 }
 
-/* s >= 2, t >= 2: two surfaces. */
+/* s >= 2, t >= 2: connects two surfaces. */
 SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z, Connection *connection)
 {
     Vec3 d = vec3_sub(y->p, z->p);
@@ -108,8 +108,8 @@ SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, c
     return true;
 }
 
-/* y_{s-1} and z_{t-1}, s + t >= 3: the lens, a light or two surfaces. Ends that the strategy does not have are not
- * read. random: of whichever it is. */
+/* Connects y_{s-1} and z_{t-1}, s + t >= 3: to the lens, to a light, or two surfaces. An end that the strategy lacks is
+ * not read. random: the numbers of the respective case. */
 SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
                                   Random4 random, Connection *connection)
 {
@@ -122,7 +122,7 @@ SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const 
     return connect_surfaces(scene, y, z, connection);
 }
 
-/* t = 1: draws the pixel that the splat goes to; false when there is none. random: lens, pixel. */
+/* t = 1: draws the pixel of the splat; false if there is none. random: lens, pixel. */
 SHARED_FUNCTION bool connection_target(const SceneView *scene, Random4 random, Connection *connection)
 {
     connection->target =
@@ -131,14 +131,14 @@ SHARED_FUNCTION bool connection_target(const SceneView *scene, Random4 random, C
     return connection->target != NONE;
 }
 
-/* Whether there is a contribution and a ray that can tell whether it arrives. */
+/* Whether there is a contribution, and a shadow ray that can be traced. */
 SHARED_FUNCTION bool connection_traceable(const Connection *connection)
 {
     return !vec3_is_zero(connection->contribution) && connection->shadow.t_max > 0.0f &&
            ray_traceable(connection->shadow.o, connection->shadow.d);
 }
 
-/* What the weight has to know of the stored y_0 (s >= 2). */
+/* What the weight needs to know of the stored y_0 (s >= 2). */
 SHARED_FUNCTION void connection_light_end(__global const uint *restrict paths, uint stride, uint item,
                                           StrategyEnds *ends)
 {
@@ -166,7 +166,7 @@ SHARED_FUNCTION void splat_store(__global uint *restrict splats, __global uint *
     state_store_vec3(splats, stride, SPLAT_COLOR, item, color);
 }
 
-/* Whether a shadow ray was cast and has found nothing; it is cast no more. */
+/* Whether a shadow ray was cast and hit nothing; clears it, so that it is not traced again. */
 SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, uint item)
 {
     bool cast = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
@@ -175,8 +175,8 @@ SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, u
     return cast && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u;
 }
 
-/* A connection whose shadow ray is traced: gathered for the path's pixel, or, from the lens (t = 1), put out for the
- * film. */
+/* Adds a connection whose shadow ray has been traced: gathered for the path's pixel, or, from the lens (t = 1),
+ * splatted. */
 SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint *restrict splats,
                                     __global uint *restrict diagnostics, uint stride, uint item, bool from_lens,
                                     bool visible)

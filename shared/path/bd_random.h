@@ -1,4 +1,4 @@
-/* Which random number a bidirectional path uses for what: like path/path_random.h, one function of (seed, pixel,
+/* Which random numbers a bidirectional path uses for what; as in path/path_random.h, a function of (seed, pixel,
  * sample, block). */
 #ifndef TWINLIGHT_PATH_BD_RANDOM_H
 #define TWINLIGHT_PATH_BD_RANDOM_H
@@ -10,53 +10,56 @@
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
 #define BD_RANDOM_LIGHT 1u /* x, y: which light */
 #define BD_RANDOM_EMIT 2u /* point and direction on it */
-#define BD_RANDOM_PIXEL 3u /* of a pool: film position of paths that do not begin there */
+#define BD_RANDOM_PIXEL 3u /* of a pool: film numbers of paths that do not start on the film (t = 1) */
 /* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix
  * materials. */
 #define BD_RANDOM_VERTICES 4u
 #define BD_RANDOM_SCATTER 0u
 #define BD_RANDOM_MIX 1u
-/* One block for every connection. */
+/* One block per connection. */
 #define BD_RANDOM_CONNECTIONS 0x1000u
 
-/* One for every connection of a pool: which sample becomes the candidate (chain/pool.h); s * 64 + t. */
+/* One block per connection of a pool, to draw the candidate (chain/pool.h); s * 64 + t. */
 #define BD_RANDOM_CANDIDATES 0x2000u
 
-SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint t, uint block,
-                                     uint stream)
+SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                     uint block, uint stream)
 {
     uint stride = frame->stride;
-    return random_four(state_load(paths, stride, BD_PIXEL, t), state_load(paths, stride, BD_SAMPLE, t), block, stream,
-                       frame->seed_low, frame->seed_high);
+    return random_four(state_load(paths, stride, BD_PIXEL, item), state_load(paths, stride, BD_SAMPLE, item), block,
+                       stream, frame->seed_low, frame->seed_high);
 }
 
-SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
+SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint item, uint block)
 {
-    return bd_random_of(frame, paths, t, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
+    return bd_random_of(frame, paths, item, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
 }
 
-/* What bd_random gives a pool's sample whose place the item has. */
-SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global const uint *paths, uint t, uint block)
+/* bd_random of the pool sample whose pixel and sample number the item holds. */
+SHARED_FUNCTION Random4 pool_random(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                    uint block)
 {
-    return bd_random_of(frame, paths, t, block, PATH_STREAM_POOL);
+    return bd_random_of(frame, paths, item, block, PATH_STREAM_POOL);
 }
 
-/* Block of vertex i of a side. */
+/* The block of vertex i of a side. */
 SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
 {
     return BD_RANDOM_VERTICES + (2u * i + side) * 2u + what;
 }
 
-/* What decides the mix materials of the vertex after `depth` segments of a side; asked for only where there are any. */
-SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint t, uint side, uint depth)
+/* The number that decides mix materials at the vertex after `depth` segments of a side. The same for all in scenes
+ * without any. */
+SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint item, uint side,
+                                    uint depth)
 {
     if (!SCENE_HAS(scene, FEATURE_MIX))
         return 0.5f;
-    return random_float(bd_random(scene->frame, paths, t, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
+    return random_float(bd_random(scene->frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
 }
 
-/* A chain has one point of the lens and one light for whatever they are connected with: its coordinates (camera: film,
- * lens) as numbers of a connection to the lens, `random` having those of the pixel ... */
+/* A chain has one lens point and one light for all its connections. Turns its coordinates (camera: film, lens) into the
+ * numbers of a connection to the lens, where `random` has those of the pixel ... */
 SHARED_FUNCTION Random4 connection_random_lens(Random4 random, Random4 camera)
 {
     random.x[0] = camera.x[2];
@@ -64,7 +67,7 @@ SHARED_FUNCTION Random4 connection_random_lens(Random4 random, Random4 camera)
     return random;
 }
 
-/* ... and (choice: which light; emit: point on it, direction) of one to a light. */
+/* ... and (choice: which light; emit: point on it, direction) into the numbers of a connection to a light. */
 SHARED_FUNCTION Random4 connection_random_light(Random4 choice, Random4 emit)
 {
     choice.x[2] = emit.x[0];
@@ -72,7 +75,7 @@ SHARED_FUNCTION Random4 connection_random_light(Random4 choice, Random4 emit)
     return choice;
 }
 
-/* Numbers of the connection (s, t). s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
+/* The numbers of connection (s, t). s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
 SHARED_FUNCTION Random4 bd_random_connection(__global const FrameParams *frame, __global const uint *paths, uint item,
                                              uint s, uint t)
 {

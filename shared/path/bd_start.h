@@ -1,4 +1,4 @@
-/* How both walks of a bidirectional path begin. */
+/* How both walks of a bidirectional path start. */
 #ifndef TWINLIGHT_PATH_BD_START_H
 #define TWINLIGHT_PATH_BD_START_H
 
@@ -7,28 +7,28 @@
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
 
-/* The header of a path that has not begun, of the sample `place`: no ray, no shadow ray, nothing gathered. */
+/* The header of a path that has not started, for the sample `place`: no ray, no shadow ray, nothing gathered. */
 SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                     __global uint *restrict rays, __global uint *restrict shadows, uint t,
+                                     __global uint *restrict rays, __global uint *restrict shadows, uint item,
                                      ItemPlace place)
 {
     uint stride = frame->stride;
-    state_store(paths, stride, BD_PIXEL, t, place.pixel);
-    state_store(paths, stride, BD_SAMPLE, t, place.sample);
-    state_store(paths, stride, BD_SIDE, t, SIDE_LIGHT);
-    state_store_float(shadows, stride, RAY_T_MAX, t, 0.0f);
-    state_store_float(paths, stride, BD_CANDIDATE_SUM, t, 0.0f);
-    state_store(paths, stride, BD_CANDIDATE, t, 0u);
-    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_splat(0.0f));
-    state_store(paths, stride, BD_GATHERED, t, 0u);
-    walk_end(paths, rays, stride, t);
+    state_store(paths, stride, BD_PIXEL, item, place.pixel);
+    state_store(paths, stride, BD_SAMPLE, item, place.sample);
+    state_store(paths, stride, BD_SIDE, item, SIDE_LIGHT);
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    state_store_float(paths, stride, BD_CANDIDATE_SUM, item, 0.0f);
+    state_store(paths, stride, BD_CANDIDATE, item, 0u);
+    state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
+    state_store(paths, stride, BD_GATHERED, item, 0u);
+    walk_end(paths, rays, stride, item);
 }
 
-/* Draws y_0, stored at `base`, and the light's first ray. choice: which light (x, y); random: point, direction. *own:
- * density of y_0, of a point or of a direction where the light is at infinity. False when the light sends nothing. */
+/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: which light (x, y); random: point,
+ * direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
                                       __global uint *restrict rays, __global uint *restrict vertices,
-                                      __global uint *restrict diagnostics, uint stride, uint t, uint base,
+                                      __global uint *restrict diagnostics, uint stride, uint item, uint base,
                                       Random4 choice, Random4 random, float *own)
 {
     uint light = light_select(scene, choice.x[0], choice.x[1]);
@@ -40,39 +40,39 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *res
     bool infinite = emission.infinite != 0u;
     uint flags = (infinite ? EMITTER_INFINITE : 0u) |
                  (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
-    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, infinite ? emission.w : emission.p);
-    state_store_vec3(vertices, stride, base + VERTEX_NG, t, emission.ng);
-    state_store(paths, stride, BD_EMITTER, t, light);
-    state_store(paths, stride, BD_EMITTER_FLAGS, t, flags);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, item, infinite ? emission.w : emission.p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, item, emission.ng);
+    state_store(paths, stride, BD_EMITTER, item, light);
+    state_store(paths, stride, BD_EMITTER_FLAGS, item, flags);
     *own = select * (infinite ? emission.pdf_w : emission.pdf_p);
     Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
     bool on_surface = !infinite && emission.delta_position == 0u;
     Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_LIGHT, ray, beta, infinite ? emission.pdf_p : emission.pdf_w,
-               infinite ? WALK_PARALLEL : 0u);
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_LIGHT, ray, beta,
+               infinite ? emission.pdf_p : emission.pdf_w, infinite ? WALK_PARALLEL : 0u);
     return true;
 }
 
-/* The camera's first ray of a sample of its pixel. */
+/* The first ray of the camera walk, for a sample of the item's pixel. */
 SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                       uint t)
+                                       uint item)
 {
     __global const FrameParams *frame = scene->frame;
-    Random4 random = bd_random(frame, paths, t, BD_RANDOM_CAMERA);
+    Random4 random = bd_random(frame, paths, item, BD_RANDOM_CAMERA);
     float weight;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    uint pixel = state_load(paths, stride, BD_PIXEL, t);
+    uint pixel = state_load(paths, stride, BD_PIXEL, item);
     uint row = pixel / frame->width, column = pixel % frame->width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
-    state_store_float(paths, stride, BD_WEIGHT, t, weight);
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+    state_store_float(paths, stride, BD_WEIGHT, item, weight);
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
 }
 
-/* The film positions that a pixel filter of the crop window covers are width x height pixels from (x, y) on. */
+/* The reach: film positions that the pixel filter of the crop window covers, width x height pixels from (x, y) on. */
 typedef struct FilmReach {
     float x, y, width, height;
 } FilmReach;
@@ -88,7 +88,7 @@ SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
     return reach;
 }
 
-/* How much larger the reach is than the crop window: a path from anywhere in it stands for so much of a pixel. */
+/* Area of the reach over that of the crop window: a path from anywhere in the reach counts for that much of a pixel. */
 SHARED_FUNCTION float film_reach_factor(__global const FrameParams *frame)
 {
     FilmReach reach = film_reach(frame);
@@ -103,25 +103,25 @@ SHARED_FUNCTION Vec2 film_position(__global const FrameParams *frame, uint x, ui
     return vec2(reach.x + reach.width * random_float(x), reach.y + reach.height * random_float(y));
 }
 
-/* The random number of a place, 0 <= place < extent, in the reach: film_position finds it again within 2^-24 of the
- * extent. rest: gives the bits that say no more about the place. */
+/* The random number for which film_position gives `place`, 0 <= place < extent, to within 2^-24 of the extent. rest:
+ * supplies the bits that have no influence on the place. */
 SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
 {
     float cell = float_clamp(place / extent, 0.0f, 0.99999988079071045f) * 8388608.0f;
     return (uint)cell << 9 | (rest & 0x1ffu);
 }
 
-/* The camera's first ray from a place of the film, whatever pixel that is. random: film, lens. The throughput is that
- * of splats that are divided by samples per pixel, as those of the light's paths are. */
+/* The first ray of a camera walk from any film position. random: film, lens. Its throughput is that of splats that are
+ * divided by samples per pixel, like those of light paths. */
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                     uint t, Random4 random)
+                                     uint item, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->width,
                          (float)frame->height, vec2(random_float(random.x[2]), random_float(random.x[3])));
-    walk_begin(paths, rays, diagnostics, stride, t, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
+    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
                WALK_DELTA);
 }
 

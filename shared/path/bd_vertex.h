@@ -1,4 +1,4 @@
-/* A vertex of a bidirectional path as it is stored, and densities between vertices. */
+/* Vertices of a bidirectional path as they are stored, and densities between vertices. */
 #ifndef TWINLIGHT_PATH_BD_VERTEX_H
 #define TWINLIGHT_PATH_BD_VERTEX_H
 
@@ -10,7 +10,7 @@
 #include "light/light.h"
 #include "path/bd_state.h"
 
-/* First field of vertex i of a side: y_0, y_1 ... behind each other, then z_1, z_2 ... */
+/* First field of vertex i of a side: first y_0, y_1 ..., then z_1, z_2 ... */
 SHARED_FUNCTION uint vertex_base(__global const FrameParams *frame, uint side, uint i)
 {
     return (side == SIDE_LIGHT ? i : frame->max_depth + i - 1u) * VERTEX_WORDS;
@@ -26,47 +26,48 @@ typedef struct Vertex {
     Vec3 p, ng;
     Vec3 wo; /* in the frame */
     Vec3 beta;
-    float back; /* turns a solid-angle density here into an area density at the vertex before it (walk_back) */
+    float back; /* factor from a solid-angle density here to an area density at the vertex before (walk_back) */
     Frame frame;
     Bsdf bsdf;
 } Vertex;
 
-/* What the next segment of a walk has to know of the vertex that it leaves. */
-SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint t, const Vertex *vertex)
+/* Stores what the next segment of a walk needs to know of the vertex that it leaves. */
+SHARED_FUNCTION void vertex_place_store(__global uint *vertices, uint stride, uint base, uint item,
+                                        const Vertex *vertex)
 {
-    state_store_vec3(vertices, stride, base + VERTEX_POINT, t, vertex->p);
-    state_store_vec3(vertices, stride, base + VERTEX_NG, t, vertex->ng);
+    state_store_vec3(vertices, stride, base + VERTEX_POINT, item, vertex->p);
+    state_store_vec3(vertices, stride, base + VERTEX_NG, item, vertex->ng);
 }
 
-SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint t,
+SHARED_FUNCTION void vertex_store(const SceneView *scene, __global uint *vertices, uint stride, uint base, uint item,
                                   const Vertex *vertex)
 {
-    vertex_place_store(vertices, stride, base, t, vertex);
-    frame_store(vertices, stride, base + VERTEX_FRAME_N, t, vertex->frame);
-    state_store_vec3(vertices, stride, base + VERTEX_WO, t, vertex->wo);
-    state_store_vec3(vertices, stride, base + VERTEX_BETA, t, vertex->beta);
-    state_store_float(vertices, stride, base + VERTEX_BACK, t, vertex->back);
-    bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, t, &vertex->bsdf);
+    vertex_place_store(vertices, stride, base, item, vertex);
+    frame_store(vertices, stride, base + VERTEX_FRAME_N, item, vertex->frame);
+    state_store_vec3(vertices, stride, base + VERTEX_WO, item, vertex->wo);
+    state_store_vec3(vertices, stride, base + VERTEX_BETA, item, vertex->beta);
+    state_store_float(vertices, stride, base + VERTEX_BACK, item, vertex->back);
+    bsdf_store(scene, vertices, stride, base + VERTEX_BSDF_KIND, item, &vertex->bsdf);
 }
 
 SHARED_FUNCTION Vertex vertex_load(const SceneView *scene, __global const uint *vertices, uint stride, uint base,
-                                   uint t)
+                                   uint item)
 {
     Vertex vertex;
-    vertex.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
-    vertex.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
-    vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, t);
-    vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, t);
-    vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, t);
-    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, t);
-    vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, t);
+    vertex.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
+    vertex.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, item);
+    vertex.frame = frame_load(vertices, stride, base + VERTEX_FRAME_N, item);
+    vertex.wo = state_load_vec3(vertices, stride, base + VERTEX_WO, item);
+    vertex.beta = state_load_vec3(vertices, stride, base + VERTEX_BETA, item);
+    vertex.back = state_load_float(vertices, stride, base + VERTEX_BACK, item);
+    vertex.bsdf = bsdf_load(scene, vertices, stride, base + VERTEX_BSDF_KIND, item);
     return vertex;
 }
 
-/* Whether nothing can be connected with the stored vertex. */
-SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint t)
+/* Whether the stored vertex has delta lobes alone, so that nothing can be connected with it. */
+SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, uint base, uint item)
 {
-    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, t) & BSDF_SMOOTH) != 0u;
+    return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u;
 }
 
 /* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
@@ -76,8 +77,9 @@ SHARED_FUNCTION float solid_angle_to_area(Vec3 w, Vec3 n, float distance2)
     return float_abs(vec3_dot(w, n)) / distance2;
 }
 
-/* What a stored solid-angle density at `p` becomes per area at the vertex before it: `from`, `ng`, on the light's side
- * y_0 with flags EMITTER_*. Of a delta light's position it is never used in a strategy that exists. */
+/* Factor from a solid-angle density at `p` to an area density at the vertex before it, which is `from` with normal
+ * `ng`, on the light's side y_0 with flags EMITTER_*. For the position of a delta light no existing strategy uses
+ * it. */
 SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
 {
     if ((emitter_flags & EMITTER_INFINITE) != 0u)
@@ -91,19 +93,19 @@ SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
     return solid_angle_to_area(vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
 }
 
-/* walk_back at p, vertex i of a side, i >= 1; `before`: base of the vertex before it. Of the lens it is never used. */
+/* walk_back at p, vertex i >= 1 of a side; `before`: base of the vertex before it. For the lens it is never used. */
 SHARED_FUNCTION float walk_back_stored(__global const uint *restrict paths, __global const uint *restrict vertices,
-                                       uint stride, uint t, uint side, uint i, uint before, Vec3 p)
+                                       uint stride, uint item, uint side, uint i, uint before, Vec3 p)
 {
     if (side == SIDE_CAMERA && i == 1u)
         return 1.0f;
-    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, t) : 0u;
-    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, t),
-                     state_load_vec3(vertices, stride, before + VERTEX_NG, t), flags);
+    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
+    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, item),
+                     state_load_vec3(vertices, stride, before + VERTEX_NG, item), flags);
 }
 
-/* Shading normals make a BSDF differ from its adjoint by this factor, which paths from the light carry (Veach 1997,
- * section 5.3.2): wo and wi in world space, their cosines with the shading normal. */
+/* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
+ * section 5.3.2). wo and wi: in world space; cosine_o and cosine_i: their cosines with the shading normal. */
 SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
 {
     float numerator = float_abs(cosine_o) * float_abs(vec3_dot(wi, ng));
@@ -111,17 +113,17 @@ SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, 
     return denominator > 0.0f ? numerator / denominator : 0.0f;
 }
 
-/* Densities of a delta lobe's directions are probabilities, and only the ratio of both ways means anything. Reflection
- * and refraction keep n^2 times the projected solid angle, so relative to that measure the same delta stands on both
- * ways and cancels; what it takes to get to solid angles remains. */
+/* Densities of a delta lobe's directions. They are probabilities, and only the ratio of the two directions means
+ * anything. Reflection and refraction preserve n^2 times the projected solid angle, so relative to that measure the
+ * same delta appears in both directions and cancels; the conversion to solid angle remains. */
 SHARED_FUNCTION void delta_densities(const BsdfSample *sample, Vec3 wo, float *forward, float *reverse)
 {
     *forward = sample->pdf_w * (float_abs(sample->wi.z) * (sample->eta * sample->eta));
     *reverse = sample->pdf_rev_w * float_abs(wo.z);
 }
 
-/* Density of drawing the point (p, ng) of the light for `from` (s = 1), over that of emitting from it. They differ for
- * spheres, which are drawn by the cone that `from` sees. `w`: unit, from `from` to p. */
+/* Density with which the point (p, ng) on the light is drawn for `from` (s = 1), over that of emitting from it. They
+ * differ for spheres, which are sampled in the cone that `from` sees. w: unit, from `from` to p. */
 SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 w, float distance2,
                                           const Surface *point)
 {
@@ -134,15 +136,15 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
 
 /* BD_CONNECT of y_0, stored at `base`, for y_1 at p. */
 SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
-                                            __global const uint *vertices, uint stride, uint t, uint base, Vec3 p)
+                                            __global const uint *vertices, uint stride, uint item, uint base, Vec3 p)
 {
-    uint light = state_load(paths, stride, BD_EMITTER, t);
+    uint light = state_load(paths, stride, BD_EMITTER, item);
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return 1.0f;
-    Surface point = {0}; /* spheres ask for no more than this */
-    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, t);
-    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, t);
+    Surface point = {0}; /* spheres read no more than this */
+    point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
+    point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, item);
     Vec3 d = vec3_sub(point.p, p);
     float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))
@@ -150,7 +152,7 @@ SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global con
     return light_connect_ratio(scene, light, p, vec3_scale(d, 1.0f / float_sqrt(distance2)), distance2, &point);
 }
 
-/* Per area, the density with which the walk has made the point it has just met. */
+/* Area density with which the walk has made the point that it has just hit. */
 SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
                                    float distance2, uint side, uint depth, uint flags, float pdf)
 {

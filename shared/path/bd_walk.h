@@ -1,4 +1,4 @@
-/* One vertex of a bidirectional path after the other: what the walks from the light and from the camera share. */
+/* Extends bidirectional paths vertex by vertex: what the walks from the light and from the camera share. */
 #ifndef TWINLIGHT_PATH_BD_WALK_H
 #define TWINLIGHT_PATH_BD_WALK_H
 
@@ -12,39 +12,39 @@
 
 /* ---- a step ------------------------------------------------------------------------------------------------------ */
 
-SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t)
+SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint item)
 {
-    state_store(paths, stride, BD_DEPTH, t, 0u);
-    state_store_float(rays, stride, RAY_T_MAX, t, 0.0f);
+    state_store(paths, stride, BD_DEPTH, item, 0u);
+    state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
 }
 
-/* Adds to what the path's pixel gets. */
-SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint t, Vec3 radiance)
+/* Adds to the radiance of the path's pixel. */
+SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint item, Vec3 radiance)
 {
-    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, t);
-    state_store_vec3(paths, stride, BD_RADIANCE, t, vec3_add(sum, radiance));
+    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, item);
+    state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_add(sum, radiance));
 }
 
 /* The first ray of a walk. */
 SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
-                                __global uint *restrict diagnostics, uint stride, uint t, uint side, Ray ray, Vec3 beta,
-                                float pdf, uint flags)
+                                __global uint *restrict diagnostics, uint stride, uint item, uint side, Ray ray,
+                                Vec3 beta, float pdf, uint flags)
 {
-    ray_store(rays, stride, t, ray);
-    state_store(paths, stride, BD_SIDE, t, side);
-    state_store(paths, stride, BD_DEPTH, t, 1u);
-    state_store_vec3(paths, stride, BD_BETA, t, beta);
-    state_store_float(paths, stride, BD_PDF, t, pdf);
-    state_store(paths, stride, BD_WALK_FLAGS, t, flags);
-    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, 1.0f / vec3_max_component(beta));
-    state_store_float(paths, stride, BD_SURVIVAL, t, 1.0f);
+    ray_store(rays, stride, item, ray);
+    state_store(paths, stride, BD_SIDE, item, side);
+    state_store(paths, stride, BD_DEPTH, item, 1u);
+    state_store_vec3(paths, stride, BD_BETA, item, beta);
+    state_store_float(paths, stride, BD_PDF, item, pdf);
+    state_store(paths, stride, BD_WALK_FLAGS, item, flags);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, item, 1.0f / vec3_max_component(beta));
+    state_store_float(paths, stride, BD_SURVIVAL, item, 1.0f);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
-        walk_end(paths, rays, stride, t);
+        walk_end(paths, rays, stride, item);
     }
 }
 
-/* The vertex at a surface that a walk of throughput beta has met along d. False when nothing leaves it. u_mix: decides
+/* The vertex at a surface that a walk of throughput beta has hit along d. False if it scatters nothing. u_mix: decides
  * mix materials. */
 SHARED_FUNCTION bool vertex_make(const SceneView *scene, Surface *surface, Vec3 d, Vec3 beta, float u_mix,
                                  Vertex *vertex)
@@ -59,38 +59,35 @@ SHARED_FUNCTION bool vertex_make(const SceneView *scene, Surface *surface, Vec3 
     return true;
 }
 
-/* Where a walk goes on. */
+/* How a walk continues. */
 typedef struct WalkStep {
     Ray ray;
     Vec3 beta;
     float forward; /* density of the new direction, per solid angle */
-    float reverse; /* of the way back, per area at the vertex before */
+    float reverse; /* of the opposite direction, per area at the vertex before */
     float roulette_scale;
-    float survival; /* probability of roulette here */
+    float survival; /* probability with which it survived roulette here */
     uint delta;
 } WalkStep;
 
-/* Roulette leaves at least so many of a pool's walks alive. What the pool shows of a path is limited by what chains see
- * of it, who know no roulette: the paths of a walk that has survived by chance carry more, the inverse of its chance.
- * Without this a glossy room has twice the square error in the same time, much of it single dots, of 75 times the
- * limit; were all walks to live, a quarter more, as there would be fewer. */
+/* Minimum probability of a pool's walk to survive roulette. A pool clamps what chains see of a path, and they have no
+ * roulette, so what it shows of a survivor exceeds the threshold by the inverse of that probability. docs/TUNING.md */
 #define POOL_SURVIVED_LEAST 0.35f
 
-/* The least probability with which roulette lets the walk go on. */
-SHARED_FUNCTION float walk_survival_least(__global const FrameParams *frame, __global const uint *paths, uint t)
+/* The minimum probability with which roulette lets the walk continue. */
+SHARED_FUNCTION float walk_survival_least(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return frame->pool != 0u ? POOL_SURVIVED_LEAST / state_load_float(paths, frame->stride, BD_SURVIVAL, t) : 0.0f;
+    return frame->pool != 0u ? POOL_SURVIVED_LEAST / state_load_float(paths, frame->stride, BD_SURVIVAL, item) : 0.0f;
 }
 
-/* Where in a lobe. */
+/* The point that draws the direction within a lobe. */
 SHARED_FUNCTION Vec2 scatter_point(Random4 random)
 {
     return vec2(random_float(random.x[1]), random_float(random.x[2]));
 }
 
-/* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which
- * leaves the weights alone: they need not know of it to sum to one. random: lobe, direction, roulette. least:
- * walk_survival_least. */
+/* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which MIS
+ * weights ignore: they sum to one without it. random: lobe, direction, roulette. least: walk_survival_least. */
 SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth,
                                   float roulette_scale, float least, Random4 random, WalkStep *step)
 {
@@ -109,7 +106,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
                                                            vertex->wo.z, sample.wi.z));
     step->roulette_scale = side == SIDE_CAMERA ? roulette_scale * sample.eta * sample.eta : roulette_scale;
     float survival = roulette ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
-    if (survival > 0.0f) /* not what is not a number */
+    if (survival > 0.0f) /* rejects NaN */
         survival = float_max(survival, least);
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
         return false;
@@ -126,141 +123,142 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     return true;
 }
 
-SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint t,
-                                     uint depth, const WalkStep *step)
+SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uint *restrict rays, uint stride,
+                                     uint item, uint depth, const WalkStep *step)
 {
-    state_store(paths, stride, BD_DEPTH, t, depth + 1u);
-    state_store_vec3(paths, stride, BD_BETA, t, step->beta);
-    state_store_float(paths, stride, BD_PDF, t, step->forward);
-    state_store(paths, stride, BD_WALK_FLAGS, t, step->delta != 0u ? WALK_DELTA : 0u);
-    state_store_float(paths, stride, BD_ROULETTE_SCALE, t, step->roulette_scale);
-    state_store_float(paths, stride, BD_SURVIVAL, t, step->survival * state_load_float(paths, stride, BD_SURVIVAL, t));
-    ray_store(rays, stride, t, step->ray);
+    state_store(paths, stride, BD_DEPTH, item, depth + 1u);
+    state_store_vec3(paths, stride, BD_BETA, item, step->beta);
+    state_store_float(paths, stride, BD_PDF, item, step->forward);
+    state_store(paths, stride, BD_WALK_FLAGS, item, step->delta != 0u ? WALK_DELTA : 0u);
+    state_store_float(paths, stride, BD_ROULETTE_SCALE, item, step->roulette_scale);
+    state_store_float(paths, stride, BD_SURVIVAL, item,
+                      step->survival * state_load_float(paths, stride, BD_SURVIVAL, item));
+    ray_store(rays, stride, item, step->ray);
 }
 
-/* Keeps in mind that vertex `depth` of a side scatters by a delta lobe, if it does. */
-SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint t, uint side, uint depth,
+/* Records whether vertex `depth` of a side scatters by a delta lobe. */
+SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint item, uint side, uint depth,
                                const WalkStep *step)
 {
     uint mask = side == SIDE_LIGHT ? BD_LIGHT_DELTA : BD_CAMERA_DELTA;
     if (step->delta != 0u)
-        state_store(paths, stride, mask, t, state_load(paths, stride, mask, t) | (1u << depth));
+        state_store(paths, stride, mask, item, state_load(paths, stride, mask, item) | (1u << depth));
 }
 
-/* ---- what a ray has met ------------------------------------------------------------------------------------------- */
+/* ---- what a ray has hit ------------------------------------------------------------------------------------------ */
 
 typedef struct WalkHit {
     Ray ray;
-    Vec3 from_ng; /* geometric normal where the ray left; its direction for the camera's first */
-    float own; /* density with which the walk has made the point; of a miss, of its direction */
-    uint light; /* that the primitive is; NONE */
+    Vec3 from_ng; /* geometric normal where the ray left; for the camera's first ray its direction */
+    float own; /* density with which the walk has made the point; for a miss, its direction */
+    uint light; /* index of the light that the primitive is; NONE: it is no light */
     uint instance, primitive; /* of the hit */
     bool missed;
-    /* Unless missed: */
+    /* Unless the ray missed: */
     Surface surface;
     Vec3 from; /* where the ray left */
     float distance2;
-    float back; /* Vertex.back there */
+    float back; /* Vertex.back at the hit */
 } WalkHit;
 
-/* From: the ray under way and its hit. `before`: base of the vertex that it left. */
+/* Fills *walk_hit from the ray under way and its hit. `before`: base of the vertex that the ray left. */
 SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
                                    __global const uint *restrict rays, __global const uint *restrict hits,
-                                   __global const uint *restrict vertices, uint t, uint before, WalkHit *walk_hit)
+                                   __global const uint *restrict vertices, uint item, uint before, WalkHit *walk_hit)
 {
     uint stride = scene->frame->stride;
-    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
-    uint flags = state_load(paths, stride, BD_WALK_FLAGS, t);
+    uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
+    uint flags = state_load(paths, stride, BD_WALK_FLAGS, item);
     bool first = side == SIDE_CAMERA && depth == 1u;
-    Hit hit = hit_load(hits, stride, t);
-    walk_hit->ray = ray_load(rays, stride, t);
+    Hit hit = hit_load(hits, stride, item);
+    walk_hit->ray = ray_load(rays, stride, item);
     walk_hit->missed = hit.primitive == NONE;
     walk_hit->instance = hit.instance;
     walk_hit->primitive = hit.primitive;
-    walk_hit->own = state_load_float(paths, stride, BD_PDF, t);
-    walk_hit->from_ng = first ? walk_hit->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, t);
+    walk_hit->own = state_load_float(paths, stride, BD_PDF, item);
+    walk_hit->from_ng = first ? walk_hit->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, item);
     walk_hit->light = NONE;
     if (walk_hit->missed)
         return;
     walk_hit->surface = surface_from_hit(scene, &walk_hit->ray, hit);
     walk_hit->from = first || (flags & WALK_PARALLEL) != 0u
                          ? walk_hit->ray.o
-                         : state_load_vec3(vertices, stride, before + VERTEX_POINT, t);
+                         : state_load_vec3(vertices, stride, before + VERTEX_POINT, item);
     walk_hit->distance2 = vec3_length_squared(vec3_sub(walk_hit->surface.p, walk_hit->from));
     walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, side, depth,
                                  flags, walk_hit->own);
-    walk_hit->back = walk_back_stored(paths, vertices, stride, t, side, depth, before, walk_hit->surface.p);
+    walk_hit->back = walk_back_stored(paths, vertices, stride, item, side, depth, before, walk_hit->surface.p);
     uint first_light = scene->shapes[walk_hit->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
         walk_hit->light = first_light + hit.primitive - scene->shapes[walk_hit->surface.shape].first_primitive;
 }
 
-/* Makes the vertex, the one before it being at `before`; the walk ends when nothing leaves it, and the camera's when it
- * is full. */
+/* Makes the vertex at the hit; `before`: base of the previous vertex. Ends the walk and returns false if the vertex
+ * scatters nothing, or if it is the camera's and has max_depth segments. */
 SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *restrict paths,
-                                      __global uint *restrict rays, __global const uint *restrict vertices, uint t,
+                                      __global uint *restrict rays, __global const uint *restrict vertices, uint item,
                                       uint before, float u_mix, WalkHit *walk_hit, Vertex *vertex)
 {
     uint stride = scene->frame->stride;
-    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
+    uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
-        !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, t), u_mix,
+        !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, item), u_mix,
                      vertex)) {
-        walk_end(paths, rays, stride, t);
+        walk_end(paths, rays, stride, item);
         return false;
     }
-    /* Before the vertex may take the place of y_0. */
+    /* Before the vertex may overwrite y_0. */
     if (side == SIDE_LIGHT && depth == 1u)
-        state_store_float(paths, stride, BD_CONNECT, t,
-                          emitter_connect_ratio(scene, paths, vertices, stride, t, before, vertex->p));
+        state_store_float(paths, stride, BD_CONNECT, item,
+                          emitter_connect_ratio(scene, paths, vertices, stride, item, before, vertex->p));
     vertex->back = walk_hit->back;
     return true;
 }
 
-/* The same, and stores it at `base`. */
+/* walk_vertex_make, then stores the vertex at `base`. */
 SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                 __global uint *restrict vertices, uint t, uint before, uint base, float u_mix,
+                                 __global uint *restrict vertices, uint item, uint before, uint base, float u_mix,
                                  WalkHit *walk_hit)
 {
     uint stride = scene->frame->stride;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, t, before, u_mix, walk_hit, &vertex))
+    if (!walk_vertex_make(scene, paths, rays, vertices, item, before, u_mix, walk_hit, &vertex))
         return false;
-    vertex_store(scene, vertices, stride, base, t, &vertex);
-    state_store(vertices, stride, base + VERTEX_SURVIVAL, t, state_load(paths, stride, BD_SURVIVAL, t));
+    vertex_store(scene, vertices, stride, base, item, &vertex);
+    state_store(vertices, stride, base + VERTEX_SURVIVAL, item, state_load(paths, stride, BD_SURVIVAL, item));
     return true;
 }
 
-/* Draws where the walk goes on from its last vertex; false when it has ended. random: lobe, direction, roulette. */
+/* Draws how the walk continues from its last vertex; false if it has ended. random: lobe, direction, roulette. */
 SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint t,
+                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint item,
                                        const Vertex *vertex, Random4 random, WalkStep *step)
 {
     uint stride = scene->frame->stride;
-    uint side = state_load(paths, stride, BD_SIDE, t), depth = state_load(paths, stride, BD_DEPTH, t);
-    float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, t);
-    float least = walk_survival_least(scene->frame, paths, t);
+    uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
+    float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, item);
+    float least = walk_survival_least(scene->frame, paths, item);
     if (walk_scatter(scene, vertex, side, depth, roulette_scale, least, random, step)) {
         if (ray_traceable(step->ray.o, step->ray.d))
             return true;
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
     }
-    walk_end(paths, rays, stride, t);
+    walk_end(paths, rays, stride, item);
     return false;
 }
 
-/* From the vertex stored at `base`. */
+/* walk_leave_vertex for the vertex stored at `base`. */
 SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint t,
+                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint item,
                                 uint base, Random4 random, WalkStep *step)
 {
-    Vertex vertex = vertex_load(scene, vertices, scene->frame->stride, base, t);
-    return walk_leave_vertex(scene, paths, rays, diagnostics, t, &vertex, random, step);
+    Vertex vertex = vertex_load(scene, vertices, scene->frame->stride, base, item);
+    return walk_leave_vertex(scene, paths, rays, diagnostics, item, &vertex, random, step);
 }
 
-/* ---- lights that the camera's walk meets (s = 0) ----------------------------------------------------------------- */
+/* ---- lights that the camera walk hits (s = 0) -------------------------------------------------------------------- */
 
-/* What the light met sends back along the ray, and what the weight needs to know. */
+/* What the light that was hit emits back along the ray, and the densities that its weight needs. */
 SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hit, StrategyEnds *ends)
 {
     const Surface *surface = &walk_hit->surface;

@@ -1,4 +1,4 @@
-/* Weights of bidirectional paths from their stored state. */
+/* MIS weights of bidirectional paths from their stored state. */
 #ifndef TWINLIGHT_PATH_BD_WEIGHT_H
 #define TWINLIGHT_PATH_BD_WEIGHT_H
 
@@ -6,30 +6,30 @@
 #include "path/strategy.h"
 
 SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, __global const uint *paths,
-                                            __global const uint *densities, uint t)
+                                            __global const uint *densities, uint item)
 {
     DensityView view;
     view.light = densities;
     view.camera = densities + (size_t)frame->max_depth * DENSITY_WORDS * frame->stride;
     view.stride = frame->stride;
-    view.t = t;
+    view.item = item;
     view.compact = false;
     view.light_end = 0u;
     view.camera_end = 0u;
-    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, t);
-    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, t);
+    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, item);
+    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, item);
     return view;
 }
 
-/* Whether anything is to be made by the strategy (s, t). */
+/* Whether the strategy (s, t) contributes: deep enough, in the set, and not excluded by only_s and only_t. */
 SHARED_FUNCTION bool strategy_wanted(__global const FrameParams *frame, uint s, uint t)
 {
     return s + t > frame->min_depth && strategy_taken(frame->strategies, s, s + t - 1u) &&
            (frame->only_s == NONE || (frame->only_s == s && frame->only_t == t));
 }
 
-/* What a contribution of the strategy (s, t) is multiplied by: its weight; 1 when weights are turned off; 0 when only
- * another strategy is wanted. */
+/* Factors of a contribution by the strategy (s, t): its MIS weight; 1 if weights are turned off; 0 if the strategy does
+ * not contribute. */
 SHARED_FUNCTION StrategyWeights bd_weights(__global const FrameParams *frame, uint s, uint t, const DensityView *view,
                                            const StrategyEnds *ends)
 {
@@ -48,7 +48,7 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
     return bd_weights(frame, s, t, view, ends).own;
 }
 
-/* s = 0 at everything at infinity: the camera's walk has met nothing after `depth` segments. */
+/* s = 0 at infinity: the sum over all lights there, when the camera walk has missed after `depth` segments. */
 SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);

@@ -1,9 +1,10 @@
 /* Weights of multiple importance sampling: the one place where they are computed (Veach, "Robust Monte Carlo Methods
  * for Light Transport Simulation", 1997, section 9.2).
  *
- * A path of k segments is made by strategies (s, t): s vertices from the light, t from the camera. Path tracing takes
- * {s <= 1}: s = 0, the BSDF's direction hits a light; s = 1, a point on a light is drawn and connected. Both sample
- * the same last vertex, so their ratio of densities is a ratio of solid-angle densities at the vertex before it. */
+ * A path of k segments is made by strategies (s, t): s vertices from the light, t from the camera. Path tracing uses s
+ * <= 1: for s = 0, a direction drawn from the BSDF hits a light; for s = 1, a point drawn on a light is connected. Both
+ * sample the same last vertex, so their ratio of densities is a ratio of solid-angle densities at the vertex before
+ * it. */
 #ifndef TWINLIGHT_PATH_MIS_H
 #define TWINLIGHT_PATH_MIS_H
 
@@ -37,8 +38,8 @@ SHARED_FUNCTION float mis_power(float pdf_a, float pdf_b)
 
 /* ---- many strategies --------------------------------------------------------------------------------------------- */
 
-/* Which strategies an integrator takes. A path of one segment is made by s = 0 alone: what is seen directly. */
-#define STRATEGY_HIT 0x1u /* s = 0: the camera's path meets a light */
+/* Which strategies an integrator uses. A path of one segment, light seen directly, is made by s = 0 alone. */
+#define STRATEGY_HIT 0x1u /* s = 0: the camera's path hits a light */
 #define STRATEGY_LIGHT 0x2u /* s = 1: a point on a light is drawn for the last vertex but one */
 #define STRATEGY_CAMERA 0x4u /* t = 1, s >= 2: the light's path is connected to the lens */
 #define STRATEGY_INNER 0x8u /* s >= 2, t >= 2 */
@@ -55,8 +56,8 @@ SHARED_FUNCTION bool strategy_taken(uint set, uint s, uint k)
 
 /* Sum of powers of p_i / p_s over strategies i != s, where s made the path. Densities of a path's vertices: camera[i]
  * is that of x_i as the camera's path makes it, light[i] as the light's path does, both per area (per solid angle for a
- * vertex at infinity). Then p_{i+1} / p_i = light[k - i] / camera[k - i], so the terms are running products that begin
- * at s and go both ways (Veach, section 10.2.1). Exponent 1 (balance heuristic) or 2 (power heuristic). */
+ * vertex at infinity). Then p_{i+1} / p_i = light[k - i] / camera[k - i], so the terms are running products from s in
+ * both directions (Veach, section 10.2.1). Exponent 1 (balance heuristic) or 2 (power heuristic). */
 typedef struct MisSum {
     Scaled term; /* p_i / p_s for the strategy i reached so far */
     Scaled sum;
@@ -72,7 +73,7 @@ SHARED_FUNCTION MisSum mis_sum_begin(uint exponent)
     return sum;
 }
 
-/* Goes on to the next strategy in one direction: its density is numerator / denominator times that of the last. */
+/* Moves on to the next strategy in one direction: its density is numerator / denominator times that of the last. */
 SHARED_FUNCTION void mis_sum_step(MisSum *sum, float numerator, float denominator)
 {
     sum->term = scaled_multiply(sum->term, scaled_divide(scaled_from(numerator), scaled_from(denominator)));
@@ -83,8 +84,8 @@ SHARED_FUNCTION Scaled mis_sum_power(const MisSum *sum, Scaled a)
     return sum->exponent == 2u ? scaled_multiply(a, a) : a;
 }
 
-/* The strategy reached is one of the set. `factor`: what its density has beside the running product. Returns its
- * term. */
+/* Adds the strategy reached, which is one of the set. factor: what its density has besides the running product. Returns
+ * its term. */
 SHARED_FUNCTION Scaled mis_sum_take(MisSum *sum, Scaled factor)
 {
     Scaled part = mis_sum_power(sum, scaled_multiply(sum->term, factor));
@@ -92,13 +93,13 @@ SHARED_FUNCTION Scaled mis_sum_take(MisSum *sum, Scaled factor)
     return part;
 }
 
-/* Back to the strategy that made the path, to go in the other direction. */
+/* Back to the strategy that made the path, to continue in the other direction. */
 SHARED_FUNCTION void mis_sum_turn(MisSum *sum)
 {
     sum->term = scaled_from(1.0f);
 }
 
-/* part / (own + sum of the others), own the factor of the strategy that made the path. */
+/* part / (own + sum of the others). factor: that of the strategy that made the path. */
 SHARED_FUNCTION float mis_sum_part(const MisSum *sum, Scaled factor, Scaled part)
 {
     return scaled_float(scaled_divide(part, scaled_add(mis_sum_power(sum, factor), sum->sum)));

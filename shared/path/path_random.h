@@ -1,12 +1,12 @@
-/* Which random number a path uses for what. A number is a function of (seed, pixel, sample, block of four): nothing is
- * stored, and a path can be replayed. */
+/* Which random numbers a path uses for what. A number is a function of (seed, pixel, sample, block of four): nothing is
+ * stored, and any path can be replayed. */
 #ifndef TWINLIGHT_PATH_PATH_RANDOM_H
 #define TWINLIGHT_PATH_PATH_RANDOM_H
 
 #include "layout/scene_types.h"
 #include "math/rng.h"
 
-/* Block 0 is the camera's: filter offset, lens. Then three blocks for every vertex of the path. */
+/* Block 0 is the camera's: filter offset, lens. Three blocks follow for every vertex of the path. */
 #define RANDOM_CAMERA 0u
 #define RANDOM_LIGHT 1u /* x, y: which light (32 bits each). z, w: point on it */
 #define RANDOM_SCATTER 2u /* x: lobe. y, z: direction. w: Russian roulette */

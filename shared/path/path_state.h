@@ -1,4 +1,4 @@
-/* What a path keeps between kernels (BUFFER_PATHS), one 32-bit word a field, and how it is stored. */
+/* The state of a path between kernels (BUFFER_PATHS), one 32-bit word per field. */
 #ifndef TWINLIGHT_PATH_PATH_STATE_H
 #define TWINLIGHT_PATH_PATH_STATE_H
 
@@ -17,13 +17,13 @@
 #define PATH_NG 16u /* its geometric normal, 3 */
 #define PATH_FRAME 19u /* shading frame, STORED_FRAME_WORDS */
 #define PATH_WO 25u /* towards the previous vertex, in the frame, 3 */
-#define PATH_LIGHT 28u /* contribution of the light sample if it is visible, 3 */
+#define PATH_LIGHT 28u /* contribution of the light sample if visible, 3 */
 #define PATH_BSDF 31u /* STORED_BSDF_WORDS */
-#define PATH_LIMIT 43u /* frame->split_direct: how much luminance a contribution shows */
-#define PATH_SURVIVED 44u /* the same: with what probability Russian roulette has let the path live so far */
-#define PATH_GATHERED 45u /* frame->split_depths: segments of the path that has brought PATH_RADIANCE */
+#define PATH_LIMIT 43u /* frame->split_direct: clamping threshold of its contribution's luminance */
+#define PATH_SURVIVED 44u /* frame->split_direct: probability to survive Russian roulette so far */
+#define PATH_GATHERED 45u /* frame->split_depths: depth of the path that brought PATH_RADIANCE */
 #define PATH_WORDS 46u
 
-#define PATH_FLAG_DELTA 0x1u /* the last direction came from a delta lobe (or the camera): no light sample competes */
+#define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 
 #endif

@@ -1,13 +1,13 @@
-/* The weight of one bidirectional strategy among those of its set, from the densities of the path's vertices in both
- * directions (Veach 1997, section 10.2; path/mis.h). */
+/* The MIS weight of one bidirectional strategy among those of its set, from the densities of the path's vertices in
+ * both directions (Veach 1997, section 10.2; path/mis.h). */
 #ifndef TWINLIGHT_PATH_STRATEGY_H
 #define TWINLIGHT_PATH_STRATEGY_H
 
 #include "path/bd_state.h"
 #include "path/mis.h"
 
-/* What only the connection knows. y_{s-1} and z_{t-1} are its ends. Densities are per area; of a light at infinity,
- * per solid angle. Unused ones (s or t too small) are not read. */
+/* Densities that only the connection determines, whose ends are y_{s-1} and z_{t-1}: per area, or for a light at
+ * infinity per solid angle. Those that do not exist (s or t too small) are not read. */
 typedef struct StrategyEnds {
     float light_z1; /* of z_{t-1}, made from y_{s-1}; s = 0: of emitting there */
     float light_z2; /* of z_{t-2}, made from z_{t-1} */
@@ -15,29 +15,29 @@ typedef struct StrategyEnds {
     float camera_y2; /* of y_{s-2}, made from y_{s-1} */
     float own_y0; /* s = 1: of emitting from the point drawn */
     float connect; /* density of drawing the path's point on the light for its neighbour, over that of emitting there */
-    bool hittable; /* paths can meet the light */
+    bool hittable; /* paths can hit the light */
 } StrategyEnds;
 
 /* Where the densities of an item are: those of y_0 ... and z_1 ..., each word at stride. Stored in full, a vertex has
- * DENSITY_WORDS words. Compact, it has one: only the ratio of both densities counts, but for the last two vertices of a
- * side, whose density as the other side makes them is the connection's to know. */
+ * DENSITY_WORDS words. Compact, it has one, since only the ratio of its two densities counts; except for the last two
+ * vertices of a side, whose density by the other side only the connection determines. */
 typedef struct DensityView {
     __global const uint *light, *camera;
-    uint stride, t;
+    uint stride, item;
     uint light_delta, camera_delta; /* bit i: the vertex scattered by a delta lobe */
     bool compact;
-    uint light_end, camera_end; /* compact: y and z of this index on have their own density, those before the ratio */
+    uint light_end, camera_end; /* compact: from this index on a vertex has its own density, before it the ratio */
 } DensityView;
 
-/* Density of vertex i as its side makes it and as the other side does, both known but for a factor that they share. */
+/* The densities of vertex i by its own side and by the other, up to a factor common to both. */
 SHARED_FUNCTION float density_own(const DensityView *view, uint side, uint i)
 {
     __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
     uint index = side == SIDE_LIGHT ? i : i - 1u;
     if (!view->compact)
-        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->t);
+        return state_load_float(words, view->stride, index * DENSITY_WORDS + DENSITY_OWN, view->item);
     uint end = side == SIDE_LIGHT ? view->light_end : view->camera_end;
-    return i >= end ? state_load_float(words, view->stride, index, view->t) : 1.0f;
+    return i >= end ? state_load_float(words, view->stride, index, view->item) : 1.0f;
 }
 
 SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
@@ -45,16 +45,16 @@ SHARED_FUNCTION float density_other(const DensityView *view, uint side, uint i)
     __global const uint *words = side == SIDE_LIGHT ? view->light : view->camera;
     uint index = side == SIDE_LIGHT ? i : i - 1u;
     return state_load_float(words, view->stride, view->compact ? index : index * DENSITY_WORDS + DENSITY_OTHER,
-                            view->t);
+                            view->item);
 }
 
-/* What a path's densities say of the strategies that could have made it. */
+/* MIS weights of a path. */
 typedef struct StrategyWeights {
-    float own; /* the weight of the one that did */
-    float path_tracing; /* the weights of path tracing's, s <= 1, together */
+    float own; /* of the strategy that made it */
+    float path_tracing; /* sum over the strategies of path tracing, s <= 1 */
 } StrategyWeights;
 
-/* The strategy with s vertices from the light takes part. *path_tracing: the sum of those of path tracing. */
+/* Counts the strategy with s vertices from the light. *path_tracing: sum over those of path tracing. */
 SHARED_FUNCTION void strategy_sum_take(MisSum *sum, Scaled *path_tracing, uint s, float connect)
 {
     Scaled part = mis_sum_take(sum, scaled_from(s == 1u ? connect : 1.0f));
@@ -62,7 +62,8 @@ SHARED_FUNCTION void strategy_sum_take(MisSum *sum, Scaled *path_tracing, uint s
         *path_tracing = scaled_add(*path_tracing, part);
 }
 
-/* Whether an edge between vertex i and vertex i - 1 (0: the side's end, which is never a delta) can be a connection. */
+/* Whether the edge between vertices i and i - 1 can be a connection: neither scattered by a delta lobe. Vertex 0, the
+ * side's end, never does. */
 SHARED_FUNCTION bool edge_connectable(uint delta, uint i)
 {
     uint ends = (1u << i) | (i > 1u ? 1u << (i - 1u) : 0u);
@@ -100,14 +101,14 @@ SHARED_FUNCTION void strategy_sum_light(MisSum *sum, Scaled *path_tracing, uint 
     }
 }
 
-/* Weights of the strategy (s, t), t >= 1. `exponent`: 1 for the balance heuristic, 2 for the power heuristic. */
+/* MIS weights of the strategy (s, t), t >= 1. exponent: 1 for the balance heuristic, 2 for the power heuristic. */
 SHARED_FUNCTION StrategyWeights strategy_weights(uint set, uint exponent, uint s, uint t, const DensityView *view,
                                                  const StrategyEnds *ends)
 {
     MisSum sum = mis_sum_begin(exponent);
     Scaled factor = scaled_from(s == 1u ? ends->connect : 1.0f), path_tracing = scaled_zero();
     DensityView path = *view;
-    /* By whatever lobe the walks went on from the ends, the connection is none of them. */
+    /* The lobes by which walks left the two ends are not those of the connection. */
     path.camera_delta &= (1u << (t - 1u)) - 1u;
     path.light_delta &= s > 0u ? (1u << (s - 1u)) - 1u : 0u;
     strategy_sum_camera(&sum, &path_tracing, set, s, t, &path, ends);

@@ -1,4 +1,5 @@
-/* Several backends as one, and what --backend and --device mean: on backends that only keep a record. */
+/* Groups of backends, and the meaning of --backend and --device, tested with fake backends that only record what they
+ * are asked. */
 #include "support/test_util.h"
 
 #include "backend/choice.h"
@@ -10,12 +11,12 @@
 
 #define ITEMS_MAX 100000u
 
-/* Who did which item, by how often; written by members' threads to items of their own. */
+/* How often each item was processed; members' threads write disjoint items. */
 static unsigned char items_seen[ITEMS_MAX];
 
 struct Backend {
-    double speed; /* items per second that it plays */
-    uint fails_at; /* items that it delivers before it fails; NONE: it does not */
+    double speed; /* simulated items per second */
+    uint fails_at; /* items delivered before it fails; NONE: never fails */
     uint first, count; /* of the latest pass */
     int passes, closes;
     const char *name;
@@ -88,7 +89,8 @@ static bool pass_run(Backend *group, uint first, uint count, const atomic_int *s
 
 /* ---- a pass ------------------------------------------------------------------------------------------------------ */
 
-/* Every item once, whatever the number of members and items: also fewer items than members, and one. */
+/* Every item is processed exactly once, for any number of members and items, including fewer items than members and a
+ * single one. */
 START_TEST(test_items_once)
 {
     static const uint COUNTS[] = {1, 2, 511, 512, 513, 5000, 77777};
@@ -115,7 +117,7 @@ START_TEST(test_items_once)
 }
 END_TEST
 
-/* Four times as fast gets about four times as many, and one that is a thousand times slower is still asked. */
+/* A member four times as fast gets about four times as many items; a very slow one still gets some. */
 START_TEST(test_shares_by_speed)
 {
     Backend backends[3] = {{.speed = 4e5, .fails_at = NONE, .name = "fast"},
@@ -143,7 +145,7 @@ START_TEST(test_failure)
     uint64_t done = 0;
     ck_assert(!pass_run(group, 0, 9216, &NEVER, &done, &error));
     ck_assert_str_eq(error.message, "error: second is lost");
-    ck_assert_uint_eq(done, 9216 - backends[1].count + 100); /* what the others did counts */
+    ck_assert_uint_eq(done, 9216 - backends[1].count + 100); /* items of the other members count */
     backend_group_interface()->close(group);
 }
 END_TEST
@@ -236,7 +238,7 @@ static const BackendInterface DEVICES = {.name = "gpu",
 static const BackendInterface *const BACKENDS[] = {&HOST, &DEVICES};
 static const BackendTable TABLE = {BACKENDS, 2, NULL};
 
-/* "host gpu:0 gpu:a", or "error: ..." */
+/* Returns "host gpu:0 gpu:a" or "error: ...". */
 static const char *choices_text(const char *backend, const char *devices)
 {
     static char text[512];
@@ -261,7 +263,7 @@ START_TEST(test_choices)
     ck_assert_str_eq(choices_text("gpu", "2"), "gpu:2");
     ck_assert_str_eq(choices_text("gpu", "2,a,0"), "gpu:2 gpu:a gpu:0");
     ck_assert_str_eq(choices_text("all", "1"), "host gpu:1");
-    ck_assert_str_eq(choices_text("all", NULL), "host gpu:0 gpu:2"); /* 1 does not promise the same bits */
+    ck_assert_str_eq(choices_text("all", NULL), "host gpu:0 gpu:2"); /* device 1 does not promise the same bits */
     ck_assert_str_eq(choices_text("gpu", "0,,1"), "error: --device=0,,1: a device is missing between the commas");
     ck_assert_str_eq(choices_text("gpu", "0,1,0"), "error: --device names 0 twice");
     ck_assert_str_eq(choices_text("none", NULL), "error: --backend=none: there is no such backend");

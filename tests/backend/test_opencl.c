@@ -1,9 +1,10 @@
-/* The OpenCL backend: devices, programs and their cache, the pipeline, and above all the bits of the CPU's images. */
+/* The OpenCL backend: devices, programs and their cache, the pipeline, and above all that images are bitwise the
+ * CPU's. */
 #include "backend/test_opencl.h"
 
 #include <sys/wait.h>
 
-/* Asked in a process of its own: a device that runs on threads of this process would not survive Check's forks. */
+/* Queried in a separate process: a device that runs on threads of this process would not survive Check's forks. */
 static bool device_exists(void)
 {
     OclDevice device;

@@ -14,7 +14,7 @@ TCase *opencl_bidirectional_tests(void);
 TCase *opencl_inspect_tests(void);
 TCase *opencl_pipeline_tests(void);
 
-/* The device of the tests: $OPENCL_TEST_DEVICE or the first. */
+/* The device under test: $OPENCL_TEST_DEVICE, or the first. */
 static inline void test_device(OclDevice *device)
 {
     Error error = {0};
@@ -22,7 +22,7 @@ static inline void test_device(OclDevice *device)
         ck_abort_msg("%s", error.message);
 }
 
-/* Whether its images are to be the CPU's, bit for bit. */
+/* Whether its images must be bitwise the CPU's. */
 static inline bool test_device_promises(void)
 {
     OclDevice device;
@@ -32,8 +32,8 @@ static inline bool test_device_promises(void)
     return device.info.same_bits;
 }
 
-/* One scene for most tests, so that one program is built for all of them: every kind of shape, a lamp and a point
- * light, and depth enough for some batches to end early. */
+/* The scene of most tests, so that one program is built for all of them: every kind of shape, an area and a point
+ * light, and enough depth for some batches to end early. */
 #define OPENCL_TEST_SCENE                                                                                              \
     "LookAt 0 0 -4  0 0 0  0 1 0\n"                                                                                    \
     "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 20\n"                                             \
@@ -46,7 +46,7 @@ static inline bool test_device_promises(void)
     "AreaLightSource \"diffuse\" \"rgb L\" [ 9 8 7 ]\n"                                                                \
     "Translate 0 1.9 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.5\n"
 
-/* Every material and kind of light that OPENCL_TEST_SCENE leaves out, textures, alpha, a lens. */
+/* All materials and kinds of light that OPENCL_TEST_SCENE lacks, textures, alpha, a lens. */
 #define OPENCL_MATERIALS_SCENE                                                                                         \
     "LookAt 0 1 -5  0 0 0  0 1 0\n"                                                                                    \
     "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\n"                                             \

@@ -40,7 +40,8 @@ static void device_agrees(const char *what, const RenderSetup *setup, const Rend
     fixture_destroy(&image);
 }
 
-/* Renders on both, with the film on the device, too, where it can; film, rays and diagnostics are to be the same. */
+/* Renders on both backends, also with the film on the device if it supports that; film, rays and diagnostics must be
+ * equal. */
 static void backends_agree(const char *what, RenderSetup setup)
 {
     OclDevice device;
@@ -76,7 +77,7 @@ END_TEST
 
 static const Integrator *(*const BIDIRECTIONAL[])(void) = {integrator_ibpt, integrator_bdpt};
 
-/* The scenes above, by both. */
+/* The scenes above, by both bidirectional integrators. */
 START_TEST(test_bits_of_bidirectional_paths)
 {
     if (test_device_promises())
@@ -89,7 +90,7 @@ START_TEST(test_bits_of_bidirectional_paths)
 }
 END_TEST
 
-/* The same by chains, in both schemes; pools and chains begin and end in words of the host's. */
+/* The same by chains, in both schemes; pools and chains start and end in words that the host reads. */
 START_TEST(test_bits_of_chains)
 {
     RenderSetup setup = {.text = _i < 2 ? OPENCL_TEST_SCENE : OPENCL_MATERIALS_SCENE,
@@ -107,15 +108,15 @@ START_TEST(test_bits_of_chains)
 }
 END_TEST
 
-/* Two surfaces in one place: both backends meet the same one everywhere. */
+/* Coincident surfaces: both backends hit the same one everywhere. */
 START_TEST(test_bits_of_coincident_surfaces)
 {
     backends_agree("coincident", (RenderSetup){.text = COINCIDENT_SCENE, .samples = 16, .max_depth = 4});
 }
 END_TEST
 
-/* Units so small that most contributions are clamped, that sums are full of smaller ones, and so large that most
- * vanish. */
+/* A quantum so small that most contributions are clamped; one with which sums saturate; one so large that most
+ * contributions vanish. */
 START_TEST(test_bits_of_sums_out_of_range)
 {
     static const int EXPONENTS[] = {-66, -61, 4};
@@ -135,7 +136,8 @@ START_TEST(test_bits_of_sums_out_of_range)
 }
 END_TEST
 
-/* Every scene of the bidirectional tests, by both; most have a program of their own, so this is for make check-long. */
+/* Every scene of the bidirectional tests, by both integrators; most need a program of their own, so only in make
+ * check-long. */
 START_TEST(test_bits_of_bidirectional_scenes)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
@@ -148,7 +150,7 @@ START_TEST(test_bits_of_bidirectional_scenes)
 }
 END_TEST
 
-/* The scenes of the tree are compared in command/test_cli.sh. */
+/* The repository's own scenes are compared in command/test_cli.sh. */
 static const char *const PUBLIC_SCENES[] = {"cornell-box/gray.pbrt", "veach-mis/gray.pbrt", "veach-bidir/gray.pbrt",
                                             "coffee/gray.pbrt"};
 
@@ -192,7 +194,7 @@ END_TEST
 TCase *opencl_bits_tests(void)
 {
     TCase *bits = tcase_create("bits");
-    tcase_set_timeout(bits, 600); /* the first time, kernels are built */
+    tcase_set_timeout(bits, 600); /* kernels are built on first use */
     tcase_set_tags(bits, "pictures");
     tcase_add_test(bits, test_bits_of_shapes);
     tcase_add_test(bits, test_bits_of_materials);

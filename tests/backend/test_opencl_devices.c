@@ -1,4 +1,4 @@
-/* Which devices there are and which one is meant. */
+/* Listing devices and selecting one. */
 #include "backend/test_opencl.h"
 
 #include "backend_cpu.h"
@@ -38,7 +38,7 @@ START_TEST(test_device_by_number_and_name)
     ck_assert(ocl_device_choose("0", &other, &error));
     ck_assert_ptr_eq(device.id, other.id);
     if (ocl_devices_find(&other, 1) != 1 || ocl_device_choose("1", &other, &error))
-        return; /* names of several devices may be the same */
+        return; /* several devices may have the same name */
     for (size_t i = 0; i <= strlen(device.info.name); ++i)
         name[i] = (char)(i % 2 == 0 ? toupper((unsigned char)device.info.name[i])
                                     : tolower((unsigned char)device.info.name[i]));
@@ -82,7 +82,8 @@ START_TEST(test_probe_finds_what_is_promised)
 }
 END_TEST
 
-/* From the nearest number of 24 or, for what lies halfway between two such, 25 bits, in units of the latter. */
+/* Distance from the nearest number of `bits` mantissa bits, in units of its last place. With 24, numbers halfway
+ * between two floats are 0.5 away; with 25, they are 0 away. */
 static long double distance_to_bits(long double x, int bits)
 {
     int exponent;
@@ -90,7 +91,7 @@ static long double distance_to_bits(long double x, int bits)
     return fabsl(mantissa - rintl(mantissa));
 }
 
-/* Shortcuts that are right for most numbers are wrong for many of these. */
+/* Many operands make common shortcuts fail that are right for most numbers. */
 START_TEST(test_probe_operands_are_hard)
 {
     enum { ITEMS = 1 << 16 };

@@ -1,5 +1,5 @@
-/* The whole state of every path, step by step: what the device holds is what the CPU holds, and --verify sees when it
- * is not. */
+/* The whole state of every path after every step: the device's equals the CPU's, and --verify notices when it does
+ * not. */
 #include "backend/test_opencl.h"
 #include "support/verify_fixture.h"
 
@@ -10,7 +10,7 @@
 
 static const atomic_int NEVER = 0;
 
-/* On the CPU and on a device. */
+/* Opens the setup on the CPU and on a device. */
 static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyPair *pair)
 {
     RenderSetup setups[2] = {setup, setup};
@@ -19,7 +19,7 @@ static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyP
 }
 
 /* Scenes that together have every shape, material, light and texture; batches smaller and larger than verify's blocks,
- * and one that is no multiple of a work-group. */
+ * and one that is not a multiple of the work-group size. */
 START_TEST(test_state_is_the_same)
 {
     const struct {
@@ -74,7 +74,7 @@ static void inspect_sum(void *context, BufferId buffer, const uint *words, uint 
         splat_sum(context, words, count, stride);
 }
 
-/* What inspect hands over is what run puts into the film, for a pass that begins anywhere. */
+/* inspect returns what run adds to the film, for a pass that starts anywhere. */
 START_TEST(test_inspect_is_run)
 {
     RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 5, .batch = 100, .threads = 1};
@@ -94,12 +94,12 @@ START_TEST(test_inspect_is_run)
     ck_assert_uint_eq(run.items, 357);
     ck_assert_uint_eq(inspected.items, 357);
     ck_assert_uint_eq(run.sum, inspected.sum);
-    ck_assert_uint_eq(before.closest_rays, after.closest_rays); /* inspecting is not rendering */
+    ck_assert_uint_eq(before.closest_rays, after.closest_rays); /* inspection does not count as rendering */
     verify_pair_close(&pair);
 }
 END_TEST
 
-/* A device that gets one bit of one word wrong, at an item of the second block, from the first closest hits on. */
+/* A device that gets one bit of one word wrong, for an item of the second block, from the first closest-hit step on. */
 START_TEST(test_fault_is_named)
 {
     RenderSetup setup = {.text = OPENCL_TEST_SCENE, .max_depth = 3};

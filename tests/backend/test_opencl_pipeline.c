@@ -1,4 +1,4 @@
-/* Limits of memory, failures on the way, and the record of what ran when. */
+/* Memory limits, failures during rendering, and the record of spans. */
 #include "backend/test_opencl.h"
 
 #include "backend_ocl.h"
@@ -56,7 +56,7 @@ START_TEST(test_batch_too_large)
     Attempt attempt;
     RenderSetup setup = SMALL;
     test_device(&device);
-    setup.batch = 1u << 26; /* the state of so many paths takes 19 GiB */
+    setup.batch = 1u << 26; /* the state of this many paths takes 19 GiB */
     if (device.info.allocation_limit > (uint64_t)setup.batch * 43 * 4)
         return;
     attempt_make(setup, NULL, NULL, &attempt);
@@ -66,12 +66,12 @@ START_TEST(test_batch_too_large)
     ck_assert_msg(fix != NULL, "%s", attempt.error.fix);
     ck_assert_uint_eq(attempt.result.samples, 0);
     attempt_end(&attempt);
-    unsigned long advice = strtoul(fix + strlen("--batch="), NULL, 10); /* is to be good */
+    unsigned long advice = strtoul(fix + strlen("--batch="), NULL, 10); /* the suggested batch must fit */
     ck_assert(advice > 0 && (double)advice * 43 * 4 <= (double)device.info.allocation_limit);
 }
 END_TEST
 
-/* Sizes that no machine has: nothing is allocated before they are compared. */
+/* Sizes that no machine has: limits are checked before anything is allocated. */
 START_TEST(test_scene_too_large)
 {
     FrameParams frame;
@@ -128,7 +128,8 @@ END_TEST
 
 /* ---- failure and stop ---------------------------------------------------------------------------------------------- */
 
-/* Batch 0 is the pilot's first; 4096 pilot paths are 16 batches. What was finished before is in the film, whole. */
+/* Batch 0 is the pilot's first; 4096 pilot paths are 16 batches. The film holds exactly the batches finished before the
+ * failure. */
 START_TEST(test_failure_on_the_way)
 {
     Attempt attempt;
@@ -145,7 +146,7 @@ START_TEST(test_failure_on_the_way)
 }
 END_TEST
 
-/* With the film on the device a pass that fails leaves nothing, and passes before it all. */
+/* With the film on the device, a failed pass contributes nothing, and the passes before it everything. */
 START_TEST(test_failure_with_film_on_device)
 {
     OclDevice device;
@@ -153,7 +154,7 @@ START_TEST(test_failure_with_film_on_device)
     RenderSetup setup = SMALL;
     test_device(&device);
     setup.film_on_device = true;
-    setup.samples = 70; /* three passes: the first is of 16384 paths, 64 batches behind the pilot's 16 */
+    setup.samples = 70; /* three passes; the first has 16384 paths, 64 batches after the pilot's 16 */
     if (!device.info.atomics64)
         return;
     setenv("TWINLIGHT_TEST_FAIL_BATCH", _i == 0 ? "20" : "81", 1);
@@ -196,7 +197,7 @@ END_TEST
 
 /* ---- the record -------------------------------------------------------------------------------------------------- */
 
-/* Kernels of one queue do not overlap; a batch is computed, then copied, then added. */
+/* Kernels in one queue do not overlap; a batch is computed, then copied, then added. */
 START_TEST(test_spans)
 {
     Attempt attempt;
@@ -225,7 +226,7 @@ START_TEST(test_spans)
         const BackendSpan *span = &spans[i];
         if (span->track == SPAN_COPY)
             TEST_TRUE(span->begin >= batch_end[span->batch]);
-        if (span->track == SPAN_FILM) /* another clock */
+        if (span->track == SPAN_FILM) /* host spans use another clock */
             TEST_TRUE(span->begin + 1000000 >= copied[span->batch]);
     }
     ck_assert(attempt.result.backend.ray_seconds > 0.0);

@@ -1,4 +1,4 @@
-/* The kernels' text, the cache of built programs, and what is said when they do not build. */
+/* Kernel source assembly, the cache of built programs, and error messages of failed builds. */
 #include "backend/test_opencl.h"
 
 #include "base/log.h"
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- scratch folders: absolute, as a cache's has to be ------------------------------------------------------------ */
+/* ---- scratch folders, absolute as required for caches ------------------------------------------------------------ */
 
 static void scratch_make(char *folder, size_t size)
 {
@@ -79,7 +79,7 @@ START_TEST(test_text_is_whole)
 }
 END_TEST
 
-/* A line behind an include has its own number again. */
+/* A line after an include has its original number. */
 START_TEST(test_text_keeps_lines)
 {
     char folder[PATH_MAX];
@@ -125,7 +125,7 @@ START_TEST(test_cache_keys_differ)
 }
 END_TEST
 
-/* The file of a key in the cache below `folder`. */
+/* The cache file of a key, below `folder`. */
 static void cache_file(const char *folder, CacheKey key, char *path, size_t size)
 {
     snprintf(path, size, "%s/twinlight/%016llx%016llx.program", folder, (unsigned long long)key.hash[0],
@@ -150,7 +150,7 @@ START_TEST(test_cache_gives_back_or_nothing)
     ck_assert_ptr_null(cache_read(key_of("one", "three"), &size));
     cache_file(folder, key, path, sizeof path);
     ck_assert_int_eq(chmod(path, 0600), 0);
-    for (long place = 0; place < 1000; place += 37) { /* one byte changed, anywhere */
+    for (long place = 0; place < 1000; place += 37) { /* changes one byte, at various places */
         FILE *file = fopen(path, "r+b");
         ck_assert_ptr_nonnull(file);
         fseek(file, place, SEEK_SET);
@@ -196,9 +196,9 @@ static void message_keep(const char *line, void *context)
     strncat(messages, line, sizeof messages - strlen(messages) - 1);
 }
 
-static bool driver_keeps = false; /* whether programs are left to the driver's cache */
+static bool driver_keeps = false; /* whether programs are left to the driver's own cache */
 
-/* Builds the one-kernel program in `folder`; true when it built, *cached when from the cache. */
+/* Builds the one-kernel program in `folder`; returns whether it built, *cached whether it came from the cache. */
 static bool small_build(const char *folder, bool *cached, Error *error)
 {
     OclDevice device;
@@ -216,7 +216,7 @@ static bool small_build(const char *folder, bool *cached, Error *error)
     return built;
 }
 
-/* A folder that has this text as its kernels, and both caches to come. */
+/* Makes a folder with this kernel source and places both caches in it. */
 static void folder_with_cache(char *folder, size_t size, const char *kernels)
 {
     scratch_make(folder, size);
@@ -235,7 +235,7 @@ START_TEST(test_program_comes_from_the_cache)
     ck_assert(!cached);
     ck_assert(small_build(folder, &cached, &error));
     ck_assert(cached);
-    /* Another text, another program. */
+    /* a different source is a different program */
     scratch_write(folder, "kernels.cl", "__kernel void k(__global int *a) { a[0] = 2; }\n");
     ck_assert(small_build(folder, &cached, &error));
     ck_assert(!cached);
@@ -278,7 +278,7 @@ START_TEST(test_program_left_to_the_driver)
 }
 END_TEST
 
-/* An entry whose frame is sound but which is no program of this device. */
+/* A well-formed cache entry that is not a program for this device. */
 START_TEST(test_program_that_the_device_refuses)
 {
     static const char TEXT[] = "#line 1 \"shared/kernels.cl\"\n__kernel void k(__global int *a) { a[0] = 3; }\n";

@@ -1,4 +1,4 @@
-/* The parts of `twinlight bench` that are not seen from outside. */
+/* Internals of `twinlight bench`. */
 #include "support/test_files.h"
 #include "support/test_util.h"
 
@@ -9,7 +9,7 @@
 
 START_TEST(test_quantiles)
 {
-    /* numpy.quantile([3, 1, 4, 1.5, 9], q), whose default is the same definition. */
+    /* numpy.quantile([3, 1, 4, 1.5, 9], q), whose default method is the same. */
     double values[] = {3.0, 1.0, 4.0, 1.5, 9.0};
     ck_assert_double_eq_tol(sample_quantile(values, 5, 0.1), 1.2, 1e-12);
     ck_assert_double_eq_tol(sample_quantile(values, 5, 0.5), 3.0, 1e-12);
@@ -52,7 +52,8 @@ START_TEST(test_r_hat)
     ck_assert_double_eq_tol(groups[2].mean, 3.0, 1e-15);
     ck_assert_double_eq_tol(groups[2].squares, 30.0, 1e-12);
     ck_assert_double_eq_tol(sample_r_hat(groups, 2), sqrt(7.0 / 6.0), 1e-12);
-    /* With the third: W = (1 + 1 + 7.5) / 3, means 2, 3, 3 with variance 1/3, n = 11/3. One draw is no group. */
+    /* With the third group: W = (1 + 1 + 7.5) / 3, means 2, 3, 3 with variance 1/3, n = 11/3. A single draw is no
+     * group. */
     ck_assert_double_eq_tol(sample_r_hat(groups, 3), sqrt(8.0 / 11.0 + (1.0 / 3.0) / (9.5 / 3.0)), 1e-12);
     ck_assert_double_eq(sample_r_hat(groups, 4), sample_r_hat(groups, 3));
     ck_assert(isnan(sample_r_hat(groups, 1)) && isnan(sample_r_hat(groups + 2, 2)));
@@ -85,7 +86,7 @@ START_TEST(test_numbers)
 }
 END_TEST
 
-/* What a stream function writes. */
+/* Closes the memory stream and checks the text written to it. */
 static void stream_is(const char *expected, FILE *stream, char **text)
 {
     fclose(stream);
@@ -133,7 +134,7 @@ START_TEST(test_records)
     test_file_write(image, "x", 1);
     ck_assert(bench_record_read(image, &read));
     ck_assert_mem_eq(&read, &record, sizeof record);
-    /* Every beginning of it is none. */
+    /* Every truncation of it is invalid. */
     size_t size;
     unsigned char *bytes = test_file_read(test_path("image.exr.record"), &size);
     for (size_t part = 0; part + 1 < size; part += 13) {
@@ -144,7 +145,7 @@ START_TEST(test_records)
 }
 END_TEST
 
-/* The number behind the nth `name` in an element of the text. */
+/* The number after the nth `name` in an element of the text. */
 static double attribute(const char *text, const char *element, const char *name)
 {
     const char *at = strstr(text, element);
@@ -154,7 +155,7 @@ static double attribute(const char *text, const char *element, const char *name)
     return atof(at + strlen(name));
 }
 
-/* On logarithmic axes a power law's points lie on a line, and the level where it belongs. */
+/* On logarithmic axes, the points of a power law lie on a straight line, and the level line is at its value. */
 START_TEST(test_chart)
 {
     const ChartLine line = {.name = "a<b",
@@ -183,7 +184,8 @@ START_TEST(test_chart)
 }
 END_TEST
 
-/* An axis of a small part of a decade, of many, and of one value has numbers to read it by, each of another value. */
+/* Axes over a small part of a decade, over many decades, and of a single value have labels, all with different
+ * numbers. */
 START_TEST(test_chart_numbers)
 {
     static const double RANGES[][2] = {{0.35, 0.47}, {0.41, 0.43}, {0.9, 1.2}, {1e-5, 20.0}, {3.0, 3.0}, {61e3, 69e3}};

@@ -1,6 +1,6 @@
 #!/bin/sh
-# `twinlight bench` as its user meets it: a tiny report, whose figures are computed again from its images, going on where
-# an earlier call ended, and signals. Runs in the build folder; srcdir is the source folder (both set by `make check`).
+# End-to-end tests of `twinlight bench`: a tiny report whose figures are recomputed from its images, resuming after an
+# earlier call, and signals. Runs in the build folder; srcdir is the source folder (both set by `make check`).
 set -u
 
 # shellcheck source=tests/support/cli.sh
@@ -34,7 +34,7 @@ done
 result 'tiny.tsv has not a line for each of 8 runs' $?
 grep -q '10 of 10' err
 result 'progress does not count all 10 renderings' $?
-# Nothing but pieces of the page itself, and of the name space.
+# The page references only its own elements, embedded data and XML namespaces.
 ! grep -oE '(src|href)="[^"]{0,12}' tiny.html | grep -vE '"(#|data:image)' | grep -q .
 result 'the page refers to something outside of it' $?
 ! grep -q '<script' tiny.html
@@ -85,7 +85,7 @@ for name, s in series.items():
     slope = sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
     assert math.isclose(s["by_time"]["slope"], slope, rel_tol=1e-5, abs_tol=1e-6), (s["by_time"], slope)
     assert math.isclose(s["speedup"], series["pt"]["equal_seconds"] / s["equal_seconds"], rel_tol=1e-6)
-    # The table of the page has the median of the longest time to three digits.
+    # The page's table shows the median of the longest time to three digits.
     median = s["groups"][-1]["rel_mse"][1]
     digits = "%.*f" % (2 - math.floor(math.log10(median)), median)
     assert digits in text, digits
@@ -97,7 +97,7 @@ PYTHON
     result 'the report is not well-formed, or has figures that are not those of its images' $?
 fi
 
-# The same again renders nothing, another run only what is new.
+# Repeating the command renders nothing; one more run renders only the new ones.
 find tiny.runs -name '*.record' | sort >before
 touch mark
 tiny --runs=2
@@ -114,7 +114,7 @@ tiny --runs=3
 [ "$(find tiny.runs -name '*.record' -newer mark | wc -l)" -eq 1 ]
 result 'a record that was cut off is taken for whole' $?
 
-# A reference that is given, and a signal: what is finished is reported.
+# A given reference, and a signal: what is finished is reported.
 reference=$(find tiny.runs -name '*-mean.exr')
 $with_signals "$program" bench --quiet --integrators=pt,bdpt --times=0.1s,60s --runs=1 --resolution=32x24 --max-depth=4 \
     --reference="$reference" -o ended.html "$scene" >out 2>err &

@@ -29,9 +29,9 @@ START_TEST(test_smooth_escape)
 }
 END_TEST
 
-/* One random walk through the layers, as the material is defined: a photon from above, a dielectric interface, a base
- * that absorbs 1 - rho and reflects diffusely. Returns the direction in which it leaves, z = 0 when absorbed; *specular
- * tells that it was reflected by the coat's outside. `coat` is the interface alone. */
+/* One random walk through the layers that define the material: a photon from above, a dielectric interface, a base that
+ * absorbs 1 - rho and reflects diffusely. Returns the direction in which it leaves, z = 0 if absorbed; *specular tells
+ * whether the outside of the coat reflected it. `coat` is the interface alone. */
 static Vec3 layers_walk(const TestScene *scene, const Bsdf *coat, Vec3 wo, double rho, TestRandom *random,
                         bool *specular)
 {
@@ -57,8 +57,8 @@ static Vec3 layers_walk(const TestScene *scene, const Bsdf *coat, Vec3 wo, doubl
 #define BINS 10
 #define PHOTONS 200000
 
-/* Photons that leave through the base, by cos^2 of their direction, against the diffuse term's integral over the bin;
- * p > 1e-3 over all cases (Sidak). */
+/* Histogram over cos^2 of the direction of photons that leave via the base, against the integral of the diffuse term
+ * over each bin; p > 1e-3 over all cases (Sidak). */
 START_TEST(test_smooth_coat_is_the_layers)
 {
     TestScene scene;
@@ -88,7 +88,7 @@ START_TEST(test_smooth_coat_is_the_layers)
             }
             expected[BINS + 1] = PHOTONS * (double)fresnel_dielectric(wo.z, 1.5f);
             expected[BINS] = fmax(0.0, expected[BINS] - expected[BINS + 1]);
-            if (r == 2) { /* rho = 1: nothing is absorbed; a handful of walks fail at grazing angles */
+            if (r == 2) { /* rho = 1: nothing is absorbed; a few walks fail at grazing angles */
                 REQUIRE(observed[BINS] + expected[BINS] < 1e-3 * PHOTONS);
                 observed[BINS] = expected[BINS] = 0.0;
             }
@@ -99,7 +99,7 @@ START_TEST(test_smooth_coat_is_the_layers)
 }
 END_TEST
 
-/* What of a diffuse field below the interface comes back down. */
+/* Fraction of a diffuse field below the interface that it reflects back down. */
 static double inside_reflectance(const TestScene *scene, const Bsdf *coat, TestRandom *random)
 {
     double sum = 0.0;
@@ -114,9 +114,10 @@ static double inside_reflectance(const TestScene *scene, const Bsdf *coat, TestR
     return sum / PHOTONS;
 }
 
-/* A rough coat differs from the walk in nothing but R_i: the walk's is what single scattering leaves of it, the closed
- * form's is 1 - escape, which gives the rest back to the base. With the walk's own R_i put in, the closed form says
- * what the walk does (to 4 standard deviations); with its own it is brighter, by the printed figures. */
+/* For a rough coat, closed form and random walk differ only in the internal reflectance R_i: the walk's is from single
+ * scattering, which loses energy; the closed form's is 1 - escape, which returns that energy to the base. With the
+ * walk's R_i, the closed form predicts the walk's albedo (to 4 standard deviations); with its own it is brighter, by
+ * the printed figures. */
 START_TEST(test_rough_coat_is_the_layers)
 {
     const float alphas[] = {0.01f, 0.1f, 0.3f, 0.6f};
@@ -165,7 +166,8 @@ static double transmitted_share(const TestScene *scene, const Bsdf *coat, Vec3 w
     return sum / PHOTONS;
 }
 
-/* A table says what the rough interface transmits, in any direction; the range's table says nearly the same. */
+/* The table's transmission equals the rough interface's in every direction; the table for ranges of roughness nearly
+ * does. */
 START_TEST(test_table_is_transmission)
 {
     TestScene scene;
@@ -197,7 +199,7 @@ START_TEST(test_table_is_transmission)
 }
 END_TEST
 
-/* Textured roughness: no gain either, isotropic or not. */
+/* Textured roughness: no energy gain, isotropic or not. */
 START_TEST(test_range_table_furnace)
 {
     TestScene scene;
@@ -237,7 +239,7 @@ START_TEST(test_range_table_furnace)
 }
 END_TEST
 
-/* Tables are the same every time, and both sides of the coat are alike. */
+/* Building a table is deterministic, and both sides of the coat give the same one. */
 START_TEST(test_table_build)
 {
     Error error;

@@ -1,9 +1,9 @@
-/* The white furnace: no BSDF makes energy, and a rough one loses what single scattering loses. */
+/* White furnace: no BSDF gains energy, and a rough one loses only what single scattering loses. */
 #include "support/bsdf_cases.h"
 
 #define POINTS 65536
 
-/* Mean weight over the unit cube by Roberts' R3 sequence; importance, so that refraction scales nothing. */
+/* Mean weight over the unit cube by Roberts' R3 sequence; TRANSPORT_IMPORTANCE, so that refraction does not scale. */
 static double albedo(const TestScene *scene, const Bsdf *bsdf, Vec3 wo)
 {
     const double g = 1.2207440846057596;
@@ -18,7 +18,7 @@ static double albedo(const TestScene *scene, const Bsdf *bsdf, Vec3 wo)
     return sum / POINTS;
 }
 
-/* Without a microfacet in them, they lose nothing. */
+/* BSDFs without microfacets lose nothing. */
 START_TEST(test_smooth_furnace)
 {
     static const struct {
@@ -35,7 +35,7 @@ START_TEST(test_smooth_furnace)
         for (int d = 0; d < TEST_WO_COUNT; ++d) {
             Bsdf bsdf = test_bsdf(&scene, WHITE[k].kind, 0.0f, 0.0f, WHITE[k].eta, WHITE[k].color0, WHITE[k].color1);
             double a = albedo(&scene, &bsdf, test_wo(d));
-            double tolerance = WHITE[k].eta < 1.0f ? 5e-3 : 1e-3; /* a step at the critical angle */
+            double tolerance = WHITE[k].eta < 1.0f ? 5e-3 : 1e-3; /* discontinuous at the critical angle */
             REQUIRE_MSG(fabs(a - 1.0) < tolerance, "kind %u, eta %g, direction %d: albedo %g", WHITE[k].kind,
                         (double)WHITE[k].eta, d, a);
         }
@@ -43,7 +43,7 @@ START_TEST(test_smooth_furnace)
 }
 END_TEST
 
-/* Least albedo over the directions of TEST_ALPHAS[1...] that single scattering may have. Conductor: reflectance 1.
+/* Lowest albedo over directions that single scattering may have, for TEST_ALPHAS[1...]. Conductor: reflectance 1.
  * Dielectric 1.5, from both sides. Coated: eta 1.5, rho = 1. */
 static const double LEAST_CONDUCTOR[] = {1.0, 0.9017, 0.9629, 0.8952, 0.8152, 0.3068, 0.8521};
 static const double LEAST_DIELECTRIC[] = {1.0, 0.9053, 0.9662, 0.9397, 0.7668, 0.4656, 0.8520};
@@ -89,7 +89,7 @@ static double normal_albedo(double alpha)
     const int cells = 200000;
     double sum = 0.0;
     for (int k = 0; k < cells; ++k) {
-        double u = (k + 0.5) / cells; /* of the normals' distribution: tan^2 t = alpha^2 u / (1 - u) */
+        double u = (k + 0.5) / cells; /* quantile of the normal distribution: tan^2 t = alpha^2 u / (1 - u) */
         double t = atan(alpha * sqrt(u / (1.0 - u)));
         if (t < TEST_PI / 4.0)
             sum += 2.0 / (1.0 + sqrt(1.0 + pow(alpha * tan(2.0 * t), 2.0)));

@@ -1,4 +1,4 @@
-/* Values against textbook formulas in double precision, written as the textbooks have them. */
+/* Values against textbook formulas, evaluated in double precision in the textbooks' form. */
 #include "support/bsdf_cases.h"
 
 #include <complex.h>
@@ -24,7 +24,7 @@ static double dot3(Double3 a, Double3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/* The unit vector that v rounds: Snell's law holds between unit vectors only. */
+/* The unit vector of which v is the rounding: Snell's law holds for unit vectors only. */
 static Double3 double3(Vec3 v)
 {
     Double3 w = {(double)v.x, (double)v.y, (double)v.z};
@@ -74,8 +74,8 @@ static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, doub
     return value;
 }
 
-/* Walter et al. 2007, eq. 16, 17 and 21: eta_i, eta_o are absolute, f as it acts on importance times (eta_o/eta_i)^2,
- * that is on radiance. */
+/* Walter et al. 2007, eq. 16, 17 and 21: eta_i, eta_o are absolute; f for importance times (eta_o/eta_i)^2, that is,
+ * for radiance. */
 static TextbookValue textbook_refraction(Double3 wo, Double3 wi, double ax, double ay, double eta_o, double eta_i)
 {
     Double3 h = {-(eta_o * wo.x + eta_i * wi.x), -(eta_o * wo.y + eta_i * wi.y), -(eta_o * wo.z + eta_i * wi.z)};
@@ -137,7 +137,7 @@ START_TEST(test_fresnel_conductor)
 }
 END_TEST
 
-/* The conductor made of a reflectance has it at normal incidence. */
+/* A conductor derived from a reflectance has that reflectance at normal incidence. */
 START_TEST(test_conductor_reflectance)
 {
     for (int n = 0; n <= 1000; ++n) {
@@ -160,7 +160,7 @@ static void value_check(BsdfValue value, TextbookValue exact, double tolerance, 
                 exact.f_cos, exact.pdf_w);
 }
 
-/* A direction in the lobe (by a sample), so that narrow lobes are compared where they have a value. */
+/* wi is a sampled direction, so that narrow lobes are compared where they are not zero. */
 START_TEST(test_microfacets_against_textbook)
 {
     TestScene scene;
@@ -192,7 +192,7 @@ START_TEST(test_microfacets_against_textbook)
             h = (Double3){eta_o * o.x + eta_i * i.x, eta_o * o.y + eta_i * i.y, eta_o * o.z + eta_i * i.z};
         double length = sqrt(dot3(h, h));
         double graze = fmin(fabs(dot3(o, h)), fabs(dot3(i, h))) / length;
-        double tolerance = 2e-5 + 2e-6 / (length * fmin(fmin(ax, ay), graze)); /* digits of the half vector */
+        double tolerance = 2e-5 + 2e-6 / (length * fmin(fmin(ax, ay), graze)); /* cancellation in the half vector */
         if (reflected) {
             exact = textbook_reflection(o, i, ax, ay, conductor ? 0.2 + 3.91 * IMAGINARY : eta_i / eta_o, !conductor);
             double cos_m = 0.5 * length, critical = fabs(1.0 - (1.0 - cos_m * cos_m) * pow(eta_o / eta_i, 2.0));

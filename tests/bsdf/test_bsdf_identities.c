@@ -1,4 +1,4 @@
-/* What holds for every pair of directions: weights, reciprocity, reverse densities, adjoints, finite values. */
+/* Identities for arbitrary pairs of directions: weights, reciprocity, reverse densities, adjoints, finite values. */
 #include "support/bsdf_cases.h"
 
 #define POOL 64
@@ -35,7 +35,7 @@ static bool near_float(float a, float b, float relative)
     return fabsf(a - b) <= relative * fmaxf(fabsf(a), fabsf(b)) + 1e-30f;
 }
 
-/* A sample's densities are those of eval in its direction, and weight = f_cos / pdf. */
+/* A sample's densities equal eval's for its direction, and weight = f_cos / pdf. */
 START_TEST(test_weight_is_value_over_density)
 {
     TestScene scene;
@@ -67,7 +67,7 @@ START_TEST(test_weight_is_value_over_density)
 }
 END_TEST
 
-/* Index on wi's side over wo's side for a refracting pair, else 1. */
+/* Relative index, wi's side over wo's, for a refracting pair, else 1. */
 static float pair_eta(const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
     if (bsdf->kind != MATERIAL_DIELECTRIC || wo.z * wi.z > 0.0f)
@@ -83,8 +83,8 @@ static void pair_check(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 w
     BsdfValue b = bsdf_eval(&scene->view, bsdf, wi, wo, TRANSPORT_RADIANCE);
     BsdfValue adjoint = bsdf_eval(&scene->view, bsdf, wo, wi, TRANSPORT_IMPORTANCE);
     float eta = pair_eta(bsdf, wo, wi), f_a = a.f_cos.x / fabsf(wi.z), f_b = b.f_cos.x / fabsf(wo.z);
-    /* Half vectors of nearly opposite directions lose digits, the more the narrower the lobe is; so do the cosines of
-     * directions that graze the microfacet. */
+    /* Tolerance: half vectors of nearly opposite directions lose digits, which matters more for narrower lobes; so do
+     * cosines of directions that graze the microfacet. */
     Vec3 half = vec3_mad(wo, eta, wi);
     float h = vec3_length(half);
     float graze = fminf(fabsf(vec3_dot(wo, half)), fabsf(vec3_dot(wi, half))) / h;
@@ -118,8 +118,8 @@ START_TEST(test_reciprocity)
 }
 END_TEST
 
-/* A smooth refraction retraced has the same probability, the inverse eta, and the weights 1 / eta^2 (radiance) and 1
- * (importance). */
+/* The reverse of a smooth refraction has the same probability, the inverse eta, and the weights 1 / eta^2 (radiance)
+ * and 1 (importance). */
 START_TEST(test_smooth_refraction)
 {
     TestScene scene;
@@ -207,7 +207,7 @@ START_TEST(test_extreme_inputs)
                 vec3_finite(sample.wi) && fabs((double)vec3_length(sample.wi) - 1.0) < 1e-5,
             "kind %u alpha %g %g eta %g: weight %g pdf %g %g", bsdf.kind, (double)bsdf.alpha_x, (double)bsdf.alpha_y,
             (double)bsdf.eta, (double)sample.weight.x, (double)sample.pdf_w, (double)sample.pdf_rev_w);
-        if (bsdf.eta >= 0.5f) /* below, a coat lets light out in a narrow cone that is not sampled as such */
+        if (bsdf.eta >= 0.5f) /* with lower eta, a coat emits light in a narrow cone that sampling does not follow */
             largest_weight = fmax(largest_weight, (double)vec3_max_component(sample.weight));
     }
     printf("# largest weight of a sample of importance: %.3g\n", largest_weight);

@@ -1,12 +1,12 @@
-/* bsdf_invert against bsdf_sample and bsdf_eval: the point that it finds draws the direction, and the densities of all
- * lobes, each times the probability of its choice, are that of the direction. */
+/* bsdf_invert against bsdf_sample and bsdf_eval: the point that it returns samples the given direction, and the
+ * densities of all lobes, each times its selection probability, add up to the direction's density. */
 #include "support/bsdf_cases.h"
 
-#include "bsdf/invert.h"
+#include "bsdf/bsdf.h"
 
 #define DRAWS 20000
 
-/* Probability of choosing the lobe that the inverse has found, given all but u_lobe. */
+/* Probability of selecting the lobe that the inverse found, over u_lobe. */
 static double lobe_probability(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, bool base)
 {
     bool flip = wo.z<0.0f, same = wo.z * wi.z> 0.0f;
@@ -27,7 +27,7 @@ static double lobe_probability(const TestScene *scene, const Bsdf *bsdf, Vec3 wo
     return same ? reflectance : 1.0 - reflectance;
 }
 
-/* Sum over the lobes, which a grid of u_lobe finds all. */
+/* Sum over the lobes; a grid of u_lobe finds them all. */
 static double density_of_lobes(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
     double sum = 0.0;
@@ -43,12 +43,12 @@ static double density_of_lobes(const TestScene *scene, const Bsdf *bsdf, Vec3 wo
 }
 
 typedef struct InverseCounts {
-    double near; /* in: as far is still near */
+    double near; /* in: distances up to this one do not count as far */
     int drawn, lost, far, wrong;
     double farthest;
 } InverseCounts;
 
-/* One direction that a random point draws. Distances count in units of the root of its solid angle. */
+/* Inverts one sampled direction. Distances are in units of 1 / sqrt(pdf_w), the root of the sample's solid angle. */
 static void inverse_try(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, TestRandom *random, bool density,
                         InverseCounts *counts)
 {
@@ -77,9 +77,9 @@ static void inverse_try(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, TestR
     }
 }
 
-/* Nearly always a direction is drawn again to 0.01 of the lobe's width; from 0.1 degrees above the surface, where the
- * half vector of floats is that coarse beside a lobe of alpha 1e-3, to 0.2. Rounding moves what is at the edge of a
- * choice between lobes to its other side. */
+/* Nearly every direction is reproduced to 0.01 of the lobe's width; to 0.2 at 0.1 degrees above the surface, where the
+ * half vector in floats is that coarse relative to a lobe of alpha 1e-3. Directions at the border between two lobes may
+ * round to the other side. */
 START_TEST(test_inverse)
 {
     const struct TestMaterial *kind = &TEST_MATERIALS[_i];
@@ -111,8 +111,8 @@ START_TEST(test_inverse)
 }
 END_TEST
 
-/* For independent directions and lobe numbers: where an inverse is found, it draws the direction with that lobe number,
- * and its density is positive. Narrow lobes are left out: in their tails floats do not resolve half vectors. */
+/* For independent directions and lobe numbers: if an inverse is found, it samples the direction with that lobe number,
+ * and its density is positive. Narrow lobes are excluded: in their tails floats do not resolve half vectors. */
 START_TEST(test_any)
 {
     const struct TestMaterial *kind = &TEST_MATERIALS[_i];

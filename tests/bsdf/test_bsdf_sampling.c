@@ -4,10 +4,10 @@
 #define SAMPLES 200000
 #define CELLS 24
 
-/* Cells over one hemisphere in z = |cos| and azimuth, both spaced as sinh around a lobe's peak: linearly where a GGX
- * lobe is, logarithmically in its tails, and with the horizon as a border. */
+/* Cells over one hemisphere in z = |cos| and azimuth, both spaced as sinh around a lobe's peak: linear within a GGX
+ * lobe, logarithmic in its tails, and bounded by the horizon. */
 typedef struct LobeGrid {
-    double z0, z_scale, z_low, z_range; /* low and range: of asinh, for z in 0..1 */
+    double z0, z_scale, z_low, z_range; /* low, range: of asinh, for z in 0..1 */
     double phi0, phi_scale, phi_range;
 } LobeGrid;
 
@@ -37,7 +37,7 @@ static Vec3 grid_direction(const LobeGrid *grid, double a, double b, double side
     return vec3((float)(sine * cos(phi)), (float)(sine * sin(phi)), (float)(side * z));
 }
 
-/* Close to the pole z follows from x and y, which have the digits. */
+/* Close to the pole z is computed from x and y, which have more significant digits. */
 static int grid_cell(const LobeGrid *grid, Vec3 w)
 {
     double r2 = (double)w.x * (double)w.x + (double)w.y * (double)w.y;
@@ -54,7 +54,7 @@ typedef struct LobeCase {
     Bsdf bsdf;
     Vec3 wo;
     double alpha;
-    LobeGrid grid[2]; /* [0] wo's side, [1] the other one */
+    LobeGrid grid[2]; /* [0] wo's side, [1] the other side */
     double side[2];
 } LobeCase;
 
@@ -65,8 +65,8 @@ static double lobe_density(const LobeCase *lobe, int s, double a, double b)
     return (double)bsdf_eval(&lobe->scene->view, &lobe->bsdf, lobe->wo, wi, TRANSPORT_RADIANCE).pdf_w * jacobian;
 }
 
-/* Integral over a square by Gauss-Legendre 3 x 3, subdivided until the four quarters agree with the whole. At the
- * horizon (a = 0) always subdivided: for a grazing wo, refraction ends at |z| = |wo.z| / eta, a step that no node
+/* Integral over a square by Gauss-Legendre 3 x 3, subdivided until the four quarters agree with the whole. Always
+ * subdivided at the horizon (a = 0): for a grazing wo, refraction ends at |z| = |wo.z| / eta, a step that no node
  * sees. */
 static double lobe_integrate(const LobeCase *lobe, int s, double a, double b, double width, int depth)
 {
@@ -104,7 +104,7 @@ static LobeCase lobe_make(const TestScene *scene, Bsdf bsdf, Vec3 wo)
     return lobe;
 }
 
-/* The last cell counts deltas and failed samples. Returns the p-value; *integral is that of the density. */
+/* The last cell counts deltas and failed samples. Returns the p-value; *integral is the density's. */
 static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral, double *succeeded)
 {
     static double observed[2 * CELLS * CELLS + 1], expected[2 * CELLS * CELLS + 1];
@@ -135,8 +135,20 @@ static double lobe_p_value(const LobeCase *lobe, uint64_t seed, double *integral
 
 #define TOTAL_CASES ((3 + 4 * (TEST_ALPHA_COUNT - 1)) * TEST_WO_COUNT)
 
+/* A kind of BSDF_LIST with a lobe that is no delta is among the cases of these tests. */
+START_TEST(test_every_kind_has_a_case)
+{
+    for (uint kind = 0; kind < MATERIAL_MIX; ++kind) {
+        bool found = (bsdf_traits(kind) & (TRAIT_COSINE | TRAIT_MICROFACET)) == 0u;
+        for (int i = 0; i < TEST_MATERIAL_COUNT; ++i)
+            found |= TEST_MATERIALS[i].kind == kind;
+        ck_assert_msg(found, "support/bsdf_cases.h has no case of material %u", kind);
+    }
+}
+END_TEST
+
 /* Samples follow pdf_w for every BSDF, roughness and direction: p > 1e-3 for all cases together (Sidak). The density
- * integrates to the share of samples that succeed, within 5 standard deviations plus the quadrature's error. */
+ * integrates to the fraction of samples that succeed, within 5 standard deviations plus the quadrature error. */
 START_TEST(test_samples_follow_density)
 {
     TestScene scene;
@@ -165,7 +177,7 @@ START_TEST(test_samples_follow_density)
 }
 END_TEST
 
-/* Delta lobes are drawn as often as their pdf_w says. */
+/* Delta lobes are sampled with the probability that pdf_w states. */
 START_TEST(test_delta_lobes_follow_probability)
 {
     static const uint DELTA_KINDS[] = {MATERIAL_CONDUCTOR, MATERIAL_DIELECTRIC, MATERIAL_THIN_DIELECTRIC,
@@ -203,6 +215,7 @@ TCase *bsdf_sampling_tests(void)
 {
     TCase *tcase = tcase_create("sampling");
     tcase_set_timeout(tcase, 120);
+    tcase_add_test(tcase, test_every_kind_has_a_case);
     tcase_add_loop_test(tcase, test_samples_follow_density, 0, TEST_MATERIAL_COUNT);
     tcase_add_test(tcase, test_delta_lobes_follow_probability);
     return tcase;

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The program as its user meets it: exit statuses, messages, files and signals. Runs in the build folder; srcdir is the
+# End-to-end tests of the program: exit statuses, messages, files and signals. Runs in the build folder; srcdir is the
 # source folder (both set by `make check`).
 set -u
 
@@ -95,7 +95,7 @@ expect 2 '--device is for devices' pyramid --device=0 "$scene"
 expect 2 '' compare
 expect 2 '' compare one.exr
 
-# ---- what cannot be read or written -------------------------------------------------------------------------------
+# ---- files that cannot be read or written -------------------------------------------------------------------------
 
 expect 1 'missing.pbrt' render missing.pbrt
 expect 1 'missing.pbrt' info missing.pbrt
@@ -118,7 +118,7 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 file_missing cornell.exr
 
-# ---- scenes that are none, or wrong -------------------------------------------------------------------------------
+# ---- files that are no scenes, and scenes with errors -------------------------------------------------------------
 
 not_a_scene() {
     printf '%b' "$1" >other
@@ -135,7 +135,8 @@ not_a_scene '\0037\0213\0010' 'compressed by gzip'
 printf 'Film "image"\nWorldBegin\nMaterial "matte"\n' >v3.pbrt
 expect 1 "convert the scene with pbrt --upgrade" info v3.pbrt
 
-# Every error once, in order; not what follows from one, such as the material that line 5 does not make.
+# Every error is reported once, in order, but not what follows from another, such as the material that line 5 fails to
+# make.
 printf '%s\n' 'Film "rgb" "integer xresolution" [ -3 ]' 'Camera "perspectiv"' 'WorldBegin' 'Material "matte"' \
     'MakeNamedMaterial "a" "string type" "diffus"' 'NamedMaterial "a"' 'Shape "sphere" "float radius" [ x ]' \
     'Shape "sphere"' 'AttributeBegin' 'LightSource "pointy"' 'WorldBegin' >wrong.pbrt
@@ -263,7 +264,7 @@ result 'pyramid: --unweighted changes nothing' $?
 expect 0 'lights        2' info "$scene"
 expect 0 '"feature_mask"' info --json "$scene"
 
-# One vertex that is far from all others is said.
+# A single vertex far from all others causes a warning.
 far() {
     {
         echo 'LookAt 0 -3 2  0 0 0  0 0 1 Camera "perspective" WorldBegin LightSource "infinite" AttributeBegin'
@@ -280,7 +281,8 @@ expect 0 '' render --resolution=4x4 --spp=1 -o far.exr far.pbrt
 ! grep -q 'of the primitives' err
 result 'a vertex that is not far is said to be' $?
 
-# Light that no path can bring is said to be missing, where glass is smooth and the sun a point; not where it is rough.
+# A warning says that light is missing if no path can carry it: the glass is smooth and the sun a point. Not if it is
+# rough.
 pool() {
     printf '%s\n' 'WorldBegin LightSource "distant"' 'Material "diffuse"' \
         'Shape "bilinearmesh" "point3 P" [ -9 -1 -9  9 -1 -9  -9 -1 9  9 -1 9 ]' \
@@ -294,7 +296,7 @@ expect 0 '' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool
 ! grep -q 'is found by no integrator' err
 result 'rough glass is taken for smooth' $?
 
-# What is too faint beside the rest counts as black, and how much of the picture that is.
+# Contributions too faint compared with the rest count as black, and a message says for how much of the image.
 printf '%s\n' 'LookAt 0 1 -6  0 0 0  0 1 0 Camera "perspective" WorldBegin' \
     'LightSource "infinite" "rgb L" [ 1e-12 1e-12 1e-12 ]' 'LightSource "point" "point3 from" [ 0 2 0 ]' \
     'Material "diffuse" Shape "bilinearmesh" "point3 P" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ]' >faint.pbrt
@@ -385,14 +387,15 @@ else
     file_missing batch.exr
     expect 1 'nowhere/trace.json' render --backend=opencl --trace=nowhere/trace.json "$scene"
 
-    # Another folder of sources: another program, built from what is there.
+    # Another source folder is another program, built from what is there.
     cp -r "${scene%/*/*}"/shared sources
     echo 'this is not OpenCL' >>sources/bsdf/fresnel.h
     line=$(wc -l <sources/bsdf/fresnel.h)
     TWINLIGHT_KERNELS=$work/sources expect 1 "shared/bsdf/fresnel.h:$line" render --backend=opencl "$scene"
     TWINLIGHT_KERNELS=$work/none expect 1 "$work/none/kernels.cl" render --backend=opencl "$scene"
 
-    # A device that fails on its way: batches 0 ... 63 are the pilot's 4096 paths, three of 64 paths each follow.
+    # A device that fails during rendering: batches 0 ... 63 are the pilot's 4096 paths, followed by three of 64 paths
+    # each.
     TWINLIGHT_TEST_FAIL_BATCH=66 expect 1 'what was finished, 0.666667 samples per pixel, is in fail.exr' \
         render --integrator=pt --backend=opencl --batch=64 --resolution=16x12 --samples=1 -o fail.exr "$scene"
     file_exists fail.exr
@@ -418,7 +421,7 @@ fi
 
 # ---- long runs: signals, saving -----------------------------------------------------------------------------------
 
-# long_render ARGUMENT...: in the background, process number in $process, ended after three minutes whatever happens.
+# long_render ARGUMENT...: renders in the background, process number in $process; ends after three minutes in any case.
 long_render() {
     $with_signals "$program" render --quiet --resolution=32x32 --time=180s "$@" "$scene" >out 2>err &
     process=$!
@@ -438,7 +441,8 @@ for signal in INT TERM; do
     result "SIG$signal: the statistics do not say so" $?
 done
 
-# The time that is given ends it, and is used: how much later it ends is the machine's affair. A minute means it hangs.
+# The given time ends the rendering and is used up; by how much it is exceeded depends on the machine. More than a
+# minute counts as hanging.
 timeout 60 "$program" render --quiet --resolution=32x32 --time=1s --stats=time.json -o time.exr "$scene"
 result '--time: exit status' $?
 grep -q '"stopped": false' time.json
@@ -447,9 +451,9 @@ awk -F'[:,]' '/"render"/ { used = $2 } END { exit !(used >= 0.9) }' time.json
 result '--time=1s: rendering took less' $?
 file_exists time.exr
 
-# ---- little to work with ------------------------------------------------------------------------------------------
+# ---- few resources ------------------------------------------------------------------------------------------------
 
-# limited STATUS TEXT LIMIT...: a rendering under ulimit; as bash has it.
+# limited STATUS TEXT LIMIT...: a rendering under bash's ulimit.
 limited() {
     expected=$1
     text=$2
@@ -461,11 +465,11 @@ limited() {
     [ "$status" -eq "$expected" ] && grep -qF -- "$text" err
     result "ulimit $*: exit status $status, not $expected, or no \"$text\"" $?
 }
-# A sanitizer needs terabytes of address space, and stack of its own.
+# A sanitizer needs terabytes of address space, and its own stack.
 if ! grep -q '^SANITIZE_CFLAGS = .*fsanitize' "$build/Makefile"; then
     limited 1 'ulimit -s 8192' -s 128
     limited 0 '' -Ss 128
-    # Where memory ends depends on the machine; that it does so with a message does not.
+    # Where memory runs out depends on the machine, but there must always be a message.
     for kilobytes in 185000 190000 195000 200000 210000; do
         # shellcheck disable=SC2016 # for bash to expand
         bash -c 'ulimit -v $3 && exec "$1" render --spp=1 --resolution=16x16 --no-png -o limited.exr "$2"' \
@@ -482,7 +486,7 @@ result 'standard error closed: exit status' $?
 "$program" compare closed.exr closed.exr >out 2>err
 result 'standard error closed: the image cannot be read' $?
 
-# ---- what floats cannot hold --------------------------------------------------------------------------------------
+# ---- values that floats cannot hold -------------------------------------------------------------------------------
 
 bright() {
     echo "LookAt 0 -3 2  0 0 0  0 0 1 Camera \"perspective\" $1 WorldBegin LightSource \"infinite\" \"rgb L\" [ $2 $2 $2 ]" \
@@ -494,7 +498,7 @@ expect 0 '256 of 256 pixels (100 %) are brighter than a float can say' render --
 bright '"float lensradius" [ 1e20 ] "float focaldistance" [ 3 ]' 1
 expect 1 "the camera's lens has a radius of 1e+20" render --resolution=16x16 --spp=1 --integrator=pt -o bright.exr bright.pbrt
 
-# Camera space may be scaled as one likes.
+# Camera space may have any scale.
 for scale in 1 1.1368683772161603e-13 9223372036854775808; do # powers of two: not even a bit changes
     {
         echo "Scale $scale $scale $scale"

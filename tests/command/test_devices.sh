@@ -1,6 +1,6 @@
 #!/bin/sh
-# Devices from outside: --verify, several devices at once, drivers and caches that are not as they should be, odd sizes
-# and scenes. PoCL gives two devices of one CPU. Runs in the build folder, like command/test_cli.sh.
+# End-to-end tests of devices: --verify, several devices at once, broken drivers and caches, odd sizes and scenes. PoCL
+# offers two devices on one CPU. Runs in the build folder, like command/test_cli.sh.
 set -u
 
 # shellcheck source=tests/support/cli.sh
@@ -57,7 +57,8 @@ expect 1 'more than one OpenCL device has that' render --integrator=pt --backend
 
 # ---- the same image -----------------------------------------------------------------------------------------------
 
-# same SCENE WAYS OPTION...: the ways (opencl, two, all, film, film_all) of rendering it give the CPU's file. The options hold for all.
+# same SCENE WAYS OPTION...: each of these ways (opencl, two, all, film, film_all) of rendering gives the CPU's file.
+# The options apply to all.
 same() {
     same_scene=$1
     same_ways=$2
@@ -79,7 +80,7 @@ same() {
     rm -f cpu.exr
 }
 
-# Nothing but an environment.
+# An environment alone.
 cat >environment.pbrt <<'PBRT'
 Film "rgb" "integer xresolution" 17 "integer yresolution" 13
 Camera "perspective" "float fov" 50
@@ -106,7 +107,8 @@ same instances.pbrt "opencl two film" --crop=16,12,17,13 --samples=50
 same instances.pbrt opencl --max-depth=1 --samples=3
 same instances.pbrt opencl --max-depth=65535 --samples=1
 
-# plant FOLDER EDIT [FILE]: the kernels' sources with one, bsdf/diffuse.h, that is not as it should be; EDIT is for sed.
+# plant FOLDER EDIT [FILE]: copies the kernels' sources and changes one file, by default bsdf/diffuse.h; EDIT is for
+# sed.
 plant() {
     plant_file=${3:-bsdf/diffuse.h}
     cp -r "$sources" "$1"
@@ -120,7 +122,7 @@ plant() {
 expect 0 'root yes, promised and by a probe of 6291456 divisions and roots' devices
 expect 0 '"probed_divisions": 6291456' devices --json
 
-# One result of six million; products with reciprocals; roots by reciprocal roots.
+# A single wrong result among six million; multiplication by the reciprocal; roots by reciprocal roots.
 plant one 's/float_bits(float_sqrt(x\.c))/float_bits(float_sqrt(x.c)) ^ (first + (uint)i == 777777u ? 1u : 0u)/' kernels/rounding.cl
 plant products 's|x\.a / x\.b|x.a * (1.0f / x.b)|' kernels/rounding.cl
 plant roots 's/float_bits(float_sqrt(x\.c))/float_bits(x.c * rsqrt(x.c))/' kernels/rounding.cl
@@ -142,14 +144,14 @@ result '--verify --backend=all: exit status' $?
 result '--verify --backend=all does not compare both devices' $?
 TWINLIGHT_TEST_FAIL_BATCH=3 expect 1 'CL_OUT_OF_RESOURCES' render --verify --integrator=pt --resolution=16x12 --samples=1 "$scene"
 
-# One constant of one kernel's source: the kernel that uses it first, a path and a field are named.
+# One wrong constant in one kernel's source: verify names the kernel that first uses it, a path and a field.
 plant wrong 's/value.pdf_w = float_abs(wi.z) \* INV_PI;/value.pdf_w = float_abs(wi.z) * (INV_PI * 1.000001f);/'
 TWINLIGHT_KERNELS=$work/wrong expect 1 'kernel pt_sample_lights (segment 1), item ' render --verify --integrator=pt \
     --resolution=8x6 --samples=1 "$scene"
 grep -qE 'light sample\.x is [0-9.e+-]+ \(0x[0-9a-f]{8}\) on cpu.* but [0-9.e+-]+ \(0x[0-9a-f]{8}\) on opencl' err
 result '--verify does not name field and values' $?
 
-# A kernel that sometimes divides by zero: chains that meet that are listed, and the image knows nothing of it.
+# A kernel that sometimes divides by zero: affected chains are listed, and the image is unaffected.
 plant nan 's/vec3_scale(bsdf->color0, value.pdf_w);/vec3_scale(bsdf->color0, value.pdf_w \/ (wi.z > 0.99f ? 0.0f : 1.0f));/'
 TWINLIGHT_KERNELS=$work/nan expect 0 'not finite inside the kernels' render --no-blend --backend=opencl --resolution=16x12 --samples=40 \
     --max-depth=3 --dump-bad=bad.jsonl --layers=none -o nan.exr "$scene"
@@ -215,10 +217,10 @@ fi
 # ---- folders ------------------------------------------------------------------------------------------------------
 
 TWINLIGHT_KERNELS=$work/nowhere expect 1 'nowhere/kernels.cl' render --verify "$scene"
-# PoCL keeps files of its own there, and has no device when it cannot.
+# PoCL keeps its own files there, and offers no device if it cannot.
 touch file
 XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --integrator=pt --backend=opencl "$scene"
-# Root may write anywhere.
+# root may write anywhere
 if [ "$(id -u)" -ne 0 ]; then
     mkdir sealed
     chmod a-w sealed

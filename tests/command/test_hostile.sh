@@ -1,8 +1,7 @@
 #!/bin/sh
-# Large scene files that hold nothing good, read in bounded memory: 8 MiB each, and with TWINLIGHT_TEST_EFFORT (as in
-# `make check-long`) 1 GiB each, which needs as much room in TMPDIR. What is refused at a limit takes no more memory the
-# larger the file is; numbers, of which a list may have as many as it likes, take twice their file and what growing
-# leaves over.
+# Large invalid scene files, read in bounded memory: 8 MiB each or, with TWINLIGHT_TEST_EFFORT (as in `make
+# check-long`), 1 GiB each, which needs as much room in TMPDIR. Input that is rejected at a limit takes no more memory
+# if the file is larger; lists of numbers, which may be of any length, take twice the file plus spare capacity.
 set -u
 
 # shellcheck source=tests/support/cli.sh
@@ -11,17 +10,18 @@ set -u
 if [ -n "${TWINLIGHT_TEST_EFFORT-}" ]; then mebibytes=1024; else mebibytes=8; fi
 bytes=$((mebibytes * 1048576))
 
-# within KIB COMMAND...: with so much address space.
+# within KIB COMMAND...: runs the command with this much address space.
 within() {
     # shellcheck disable=SC3045 # dash and bash have it
     (ulimit -v "$1" && shift && exec "$@")
 }
 
-# Programs, libraries and what the reader's limits allow. Sanitizers reserve terabytes: there messages alone are checked.
+# For the program, its libraries and what the reader's limits allow. Sanitizers reserve terabytes: with them only
+# messages are checked.
 fixed=524288
 within $fixed "$program" --version >out 2>&1 || fixed=unlimited
 
-# refused TEXT [KIB]: hostile.pbrt, with so much memory beyond what any scene may take.
+# refused TEXT [KIB]: reads hostile.pbrt, with KIB more memory than any scene may take; it must be rejected with TEXT.
 refused() {
     memory=$fixed
     [ "$fixed" = unlimited ] || memory=$((fixed + ${2-0}))
@@ -30,7 +30,7 @@ refused() {
     result "$1" $?
 }
 
-# A file's worth of copies of a text, each on a line of its own, or all on one.
+# Copies of a text until the file is full, each on its own line, or all on one line.
 lines() {
     yes "$1" | head -c $bytes
 }
@@ -39,12 +39,12 @@ line() {
     yes "$1" | tr '\n' ' ' | head -c $bytes
 }
 
-# A file's worth of one character, as tr has it.
+# One character (in tr's notation) until the file is full.
 characters() {
     head -c $bytes /dev/zero | tr '\0' "$1"
 }
 
-# ---- refused at a limit -------------------------------------------------------------------------------------------
+# ---- rejected at a limit ------------------------------------------------------------------------------------------
 
 { echo WorldBegin && lines AttributeBegin; } >hostile.pbrt
 refused '65538:1: error: AttributeBegin nested more than 65536 deep'
@@ -66,7 +66,7 @@ echo >empty.inc
 { echo WorldBegin && lines 'Include "empty.inc"'; } >hostile.pbrt
 refused '65537:9: error: more than 65536 files included'
 
-# ---- one thing without end ----------------------------------------------------------------------------------------
+# ---- endless tokens -----------------------------------------------------------------------------------------------
 
 characters a >hostile.pbrt
 refused '1:1: error: a word of more than 65536 characters'
@@ -81,7 +81,7 @@ refused "1:$((bytes + 1)): error: the file ends before WorldBegin"
 characters '\n' >hostile.pbrt
 refused "$((bytes + 1)):1: error: the file ends before WorldBegin"
 
-# ---- as long as the file ------------------------------------------------------------------------------------------
+# ---- lists as long as the file ------------------------------------------------------------------------------------
 
 { echo 'WorldBegin Shape "trianglemesh" "point3 P" [' && line 1; } >hostile.pbrt
 refused "2:$((bytes + 1)): error: expected a value or ], found the end of the file" $((mebibytes * 4096))

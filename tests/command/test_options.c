@@ -1,4 +1,4 @@
-/* Reading of command-line values and options, and the JSON and progress text made from numbers. */
+/* Parsing of command-line values and options, and the formatting of numbers in JSON and in the progress line. */
 #include "support/test_util.h"
 
 #include "base/json.h"
@@ -138,7 +138,7 @@ static const OptionSpec SPECS[] = {{"output", 'o', "FILE", "file"},   {"samples"
                                    {"png", 0, "[FILE]", "png"},       {"quiet", 'q', NULL, "quiet"}};
 static const OptionTable TABLE = {"render", "render", "summary", SPECS, 6, NULL};
 
-/* What was set, as text: "samples=4 quiet ". */
+/* The options that were set, as text: "samples=4 quiet ". */
 static bool record(void *context, int index, const char *value, Error *error)
 {
     char *text = context;
@@ -151,7 +151,7 @@ static bool record(void *context, int index, const char *value, Error *error)
     return true;
 }
 
-/* Splits `line` at blanks into argv behind "render" and parses it. */
+/* Splits `line` at blanks into argv after "render" and parses it. */
 static bool parse_line(const char *line, char *words, char *text, char **operand, int *operands, Error *error)
 {
     char *argv[16] = {(char *)"render"};

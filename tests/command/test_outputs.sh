@@ -1,6 +1,6 @@
 #!/bin/sh
-# What is rendered comes to disk whatever happens, and nothing else is overwritten: memory, signals, saves that fail, files
-# that dead processes left, names that lead to the same file. Runs as tests/command/test_cli.sh does.
+# Results reach the disk in all circumstances, and nothing else is overwritten: memory, signals, failing saves,
+# temporary files of dead processes, different names of one file. Runs as tests/command/test_cli.sh does.
 set -u
 
 # shellcheck source=tests/support/cli.sh
@@ -10,13 +10,13 @@ milliseconds() {
     echo $(($(date +%s%N) / 1000000))
 }
 
-# no_temporary WHAT
+# no_temporary WHAT: there must be no temporary file.
 no_temporary() {
     [ -z "$(find . -name '*~')" ]
     result "$1: a temporary file is left" $?
 }
 
-# ---- names of one file --------------------------------------------------------------------------------------------
+# ---- different names of one file ----------------------------------------------------------------------------------
 
 expect 1 'the statistics would overwrite the image: ./o.exr' render --stats=./o.exr -o o.exr "$scene"
 mkdir there
@@ -29,7 +29,7 @@ file_missing o.exr
 [ -L dangling.exr ]
 result 'a symbolic link is gone' $?
 
-# A symbolic link is written through, whether what it points to is there or not.
+# A symbolic link is followed, whether its target exists or not.
 for turn in first second; do
     render -o dangling.exr "$scene"
     file_exists o.exr
@@ -38,7 +38,7 @@ for turn in first second; do
 done
 rm -f o.exr dangling.exr dangling.png
 
-# Files of the scene: its own, what it includes, textures.
+# Files of the scene: the scene file, included files, textures.
 render -o texture.exr "$scene"
 cp texture.png kept.png
 printf 'Include "part.exr"\n' >whole.pbrt
@@ -74,7 +74,7 @@ expect 1 'the data would overwrite a scene' bench -o bench.html --times=1s bench
 cmp -s bench.json "$scene"
 result 'bench has overwritten a scene' $?
 
-# ---- strays -------------------------------------------------------------------------------------------------------
+# ---- temporary files of dead processes ----------------------------------------------------------------------------
 
 : >a.exr.999999-0~
 : >a.exr.12-x~
@@ -117,14 +117,14 @@ fi
 
 # ---- stopping -----------------------------------------------------------------------------------------------------
 
-# begin ARGUMENT...: a long rendering in the background, process number in $process.
+# begin ARGUMENT...: starts a long rendering in the background, process number in $process.
 begin() {
     rm -f s.exr s.png s.json
     $with_signals "$program" render --time=180s --threads=2 --stats=s.json -o s.exr "$@" >out 2>err &
     process=$!
 }
 
-# ended WHAT MILLISECONDS: the rendering ends with a picture and status 130, so long after `sent`.
+# ended WHAT MILLISECONDS: the rendering must end with an image and status 130, at most this long after `sent`.
 ended() {
     wait $process
     status=$?
@@ -140,7 +140,8 @@ ended() {
     no_temporary "$1"
 }
 
-# A scene whose first sample of every pixel takes minutes: mirrors, and paths without end. Writing takes a moment, too.
+# A scene whose first sample of every pixel takes minutes: mirrors, and paths of any length. Writing takes a moment as
+# well.
 slow=${scene%/*}/glossy.pbrt
 for integrator in pt bdpt ibpt mmlt; do
     begin --quiet --integrator=$integrator --resolution=1000x4000 --max-depth=31 "$slow"
@@ -152,7 +153,7 @@ for integrator in pt bdpt ibpt mmlt; do
     result "$integrator: no word of pixels without samples" $?
 done
 
-# `timeout` signals its child and then its group: two signals are one. The last two are of writes that cannot be done.
+# `timeout` signals its child and then the child's group: two signals count as one. The last two are for failing writes.
 for signal in INT TERM HUP XFSZ PIPE; do
     begin --quiet --resolution=32x32 "$scene"
     sleep 1
@@ -162,7 +163,7 @@ for signal in INT TERM HUP XFSZ PIPE; do
     ended "SIG$signal and SIGTERM at once" 20000
 done
 
-# A stop before anything is rendered, which a list of chains announces, replaces no picture.
+# A stop before anything is rendered, detected by the list of chains, does not replace an existing image.
 begin --quiet --threads=1 --resolution=400x400 --max-depth=31 --dump-bad=bad.json "$slow"
 cp a.exr s.exr
 until [ -n "$(find . -name 'bad.json.*~')" ]; do
@@ -177,7 +178,7 @@ result 'an empty picture has replaced another' $?
 grep -q 'warning: s.exr is left as it was' err
 result 'no word of a picture that is left as it was' $?
 
-# Nobody reads the messages any more: the files are there, statistics too.
+# Nobody reads the messages any more: all files are written, the statistics included.
 ("$program" render --time=1s --resolution=32x32 --stats=s.json -o s.exr "$scene" 2>&1 >/dev/null; echo $? >status) | true
 wait_for status
 [ "$(cat status)" -eq 0 ]
@@ -201,7 +202,7 @@ result 'ignored signals end a rendering' $?
 
 # ---- writing ------------------------------------------------------------------------------------------------------
 
-# A pipe whose reader waits makes writing take long.
+# Writing to a pipe takes long if its reader waits.
 mkfifo late.png
 { sleep 3 && cat >/dev/null; } <late.png &
 reader=$!
@@ -211,8 +212,8 @@ wait $reader
 grep -q '^writing late.png' err
 result 'a long write does not say so' $?
 
-# A second signal while something is written ends the program, and leaves no temporary file: here that of --dump-bad, which
-# is open all the time, as the picture's would be.
+# A second signal during a write ends the program without leaving a temporary file. The one checked here is that of
+# --dump-bad, which is open all the time; the image's would be removed in the same way.
 # shellcheck disable=SC2217 # it only has to keep the pipe open
 sleep 60 <late.png &
 reader=$!
@@ -232,9 +233,9 @@ kill $reader
 wait $reader 2>/dev/null
 rm -f late.* bad.json
 
-# ---- saves that fail ----------------------------------------------------------------------------------------------
+# ---- failing saves ------------------------------------------------------------------------------------------------
 
-# The folder is not there for a while.
+# The folder does not exist for a while.
 mkdir disk
 $with_signals "$program" render --time=180s --threads=2 --resolution=32x32 --save-every=0.2s --stats=s.json -o disk/s.exr \
     "$scene" >out 2>err &
@@ -256,7 +257,7 @@ result 'saves that fail: not one warning' $?
 grep -q 'could be saved again' err
 result 'nothing says that saving works again' $?
 
-# The last one is an error, and what was there before stays.
+# If the last write fails, that is an error, and the existing file stays.
 "$program" render --quiet --time=2s --threads=2 --resolution=32x32 -o disk/t.exr "$scene" >out 2>err &
 process=$!
 sleep 1

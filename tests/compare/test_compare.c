@@ -1,4 +1,4 @@
-/* Figures that need more than values side by side: FLIP, SSIM, and the test by halves. */
+/* Metrics that are not computed value by value: FLIP, SSIM, and the z-test between halves. */
 #include "support/test_files.h"
 #include "support/test_util.h"
 
@@ -18,7 +18,8 @@
 #define HEIGHT 48
 #define VALUES (3 * WIDTH * HEIGHT)
 
-/* Stripes in three frequencies, half of them dark, a bright corner; distorted by a pattern and a disk. */
+/* Stripes of three frequencies, half of them dark, with a bright corner; the image distorts them by a pattern and a
+ * disk. */
 static void pair_fill(float *image, float *reference)
 {
     for (int y = 0; y < HEIGHT; ++y) {
@@ -46,10 +47,10 @@ static DisplayError display_error_of(const float *image, const float *reference,
     return result;
 }
 
-/* The expected figures were computed from these two pictures, clamped to 0 ... 1, by other programs: FLIP by the
- * authors' own (Python package flip-evaluator 1.7, "LDR", inputsRGB false), SSIM by scikit-image 0.26.0
- * (structural_similarity of the luma, gaussian_weights, sigma 1.5, data_range 1, use_sample_covariance false).
- * flip-evaluator computes in float. */
+/* The expected figures were computed from these two images, clamped to 0 ... 1, by other programs: FLIP by the authors'
+ * own (Python package flip-evaluator 1.7, "LDR", inputsRGB false), SSIM by scikit-image 0.26.0 (structural_similarity
+ * of the luma, gaussian_weights, sigma 1.5, data_range 1, use_sample_covariance false). flip-evaluator computes in
+ * float. */
 START_TEST(test_reference_programs)
 {
     float image[VALUES], reference[VALUES];
@@ -69,7 +70,7 @@ START_TEST(test_display_limits)
     DisplayError same = display_error_of(image, image, WIDTH, HEIGHT, 0.0, 67.0);
     ck_assert_double_eq(same.flip, 0.0);
     ck_assert_double_eq_tol(same.ssim, 1.0, 1e-12);
-    /* Exposure is a factor: one stop more of half the values is the same display. */
+    /* Exposure is a factor: halved values at one stop more look the same. */
     DisplayError plain = display_error_of(image, reference, WIDTH, HEIGHT, 1.0, 67.0);
     for (int i = 0; i < VALUES; ++i) {
         doubled[i] = 2.0f * image[i];
@@ -78,13 +79,13 @@ START_TEST(test_display_limits)
     DisplayError scaled = display_error_of(doubled, reference, WIDTH, HEIGHT, 0.0, 67.0);
     ck_assert_double_eq(plain.flip, scaled.flip);
     ck_assert_double_eq(plain.ssim, scaled.ssim);
-    /* Green against blue is the largest error there is. */
+    /* Green against blue is the largest possible error. */
     for (int i = 0; i < VALUES; ++i) {
         image[i] = i % 3 == 1 ? 1.0f : 0.0f;
         reference[i] = i % 3 == 2 ? 1.0f : 0.0f;
     }
     ck_assert_double_eq_tol(display_error_of(image, reference, WIDTH, HEIGHT, 0.0, 67.0).flip, 1.0, 1e-9);
-    /* Smaller than the window of SSIM, and than FLIP's filters; not finite; beyond the display. */
+    /* Images smaller than SSIM's window and FLIP's filters; non-finite values; values beyond the display's range. */
     float odd[] = {NAN, INFINITY, -1.0f, 2.0f, 0.5f, 0.25f}, shown[6];
     DisplayError small = display_error_of(odd, odd, 2, 1, 0.0, 67.0);
     ck_assert(isnan(small.ssim) && small.flip == 0.0);
@@ -94,7 +95,7 @@ START_TEST(test_display_limits)
 }
 END_TEST
 
-/* ---- the test by halves ----------------------------------------------------------------------------------------- */
+/* ---- the z-test between halves --------------------------------------------------------------------------------- */
 
 /* Two-sided probabilities from scipy.stats.t (1.17). */
 START_TEST(test_student)
@@ -114,8 +115,8 @@ END_TEST
 #define SIDE 160
 #define HALF_VALUES (3 * SIDE * SIDE)
 
-/* Skewed noise of mean `mean`, as pictures have: an exponential variable. With `grain` > 1 squares of so many pixels
- * share their value, as chains make them. */
+/* Skewed noise of mean `mean`, as in renderings: an exponential variable. With `grain` > 1, squares of grain x grain
+ * pixels share a value, as with chains. */
 static void half_fill(float *half, double mean, int grain, unsigned *state)
 {
     for (int y = 0; y < SIDE; ++y) {
@@ -129,7 +130,7 @@ static void half_fill(float *half, double mean, int grain, unsigned *state)
     }
 }
 
-/* Two renderings whose means are 1 and 1 + `difference` within a square of 40 pixels. */
+/* Two renderings with means 1 and 1 + `difference` within a square of 40 pixels. */
 static ZTest test_of_noise(double difference, int grain, unsigned seed)
 {
     static float memory[4][HALF_VALUES];
@@ -148,8 +149,8 @@ static ZTest test_of_noise(double difference, int grain, unsigned seed)
     return test;
 }
 
-/* Nothing is found where nothing is, with and without correlation between pixels, and what is there is found. With seed
- * fixed this does not vary; one run in a hundred of another generator would have a value outside. */
+/* No difference is found if there is none, with and without correlation between pixels, and an existing one is found.
+ * Deterministic, since seeds are fixed; one in a hundred other seeds would have a value outside. */
 START_TEST(test_halves)
 {
     ZTest same = test_of_noise(0.0, 1, 1);
@@ -165,7 +166,7 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* A pixel at a lamp's edge that both halves of one rendering happened to see and both of the other to miss: one
+/* A pixel at a light's edge that both halves of one rendering hit by chance and both of the other missed: a single
  * observation, not a difference. */
 START_TEST(test_halves_one_pixel)
 {
@@ -183,7 +184,7 @@ START_TEST(test_halves_one_pixel)
 }
 END_TEST
 
-/* Without noise every difference counts, and equal pictures have nothing to test. */
+/* Without noise every difference counts, and equal images leave nothing to test. */
 START_TEST(test_halves_without_noise)
 {
     float a[3 * 64], b[3 * 64];
@@ -242,7 +243,7 @@ START_TEST(test_side_by_side)
     ck_assert_msg(error_image_side_by_side(test_path("s.png"), image, reference, 2, 1, 2.0, &error), "%s",
                   error.message);
     ck_assert(image_read(test_path("s.png"), &sheet, &error));
-    /* Pictures of 2 x 1 between margins of 6, under a line of 14: their first pixels are 8 apart. */
+    /* Images of 2 x 1 pixels between margins of 6, below a label line of 14: their first pixels are 8 apart. */
     const unsigned char *row = (const unsigned char *)sheet.data + (size_t)(6 + 14) * (size_t)sheet.width * 3;
     const unsigned char *first = row + 3 * 6, *second = row + 3 * 14, *third = row + 3 * 22;
     ck_assert_int_eq(sheet.width, 6 + 3 * 8);

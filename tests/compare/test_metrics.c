@@ -50,7 +50,7 @@ START_TEST(test_equal_images)
 }
 END_TEST
 
-/* Of 3000 pixels the three worst are left out, whatever they are. */
+/* Of 3000 pixels the three worst are omitted, however bad they are. */
 START_TEST(test_trimmed)
 {
     float image[9000], reference[9000];

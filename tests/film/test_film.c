@@ -33,7 +33,7 @@ static void film_add_one(Film *film, uint pixel, float r, float g, float b)
     film_add_splats(film, splat, 1, 1);
 }
 
-/* 0.3 added 2^30 times: in float32 the sum stops at 8,388,608. A merge with a copy doubles both sum and count. */
+/* 0.3 added 2^30 times: in float32 the sum stops at 8,388,608. Merging with a copy doubles both sum and count. */
 START_TEST(test_billion_additions_exact)
 {
     const int crop[4] = {0, 0, 1, 1};
@@ -61,7 +61,7 @@ START_TEST(test_billion_additions_exact)
 }
 END_TEST
 
-/* The long test makes them, 10^9 one by one, some of them at once. */
+/* The long test actually adds 10^9 times, some of them in one call. */
 START_TEST(test_billion_additions_made)
 {
     enum { BATCH = 4000, BATCHES = 250000 };
@@ -98,7 +98,7 @@ static void *thread_add(void *argument)
     return NULL;
 }
 
-/* Splats over twelve orders of magnitude and both signs, from a linear congruential generator. */
+/* Splats over twelve orders of magnitude with both signs, from a linear congruential generator. */
 static void splats_fill(uint *splats)
 {
     uint state = 1;
@@ -112,7 +112,7 @@ static void splats_fill(uint *splats)
     }
 }
 
-/* Item t of the shuffled buffer is item 12347 t mod SPLATS of the other (the two are coprime). */
+/* Item t of the shuffled buffer is item 12347 t mod SPLATS of the original (the two are coprime). */
 static void splats_shuffle(const uint *splats, uint *shuffled)
 {
     for (uint t = 0; t < SPLATS; ++t)
@@ -172,8 +172,8 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
-/* Splats of rare paths are in the sums of all, and by themselves; other films like this one have no such sums, and
- * merging leaves them alone. */
+/* Splats of rare paths go to the total sums and to sums of their own; a film initialised like this one lacks the
+ * latter, and merging leaves them unchanged. */
 START_TEST(test_rare)
 {
     Error error = {0};
@@ -201,8 +201,8 @@ START_TEST(test_rare)
 }
 END_TEST
 
-/* Splats that name their path's number of segments are in the sums of all, and once more by themselves: those from the
- * light, and in a film that has rare ones its own and the rare ones, too. */
+/* Splats with a depth go to the total sums and once more to sums of that depth: to those from the light and, in a film
+ * with rare sums, also to the film's own and to the rare ones. */
 START_TEST(test_depths)
 {
     const uint four = splat_depth(3, 4), five = splat_depth(3, 5);
@@ -241,8 +241,8 @@ START_TEST(test_depths)
 }
 END_TEST
 
-/* What a device keeps: 12 pixels of three sums, three counters, counts by twos, and the light's and the rare ones when
- * there are any. */
+/* A device's buffer: 12 pixels of three sums, three counters, two counts per word, and light and rare sums if
+ * present. */
 START_TEST(test_sums_of_a_device)
 {
     ulong words[3 * 12 + 3 + 6 + 2 * 3 * 12] = {0};
@@ -274,16 +274,16 @@ START_TEST(test_sums_of_a_device)
     words[3 * 2 + 1] = (ulong)1 << 61;
     film_add_sums(&film, words);
     ck_assert_uint_eq(film_full_pixels(&film), 0);
-    film_add_sums(&film, words); /* the sum comes to 2^62 */
+    film_add_sums(&film, words); /* the sum becomes 2^62 */
     ck_assert_uint_eq(film_full_pixels(&film), 1);
-    for (int i = 0; i < 6; ++i) /* and would come to 2^63 twice */
+    for (int i = 0; i < 6; ++i) /* and would exceed 2^63 here */
         film_add_sums(&film, words);
     ck_assert_int_eq(film.sums[7], INT64_MAX);
     film_destroy(&film);
 }
 END_TEST
 
-/* Halves go away from zero; the default unit is 2^-30. */
+/* Ties round away from zero; the default quantum is 2^-30. */
 START_TEST(test_rounding)
 {
     const float values[] = {0x1p-31f, -0x1p-31f, 0x1.fffffep-32f, -0x1.fffffep-32f, 0x1.8p-30f, 1.0f, -0.0f, 1e-45f};
@@ -298,7 +298,8 @@ START_TEST(test_rounding)
 }
 END_TEST
 
-/* Whole numbers against doubles, which are exact here: a float has 24 bits and the scale is a power of two. */
+/* Integer rounding against double arithmetic, which is exact here: a float has 24 bits and the scale is a power of
+ * two. */
 static void units_compare(uint bits, int exponent)
 {
     float value = bits_float(bits);
@@ -332,13 +333,13 @@ START_TEST(test_saturation)
     ck_assert_int_eq(film.sums[0], (int64_t)1 << 62);
     ck_assert_int_eq(film.sums[1], 1 << 30);
     ck_assert_int_eq(film.sums[2], -((int64_t)1 << 48));
-    film_add_one(&film, 1, 0x1p32f, 0.0f, 0.0f); /* 2^62 units, the largest that is not clamped */
+    film_add_one(&film, 1, 0x1p32f, 0.0f, 0.0f); /* 2^62 units, the largest value that is not clamped */
     ck_assert_uint_eq(film.saturated, 1);
     film_destroy(&film);
 }
 END_TEST
 
-/* A sum that would leave 64 bits stays where it is, is read as 2^62 units, and its pixel counts as full. */
+/* A sum that would overflow 64 bits saturates, reads as 2^62 units, and its pixel counts as full. */
 START_TEST(test_full)
 {
     Error error;
@@ -370,7 +371,7 @@ START_TEST(test_full)
 }
 END_TEST
 
-/* Pixel i is 2^-i as bright as the first, and one contribution in five is a small negative one. */
+/* Pixel i is 2^-i times as bright as the first; every fifth contribution is a small negative one. */
 static void splats_fill_bright(uint *splats)
 {
     uint state = 1;
@@ -381,7 +382,8 @@ static void splats_fill_bright(uint *splats)
     }
 }
 
-/* Sums that are full, that come to more than is read of them, and that stay below are read alike whatever the order. */
+/* Sums that are full, that exceed the largest value read, or that stay below it, read the same for any order of
+ * additions. */
 START_TEST(test_order_of_full_sums)
 {
     uint *splats = malloc(SPLATS * SPLAT_WORDS * sizeof *splats), *shuffled = malloc(SPLATS * SPLAT_WORDS * 4);
@@ -423,7 +425,7 @@ START_TEST(test_order_of_full_sums)
 }
 END_TEST
 
-/* What is less than half a unit in every channel is counted, and nothing that shows or is black. */
+/* Contributions that are not black but below half a unit in every channel count as vanished; others do not. */
 START_TEST(test_vanished)
 {
     Film film = film_make(4, 3, CROP_WHOLE);
@@ -475,7 +477,7 @@ START_TEST(test_crop)
 }
 END_TEST
 
-/* The parts of a device's buffer (film_view_words) do not overlap, also with an odd number of pixels, and fit
+/* The parts of a device's buffer (film_view_words) do not overlap, also for an odd number of pixels, and fit
  * film_words. */
 START_TEST(test_buffer)
 {
@@ -555,7 +557,7 @@ int main(void)
 {
     Suite *suite = suite_create("film");
     TCase *tcase = tcase_create("film");
-    tcase_set_timeout(tcase, 300); /* of the long test */
+    tcase_set_timeout(tcase, 300); /* for the long test */
     tcase_add_test(tcase, test_billion_additions_exact);
     tcase_add_test(tcase, test_billion_additions_made);
     tcase_add_test(tcase, test_order_does_not_matter);

@@ -1,4 +1,4 @@
-/* How files come into being: whole or not at all, under the name that was meant, and nothing else is overwritten. */
+/* Writing of files: all or nothing, under the intended name, without overwriting anything else. */
 #include "support/test_files.h"
 #include "support/test_util.h"
 
@@ -14,7 +14,7 @@
 
 TCase *film_files_tcase(void);
 
-/* A cancelled file leaves the old one; a link stays a link. */
+/* A cancelled write leaves the old file; a link remains a link. */
 START_TEST(test_output_file)
 {
     OutputFile file;
@@ -43,7 +43,7 @@ START_TEST(test_output_file)
 }
 END_TEST
 
-/* Where names lead, whether something is there or not. */
+/* Resolution of names, of existing and of missing files. */
 START_TEST(test_path_target)
 {
     char target[PATH_MAX], real[PATH_MAX];
@@ -66,7 +66,7 @@ START_TEST(test_path_target)
 }
 END_TEST
 
-/* A file to a place where only a link is. */
+/* Writing through a link whose target does not exist yet. */
 START_TEST(test_dangling_link)
 {
     Error error;
@@ -95,7 +95,8 @@ static void child_leave(const char *path, bool unlinks)
     ck_assert_int_eq(status, 0);
 }
 
-/* What a process that was killed has left goes when the next writes there; what a living one is writing stays. */
+/* The next write to a name removes temporary files that a killed process left for it; those of a running process
+ * stay. */
 START_TEST(test_strays)
 {
     char living[PATH_MAX], other[PATH_MAX];
@@ -118,7 +119,7 @@ START_TEST(test_strays)
 }
 END_TEST
 
-/* Inputs are not overwritten, outputs not by each other; devices may take any number. */
+/* Outputs must not overwrite inputs or each other; any number of them may go to devices. */
 START_TEST(test_output_check)
 {
     Error error;

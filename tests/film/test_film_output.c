@@ -1,4 +1,4 @@
-/* What is written to files: EXR, PNG, whole and by bands. */
+/* Output files: EXR, PNG, as a whole and in bands. */
 #include "support/test_files.h"
 #include "support/test_util.h"
 
@@ -18,7 +18,7 @@ TCase *film_output_tcase(void);
 #define WIDTH 37
 #define HEIGHT 21
 
-/* Every kind of float, and noise. */
+/* Every class of float, and noise. */
 static void picture_fill(float *rgb)
 {
     const float special[] = {0.0f, -0.0f, 1e-45f, 1e-38f, 3.4e38f, INFINITY, -INFINITY, 65504.0f, -2.5f};
@@ -52,8 +52,8 @@ START_TEST(test_exr_keeps_every_bit)
 }
 END_TEST
 
-/* Random bits with a few zeros compress to some bytes more or less than their size. Among thousands of chunks some keep
- * exactly their size, which OpenEXR before 3.4.8 writes in a way that no reader understands. */
+/* Random bits with a few zeros compress to slightly more or less than their size. Among thousands of chunks, some keep
+ * exactly their size; OpenEXR before 3.4.8 writes these so that no reader understands them. */
 START_TEST(test_exr_noise)
 {
     enum { SIDE = 16, LINES = 16 * 2000 };
@@ -97,7 +97,7 @@ START_TEST(test_exr_bytes_are_reproducible)
 }
 END_TEST
 
-/* The crop is the data window, the film the display window. */
+/* The crop window is the data window, the film the display window. */
 START_TEST(test_exr_crop)
 {
     const int crop[4] = {5, 3, 5 + WIDTH, 3 + HEIGHT};
@@ -128,7 +128,7 @@ START_TEST(test_exr_crop)
 }
 END_TEST
 
-/* Layers, given out of order, with different strides and as halves. */
+/* Layers, given out of order, with different strides, as halves. */
 START_TEST(test_exr_layers)
 {
     float data[4 * WIDTH * HEIGHT];
@@ -155,7 +155,7 @@ START_TEST(test_exr_layers)
 }
 END_TEST
 
-/* Bands are what whole pictures are cut into: every row of every layer, at every band's edge. */
+/* Bands equal the rows of the whole image, in every layer, at every band's edge. */
 START_TEST(test_bands)
 {
     enum { ROWS = 2 * EXR_BAND_ROWS + 5 };
@@ -207,7 +207,7 @@ START_TEST(test_unwritable)
     ck_assert_str_eq(error.message, "error: cannot write no/such/folder/a.png: No such file or directory");
     ck_assert(!rgb_write(test_folder, rgb, WIDTH, HEIGHT, NULL, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "Is a directory"));
-    /* A device that is always full: written in place, reported, and still a device afterwards. */
+    /* A device that is always full: written directly, reported as an error, and still a device afterwards. */
     struct stat status;
     if (stat("/dev/full", &status) != 0)
         return;
@@ -240,7 +240,7 @@ END_TEST
 
 START_TEST(test_srgb_function)
 {
-    /* IEC 61966-2-1: the two branches meet, ends are fixed, the functions are inverse. */
+    /* IEC 61966-2-1: the two branches meet, the end points are fixed, the functions are inverses. */
     ck_assert_double_eq_tol(color_srgb_decode(0.04045), 0.0031308, 1e-7);
     ck_assert_double_eq(color_srgb_decode(0.0), 0.0);
     ck_assert_double_eq_tol(color_srgb_decode(1.0), 1.0, 1e-15);

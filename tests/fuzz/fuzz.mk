@@ -1,7 +1,7 @@
-# The readers of scenes and images and of command lines against arbitrary bytes. tests/fuzz_NAME, a test, tries the
-# inputs of tests/corpus/NAME: seeds, and what fuzzers found that covers more (fuzz-*: of 2e7 executions on scenes, 7e6
-# on images and 3e7 on command lines). `make fuzz` builds them with libFuzzer and sanitizers and runs each for
-# FUZZ_SECONDS from there.
+# The readers of scenes, images and command lines against arbitrary bytes. tests/fuzz_NAME is a test that runs the
+# inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
+# scenes, 7e6 on images and 3e7 on command lines). `make fuzz` builds them with libFuzzer and sanitizers and runs each
+# for FUZZ_SECONDS, starting from these.
 EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
 FUZZ_TARGETS = scene image options
 check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options
@@ -15,7 +15,7 @@ tests_fuzz_options_SOURCES = tests/fuzz/fuzz_options.c tests/fuzz/fuzz_replay.c
 tests_fuzz_options_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/options"'
 tests_fuzz_options_LDADD = libtwinlight_host.la
 
-# Larger images would take the time of thousands of others.
+# A larger image would take the time of thousands of others.
 FUZZ_CC = clang
 FUZZ_SECONDS = 60
 FUZZ_SANITIZERS = fuzzer,address,undefined
@@ -39,8 +39,8 @@ fuzz: fuzz-programs
 	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
 CLEANFILES += fuzz_scene fuzz_image fuzz_options
 
-# The readers and small renderings on the CPU under valgrind, which sees what sanitizers do not: uninitialised values, and
-# the inside of libraries. Half a minute.
+# The readers and small renderings on the CPU under valgrind, which detects what sanitizers do not: uninitialised
+# values, and errors inside libraries. Takes half a minute.
 VALGRIND = valgrind --quiet --error-exitcode=9 --leak-check=full --suppressions=$(srcdir)/tests/valgrind.supp
 VALGRIND_TESTED = $(FUZZ_TARGETS:%=tests/fuzz_%$(EXEEXT)) tests/test_import$(EXEEXT) tests/test_texture$(EXEEXT) \
 	twinlight$(EXEEXT)

@@ -1,4 +1,4 @@
-/* The image readers against arbitrary bytes, and what a scene makes of what they read. */
+/* Arbitrary bytes for the image readers, and for the conversion of what they read into a scene's textures. */
 #include "fuzz/fuzz.h"
 
 #include "base/log.h"
@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* The readers take a name. Of this one TGA, which has no signature, is told by the ending, the others by their
- * bytes. */
+/* The readers take a file name. TGA has no signature and is recognised by this name's ending, the other formats by
+ * their bytes. */
 static char path[1024];
 static FILE *file;
 
@@ -41,7 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     bool found;
     if (!file)
         path_make();
-    /* Cut to its length and not to 0: file systems flush a file that is emptied and written again. */
+    /* Truncated to its length rather than to 0: file systems flush a file that is emptied and rewritten. */
     rewind(file);
     if (fwrite(data, 1, size, file) != size || fflush(file) != 0 || ftruncate(fileno(file), (off_t)size) != 0)
         abort();

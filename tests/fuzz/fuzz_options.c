@@ -1,5 +1,5 @@
-/* Command lines against arbitrary bytes: words end with newlines, and the lowest bit of the first byte chooses between
- * the options of render, which has those of pyramid, and of bench. All options that take text are among them. */
+/* Arbitrary bytes as command lines: words end with newlines, and the lowest bit of the first byte selects between the
+ * options of render, which include those of pyramid, and of bench. These cover all options that take text. */
 #include "fuzz/fuzz.h"
 
 #include "base/log.h"
@@ -12,7 +12,7 @@
 
 #define WORDS_MAX 32
 
-/* A backend without devices, and one with: `spans` says that there is a choice of them. */
+/* A backend without devices and one with devices; a non-NULL `spans` marks the latter. */
 static size_t spans_none(Backend *backend, const BackendSpan **spans, uint64_t *dropped)
 {
     (void)backend;

@@ -1,4 +1,4 @@
-/* Tries a fuzzer's inputs once each, in place of libFuzzer. Without arguments those of CORPUS below srcdir. */
+/* Runs a fuzzer's inputs once each, instead of libFuzzer; without arguments, those of CORPUS below srcdir. */
 #include "fuzz/fuzz.h"
 
 #include "base/file_read.h"
@@ -10,7 +10,7 @@
 
 static int replayed;
 
-/* In memory of its exact size, so that a sanitizer or valgrind sees reads behind its end. */
+/* In a buffer of its exact size, so that a sanitizer or valgrind detects reads past its end. */
 static bool file_replay(const char *path)
 {
     FileData file;

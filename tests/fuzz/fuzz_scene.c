@@ -1,4 +1,4 @@
-/* The scene reader, and for bytes that begin with "ply" the PLY reader, against arbitrary bytes. */
+/* Arbitrary bytes for the scene reader or, if they begin with "ply", for the PLY reader. */
 #include "fuzz/fuzz.h"
 
 #include "base/log.h"
@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         ply_try(data, size);
         return 0;
     }
-    /* The first byte chooses --lenient, and whether to go on behind errors, so that all ways through the reader are
+    /* The first byte selects --lenient and whether to continue after errors, so that all paths through the reader are
      * tried. */
     ImportOptions options = {.lenient = size > 0 && (data[0] & 1), .all_errors = size > 0 && (data[0] & 2)};
     Scene scene;

@@ -9,7 +9,7 @@ static void add_mesh(TestScene *test, TestMesh mesh, float scale, Vec3 shift)
     mesh_destroy(&mesh);
 }
 
-/* Patches with four random corners each, so hardly any is flat. */
+/* Patches with four random corners each, hardly any of them planar. */
 static void add_patches(TestScene *test, TestRandom *random, uint count)
 {
     Error error = {0};
@@ -29,7 +29,8 @@ static void add_patches(TestScene *test, TestRandom *random, uint count)
     ck_assert_msg(scene_add_patches(&test->scene, &data, shape, NULL, 0, &error), "%s", error.message);
 }
 
-/* A float texture of squares, `count` a side, that are opaque or let `alpha` of the rays be stopped. */
+/* A checkered float texture with `count` squares per side: opaque ones, and ones that stop a fraction `alpha` of the
+ * rays. */
 static uint add_squares(TestScene *test, float count, float alpha)
 {
     Error error = {0};
@@ -149,8 +150,8 @@ static void make_alpha(TestScene *test)
     test_scene_finish(test);
 }
 
-/* Every kind of primitive in the world and in objects; instances mirrored, stretched and overlapping; an object without
- * anything in it. */
+/* Every kind of primitive in the world and in objects; mirrored, stretched and overlapping instances; an empty
+ * object. */
 static void make_instances(TestScene *test)
 {
     Error error = {0};
@@ -175,7 +176,7 @@ static void make_instances(TestScene *test)
     test_scene_finish(test);
 }
 
-/* A swarm of instances of a finer mesh, which share one place in part. */
+/* A swarm of instances of a finer mesh, some of them coincident. */
 static void make_swarm(TestScene *test)
 {
     Error error = {0};

@@ -1,4 +1,4 @@
-/* Scenes that hierarchies find hard, each with the number of walks that the tests send through it. */
+/* Scenes that are hard for hierarchies, each with the number of random walks that the tests trace through it. */
 #ifndef TWINLIGHT_TESTS_GEOMETRY_BVH_SCENES_H
 #define TWINLIGHT_TESTS_GEOMETRY_BVH_SCENES_H
 
@@ -6,8 +6,8 @@
 
 typedef struct BvhCase {
     const char *name;
-    void (*make)(TestScene *test); /* finished */
-    uint walks; /* against Embree; all cases together more than 2^20 */
+    void (*make)(TestScene *test); /* makes the scene and calls test_scene_finish */
+    uint walks; /* compared with Embree; more than 2^20 over all cases */
     bool small; /* few enough primitives for brute force */
 } BvhCase;
 

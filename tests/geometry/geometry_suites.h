@@ -1,4 +1,4 @@
-/* The parts of test_geometry, one file each. */
+/* The parts of test_geometry, one per file. */
 #ifndef TWINLIGHT_TESTS_GEOMETRY_GEOMETRY_SUITES_H
 #define TWINLIGHT_TESTS_GEOMETRY_GEOMETRY_SUITES_H
 

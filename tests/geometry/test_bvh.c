@@ -1,6 +1,6 @@
-/* The hierarchy for devices against Embree's path of the CPU backend: walks of eight bounces, every field of every hit
- * and every visibility by both. The traversal is the one that the CPU's kernels contain, so it is C from the text that
- * a device compiles. */
+/* The devices' hierarchy against the CPU backend's path through Embree: random walks of eight bounces; every field of
+ * every hit and every visibility result from both. The traversal is compiled as C from the text that a device
+ * compiles. */
 #include "backend/bvh.h"
 #include "geometry/bvh_scenes.h"
 #include "geometry/test_bvh.h"
@@ -27,15 +27,15 @@ typedef struct Comparison {
     const Bvh *bvh;
     uint blocks;
     atomic_uint next_block;
-    atomic_uint hits, shadows; /* that differ */
+    atomic_uint hits, shadows; /* number of differences */
     atomic_uint traced, met, occluded;
 } Comparison;
 
-/* A block's state, once for either path. */
+/* State of a block of walks, with a copy of the results for either path. */
 typedef struct WalkState {
     FrameParams frame;
     void *buffers[BUFFER_COUNT];
-    uint hits[HIT_WORDS * BLOCK], shadows[SHADOW_WORDS * BLOCK]; /* Embree's */
+    uint hits[HIT_WORDS * BLOCK], shadows[SHADOW_WORDS * BLOCK]; /* Embree's results */
 } WalkState;
 
 static void walk_state_init(WalkState *state, const Comparison *comparison)
@@ -60,7 +60,7 @@ static void walk_state_destroy(WalkState *state)
         free(state->buffers[i]);
 }
 
-/* What was in the buffers where nothing is traced has to stay; so both start with the same. */
+/* Items without a ray must leave the hit buffer untouched, so both start from the same contents. */
 static void closest_compare(Comparison *comparison, WalkState *state)
 {
     uint *hits = state->buffers[BUFFER_HITS];
@@ -80,7 +80,7 @@ static void closest_compare(Comparison *comparison, WalkState *state)
     atomic_fetch_add(&comparison->met, met);
 }
 
-/* Segments from each walk's vertex to another walk's: many are blocked. */
+/* Segments from each walk's vertex to another walk's: many are occluded. */
 static void shadows_make(WalkState *state)
 {
     const uint *paths = state->buffers[BUFFER_PATHS];

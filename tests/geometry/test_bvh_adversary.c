@@ -1,8 +1,8 @@
-/* Rays that are made to break the agreement of hierarchies, against asking every primitive: Embree's walk and the
- * device's (as C) must find the same bits. Ends of rays are vertices, points of edges and faces of primitives and their
- * boxes, off by a few units in the last place; directions lie in the planes of triangles, along axes, or have
- * components next to nothing. Half of the rays are found by climbing: a ray is changed by units in the last place, and
- * a change is kept when its hit is further outside the primitive's box than before. */
+/* Adversarial rays: Embree and the device's traversal (as C) must find bitwise the same hits as a brute-force test of
+ * every primitive. End points are vertices and points on edges and faces of primitives and of their boxes, off by a few
+ * units in the last place; directions lie in the planes of triangles, along axes, or have tiny components. Half of the
+ * rays are found by hill climbing: a ray is changed by units in the last place, and the change is kept if its hit is at
+ * least as far outside the primitive's box as before. */
 #include "backend/bvh.h"
 #include "geometry/bvh_scenes.h"
 #include "geometry/bvh_traverse.h"
@@ -12,14 +12,14 @@
 #include <pthread.h>
 #include <string.h>
 
-#define SCENES 64u /* in 10^7 rays; every scene has new geometry */
+#define SCENES 64u /* per 10^7 rays; every scene has new geometry */
 #define THREADS 2u
-#define CLIMB 16u /* changes of one ray */
+#define CLIMB 16u /* steps of hill climbing from one ray */
 
-/* What is aimed at: points in world space. */
+/* What rays aim at: points in world space. */
 typedef struct Targets {
     Vec3 corner[4];
-    uint count; /* 3 of a triangle, 4 of a patch, 2 of a box alone */
+    uint count; /* 3 for a triangle, 4 for a patch, 2 for a mere box */
 } Targets;
 
 typedef struct Adversary {
@@ -37,7 +37,7 @@ typedef struct Adversary {
 
 /* ---- scenes ------------------------------------------------------------------------------------------------------ */
 
-/* A coordinate that others are likely to share. */
+/* A coordinate that others are likely to have as well. */
 static float coordinate(TestRandom *random)
 {
     static const float COMMON[] = {-1.0f, -0.5f, 0.0f, 0.5f, 1.0f, 2.4f, 0.1f, -3.2f};
@@ -57,7 +57,7 @@ static void add_triangles(TestScene *test, TestRandom *random, uint count, float
         Vec3 a = corner_random(random), b = corner_random(random), c = corner_random(random);
         if (i % 3 == 1) /* a sliver */
             c = vec3_mad(vec3_lerp(a, b, random_unit(random)), 1e-5f, random_direction(random));
-        if (i % 3 == 2 && i > 1) { /* shares an edge with the one before */
+        if (i % 3 == 2 && i > 1) { /* shares an edge with the previous one */
             a = mesh.positions[3 * i - 3];
             b = mesh.positions[3 * i - 2];
         }
@@ -71,7 +71,7 @@ static void add_triangles(TestScene *test, TestRandom *random, uint count, float
     mesh_destroy(&mesh);
 }
 
-/* The walls of a room as patches, and some that are not flat. */
+/* The walls of a room as patches, and some non-planar ones. */
 static void add_patches(TestScene *test, TestRandom *random, float scale, Vec3 shift)
 {
     static const uchar WALLS[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 4, 5},
@@ -93,7 +93,7 @@ static void add_patches(TestScene *test, TestRandom *random, float scale, Vec3 s
     ck_assert_msg(scene_add_patches(&test->scene, &data, shape, NULL, 0, &error), "%s", error.message);
 }
 
-/* An object of triangles and quadrics: turned, mirrored, and stretched up to 30 times. */
+/* An object of triangles and quadrics: rotated, mirrored, and stretched up to 30 times. */
 static void add_instances(TestScene *test, TestRandom *random, float scale, Vec3 shift)
 {
     Error error = {0};
@@ -114,7 +114,8 @@ static void add_instances(TestScene *test, TestRandom *random, float scale, Vec3
     }
 }
 
-/* A triangle with a corner so far out that rays from there take another walk on the CPU (backend/ray_reach.h). */
+/* A triangle with a corner so far away that rays from there use the devices' traversal on the CPU
+ * (backend/ray_reach.h). */
 static void add_far_triangle(TestScene *test, TestRandom *random, float scale)
 {
     TestMesh mesh = mesh_create(3, 1);
@@ -202,7 +203,7 @@ static void scene_free(Adversary *adversary)
 
 /* ---- rays -------------------------------------------------------------------------------------------------------- */
 
-/* x, moved by up to `most` floats. */
+/* x, moved by up to `most` representable floats. */
 static float ulps_moved(TestRandom *random, float x, uint most)
 {
     uint steps = random_below(random, most + 1);
@@ -218,7 +219,7 @@ static Vec3 ulps_moved3(TestRandom *random, Vec3 p, uint most)
     return vec3(x, y, ulps_moved(random, p.z, most));
 }
 
-/* A vertex, a point of an edge, of a diagonal, of the face, or of the box. */
+/* A corner, a point on an edge or diagonal, one within the face, or one of the bounding box. */
 static Vec3 target_point(TestRandom *random, const Targets *target)
 {
     Vec3 a = target->corner[random_below(random, target->count)],
@@ -238,7 +239,7 @@ static Vec3 target_point(TestRandom *random, const Targets *target)
     }
 }
 
-/* d with one or two components at or next to zero. */
+/* d with one or two components set to zero or nearly zero. */
 static Vec3 axis_turned(TestRandom *random, Vec3 d)
 {
     static const float SMALL[] = {0.0f, -0.0f, 1e-8f, -1e-7f, 1e-20f, -1e-19f, 1e-40f};
@@ -257,7 +258,7 @@ static Ray ray_make(Adversary *adversary)
     float reach = adversary->test.backend.frame->ray_reach;
     Ray ray;
     ray.o = ulps_moved3(random, target_point(random, from), random_below(random, 3) ? 40 : 1);
-    if (random_below(random, 6) == 0) { /* in the plane of `from`, beside it */
+    if (random_below(random, 6) == 0) { /* in the plane of `from`, outside of it */
         Vec3 side = vec3_sub(target_point(random, from), ray.o);
         ray.o = vec3_mad(ray.o, random_between(random, -2.0f, 2.0f), side);
     }
@@ -290,8 +291,8 @@ static Ray ray_changed(Adversary *adversary, Ray ray)
     return ray;
 }
 
-/* How far outside its primitive's box the hit is, in units of FLOAT_EPSILON (box + origin), all in the space of the
- * primitive; negative for a miss. */
+/* How far the hit is outside its primitive's box, in units of FLOAT_EPSILON (box + origin), in the primitive's space;
+ * negative for a miss. */
 static double hit_outside(const Adversary *adversary, const Ray *ray, const Hit *hit)
 {
     const SceneView *view = &adversary->test.view;
@@ -310,7 +311,7 @@ static double hit_outside(const Adversary *adversary, const Ray *ray, const Hit 
     return outside / ((double)FLOAT_EPSILON * ((double)box_largest(&box) + (double)vec3_max_abs(query.o)) + 1e-300);
 }
 
-/* Asks all three, which find nothing along a ray that cannot be traced; the largest hit_outside goes to *outside. */
+/* Traces the ray by all three, which must find nothing if it is not traceable; its hit_outside goes to *outside. */
 static void ray_ask(Adversary *adversary, const Ray *ray, double *outside)
 {
     const SceneView *view = &adversary->test.view;
@@ -346,7 +347,7 @@ static void climb(Adversary *adversary)
 
 typedef struct AdversaryThread {
     pthread_t thread;
-    uint first, rays; /* scene; rays a scene */
+    uint first, rays; /* first scene; rays per scene */
     unsigned long long asked, hits, wrong;
     double outside;
     char failure[256];
@@ -373,8 +374,8 @@ static void *adversary_thread(void *argument)
     return NULL;
 }
 
-/* 10^7 rays for each unit of effort up to 7; the long test 10^9, over a hundred times as many scenes, in LONG_PARTS:
- * Check knows no test of more than 2^31 microseconds. */
+/* 10^7 rays per unit of effort up to 7; the long test traces 10^9, over a hundred times as many scenes, in LONG_PARTS,
+ * since Check's time limits end at 2^31 microseconds. */
 #define LONG_PARTS 20u
 
 START_TEST(test_adversary)

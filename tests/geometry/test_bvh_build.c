@@ -1,4 +1,4 @@
-/* The hierarchy against brute force, its layout, and what it refuses. */
+/* The hierarchy against brute force, its layout, and inputs that it rejects. */
 #include "backend/bvh.h"
 #include "geometry/bvh_scenes.h"
 #include "geometry/bvh_traverse.h"
@@ -18,7 +18,8 @@ static Bvh bvh_of(const TestScene *test)
 
 /* ---- answers ----------------------------------------------------------------------------------------------------- */
 
-/* A ray as random as can be: of any length of direction, along axes at times, from inside or outside, ended or not. */
+/* A ray as random as possible: any length of direction, sometimes axis-aligned, from inside or outside, bounded or
+ * not. */
 static Ray any_ray(TestRandom *random, const TestScene *test)
 {
     static const float LENGTHS[] = {1.0f, 1.0f, 1e-12f, 1e-30f, 1e6f, 1e-37f};
@@ -59,7 +60,7 @@ START_TEST(test_same_hits_as_brute_force)
 }
 END_TEST
 
-/* One primitive, so that the root is a leaf; none at all. */
+/* A single primitive, so that the root is a leaf, and none at all. */
 START_TEST(test_small_scenes)
 {
     TestRandom random = {.seed = 320};
@@ -112,10 +113,10 @@ END_TEST
 typedef struct Census {
     const Bvh *bvh;
     uint nodes, items, instances;
-    uint seen[1000]; /* how often primitive i lies in a leaf */
+    uint seen[1000]; /* how often primitive i is in a leaf */
 } Census;
 
-/* Counts what can be reached from a child's word; returns the entries that the stack needs below it. */
+/* Counts what is reachable from a child's word; returns the number of stack entries needed below it. */
 static uint census_take(Census *census, uint word)
 {
     if (word & BVH_LEAF) {
@@ -141,7 +142,7 @@ static uint census_take(Census *census, uint word)
     return deepest + children - 1;
 }
 
-/* Every primitive of the world lies in one leaf, and sizes are what they are said to be. */
+/* Every primitive of the world is in exactly one leaf, and sizes are as stated. */
 START_TEST(test_layout)
 {
     for (uint i = 0; i < BVH_CASE_COUNT; ++i) {
@@ -161,7 +162,7 @@ START_TEST(test_layout)
             ck_assert_uint_eq(census.items, bvh.item_count);
             ck_assert_uint_eq(stack + 1, bvh.stack);
         } else {
-            ck_assert_uint_eq(census.instances, 12); /* those of the empty object are left out */
+            ck_assert_uint_eq(census.instances, 12); /* those of the empty object are omitted */
             ck_assert_uint_gt(bvh.stack, stack + 2);
         }
         bvh_destroy(&bvh);
@@ -172,8 +173,7 @@ END_TEST
 
 /* ---- limits ------------------------------------------------------------------------------------------------------ */
 
-/* Triangles that shrink by a half towards a corner: a tree by the surface area heuristic is as deep as they are
- * many. */
+/* Triangles that halve in size toward a corner: a SAH tree is as deep as their number. */
 static void make_shrinking(TestScene *test, uint count)
 {
     TestMesh mesh = mesh_create(3 * (size_t)count, count);
@@ -188,7 +188,8 @@ static void make_shrinking(TestScene *test, uint count)
     mesh_destroy(&mesh);
 }
 
-/* Where the heuristic's tree does not fit the stack, another is built that does, down to the least that holds all. */
+/* If the SAH tree needs too much stack, a tree that fits is built, down to the smallest depth that can hold all
+ * primitives. */
 START_TEST(test_depth_is_bounded)
 {
     Error error = {0};

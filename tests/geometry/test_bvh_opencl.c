@@ -1,5 +1,5 @@
-/* The trace kernels on an OpenCL device against the same kernels as C, on rays of walks: the same bits in every field,
- * and untouched words where nothing is to be traced. */
+/* The trace kernels on an OpenCL device against the same kernels as C, on the rays of random walks: the same bits in
+ * every field, and untouched words for items without a ray. */
 #include "backend/bvh.h"
 #include "geometry/bvh_scenes.h"
 #include "geometry/test_bvh.h"
@@ -48,7 +48,7 @@ static bool device_open(Twin *twin, bool specialised)
                         test_source_folder());
     if (specialised)
         snprintf(options + used, sizeof options - (size_t)used, " -DTWINLIGHT_FEATURES=0x%xu", twin->frame.features);
-    setenv("POCL_KERNEL_CACHE", "0", 0); /* a cache does not see that an included header has changed */
+    setenv("POCL_KERNEL_CACHE", "0", 0); /* the cache does not notice changed include files */
     twin->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!twin->probe) {
         ck_assert_msg(absent, "%s", message);
@@ -94,7 +94,7 @@ static void twin_close(Twin *twin)
     test_scene_destroy(&twin->test);
 }
 
-/* Runs the kernel on both over the same rays; how many words of `out` differ. */
+/* Runs the kernel on both over the same rays; returns how many words of `out` differ. */
 static uint twin_trace(Twin *twin, unsigned kernel, const char *name, const BufferId *ids, size_t count, BufferId in,
                        BufferId out)
 {
@@ -116,7 +116,7 @@ static uint twin_trace(Twin *twin, unsigned kernel, const char *name, const Buff
     return differ;
 }
 
-/* Every seventh ray is not to be traced. */
+/* Every seventh item gets no ray. */
 static void rays_blank(Twin *twin, BufferId id, uint first)
 {
     for (uint t = first; t < WALKS; t += 7u)
@@ -147,7 +147,7 @@ static void walks_compare(const BvhCase *entry, bool specialised)
     twin_close(&twin);
 }
 
-/* Building a program takes longer than running it; between them these need every branch of the kernels. */
+/* Building a program takes longer than running it; together these scenes need every branch of the kernels. */
 static const char *const CASES[] = {"huge", "coplanar", "instances"};
 #define CASE_COUNT ((int)(sizeof CASES / sizeof CASES[0]))
 
@@ -166,7 +166,7 @@ START_TEST(test_same_bits)
 }
 END_TEST
 
-/* With the features read at run time, as C does. */
+/* With the features read at run time, as in C. */
 START_TEST(test_same_bits_unspecialised)
 {
     walks_compare(case_named("instances"), false);

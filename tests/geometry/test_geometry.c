@@ -1,13 +1,13 @@
-/* Rays and triangles by themselves: watertightness, accuracy, offsets, symmetry. */
+/* Rays and triangles in isolation: watertightness, accuracy, offsets, symmetry. */
 #include "geometry/geometry_suites.h"
 #include "support/geometry_fixture.h"
 
 #include <string.h>
 
-/* References are computed in long double from floats, on purpose and everywhere. */
+/* References are deliberately computed in long double from floats. */
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
-/* A point of a triangle of the mesh that is as hard as can be: exactly a corner, or on an edge up to rounding. */
+/* The hardest points of a triangle mesh: exactly a corner, or on an edge up to rounding. */
 static Vec3 mesh_hard_point(const TestMesh *mesh, TestRandom *random, bool corner)
 {
     const uint *triangle = mesh->indices + 3 * (size_t)random_below(random, (uint)mesh->triangle_count);
@@ -80,7 +80,7 @@ static ExactHit triangle_exact(Vec3 a, Vec3 b, Vec3 c, const Ray *ray)
     return hit;
 }
 
-/* Backward errors of a few units in the last place of the coordinates become forward errors over the cosine. */
+/* Backward errors of a few units in the last place of the coordinates become forward errors divided by the cosine. */
 START_TEST(test_triangle_accuracy)
 {
     TestRandom random = {.seed = 11};
@@ -136,8 +136,8 @@ START_TEST(test_triangle_refuses)
 }
 END_TEST
 
-/* A closed mesh keeps its rays: what starts inside hits something, and what it leaves is hit on the inside. Leaving a
- * hit towards the inside must not find the same triangle again. */
+/* A closed mesh does not leak: a ray from inside hits something, and does so on the inside. Leaving a hit toward the
+ * inside must not hit the same triangle again. */
 static void self_intersection_check(float scale, Vec3 shift, uint walks, uint seed)
 {
     TestRandom random = {.seed = seed};
@@ -185,8 +185,8 @@ START_TEST(test_self_intersection)
 }
 END_TEST
 
-/* The case that offsets by the last place of the point alone do not cover: a hit near (0,0,0) of a triangle whose
- * corners are far away. */
+/* A case that offsets by the point's own last place do not cover: a hit near (0,0,0) of a triangle whose corners are
+ * far away. */
 START_TEST(test_large_floor)
 {
     TestRandom random = {.seed = 70};
@@ -203,7 +203,7 @@ START_TEST(test_large_floor)
         Ray ray = ray_spawn(p, ng, wi);
         float t, bu, bv;
         self += triangle_intersect(a, b, c, &ray, &t, &bu, &bv);
-        /* Points nearer to the plane than p's own rounding (about 10^-3) have no side. */
+        /* Points closer to the plane than p's own rounding (about 10^-3) are on no definite side. */
         float distance = random_between(&random, 1.0f, 100.0f);
         if (float_abs(vec3_dot(ng, wi)) * distance < 0.01f)
             continue;

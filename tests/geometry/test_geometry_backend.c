@@ -1,4 +1,4 @@
-/* The thread pool: the same items, the same bits, whatever the number of threads; counters; stopping; denormals. */
+/* The thread pool: the same items and the same bits for any number of threads; counters; stopping; denormals. */
 #include "backend/group.h"
 #include "backend_cpu.h"
 #include "geometry/geometry_suites.h"
@@ -105,7 +105,7 @@ START_TEST(test_same_bits_for_any_threads)
         pthread_mutex_init(&results[i].mutex, NULL);
     for (uint i = 0; i < 4; ++i)
         walk_run(&test, threads[i], 0, ITEMS, &results[i]);
-    /* The same in two runs, cut off the chunks' borders. */
+    /* The same in two runs, divided off chunk borders. */
     walk_run(&test, 2, 0, 1777, &results[4]);
     walk_run(&test, 2, 1777, ITEMS, &results[4]);
     for (uint i = 0; i < 5; ++i) {
@@ -152,15 +152,15 @@ END_TEST
 
 static atomic_int stop_now;
 
-/* Splats that bring a stop. */
+/* A sink that requests a stop. */
 static void collect_and_stop(void *context, const uint *splats, uint count, uint stride)
 {
     collect(context, splats, count, stride);
     stop_now = 1;
 }
 
-/* A stop that comes while a chunk is under way, which has shown a part of itself: it is finished, so that the film has
- * none by halves, unless the pass is of no use any more. */
+/* A stop during a chunk that has already delivered some splats: the chunk is completed, so that the film contains no
+ * partial chunks, unless the pass is useless after a stop (`whole`). */
 START_TEST(test_stop_in_chunk)
 {
     static const Step steps[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},
@@ -194,7 +194,7 @@ START_TEST(test_stop_in_chunk)
 }
 END_TEST
 
-/* Counters of all threads are summed and survive from run to run. */
+/* Counters are summed over all threads and persist from run to run. */
 START_TEST(test_diagnostics)
 {
     static Collector collector;
@@ -231,7 +231,7 @@ typedef struct DenormalSum {
     uint chunks, kept;
 } DenormalSum;
 
-/* On the worker's own thread: the smallest denormals survive addition, multiplication and comparison. */
+/* Runs on the worker's own thread: the smallest denormals survive addition, multiplication and comparison. */
 static void denormal_sink(void *context, const uint *splats, uint count, uint stride)
 {
     DenormalSum *sum = context;
@@ -271,8 +271,8 @@ START_TEST(test_denormals_kept)
 }
 END_TEST
 
-/* Directions and whole scenes so small that products are denormal: Embree's answers and brute force's agree, and this
- * thread's arithmetic is what it was. */
+/* Directions and whole scenes so small that products are denormal: Embree and brute force agree, and this thread's
+ * floating-point mode is unchanged. */
 START_TEST(test_denormal_rays)
 {
     TestRandom random = {.seed = 210};
@@ -300,7 +300,7 @@ START_TEST(test_denormal_rays)
 }
 END_TEST
 
-/* A CPU backend as a group of several, one of which may fail in every pass. */
+/* A group of several CPU backends, one of which may fail in every pass. */
 static Backend *group_open(const TestScene *test, const BackendInterface *last, size_t count)
 {
     Error error = {0};
@@ -316,7 +316,7 @@ static Backend *group_open(const TestScene *test, const BackendInterface *last, 
     return group;
 }
 
-/* Three members, twelve passes of all sizes: every item once, and the bits of one backend. */
+/* Three members, twelve passes of various sizes: every item once, and the bits of a single backend. */
 START_TEST(test_group_same_bits)
 {
     static Collector alone, together;
@@ -363,7 +363,7 @@ static bool failing_run(Backend *backend, const FrameParams *frame, const StepLi
     return error_set(error, "the device is lost");
 }
 
-/* One member fails: the error is its own, and what the others did is delivered and counted. */
+/* One member fails: its error is returned, and the other members' items are delivered and counted. */
 START_TEST(test_group_member_fails)
 {
     static Collector collector;

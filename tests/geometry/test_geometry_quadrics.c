@@ -1,10 +1,10 @@
-/* Spheres, disks, bilinear patches against long double, and what surfaces say of them. */
+/* Spheres, disks and bilinear patches against long double, and the surfaces at their hits. */
 #include "geometry/geometry_suites.h"
 #include "support/geometry_fixture.h"
 
 #include <string.h>
 
-/* References are computed in long double from floats, on purpose and everywhere. */
+/* References are deliberately computed in long double from floats. */
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
 typedef struct Exact3 {
@@ -103,8 +103,8 @@ START_TEST(test_sphere_accuracy)
 }
 END_TEST
 
-/* Clipped spheres under any map: a hit lies on the kept part, and the ray through a kept point finds it or one
- * before. */
+/* Clipped spheres under arbitrary transforms: a hit lies on the kept part, and a ray through a kept point hits it or an
+ * earlier point. */
 START_TEST(test_partial_sphere)
 {
     TestRandom random = {.seed = 310};
@@ -221,7 +221,7 @@ START_TEST(test_quadric_parameters)
 }
 END_TEST
 
-/* Leaving a sphere never meets it again outwards, and inwards meets its other side. */
+/* A ray that leaves a sphere outward never hits it again; inward, it hits the opposite side. */
 static void sphere_self_check(float scale, Vec3 shift, bool stretched, uint seed)
 {
     TestRandom random = {.seed = seed};
@@ -261,7 +261,7 @@ START_TEST(test_sphere_self_intersection)
     for (uint i = 0; i < 3; ++i) {
         sphere_self_check(scales[i], vec3_splat(0.0f), false, 330 + i);
         sphere_self_check(scales[i], vec3_splat(0.0f), true, 340 + i);
-        /* The surface passes through the origin of coordinates. */
+        /* The surface passes through the coordinate origin. */
         sphere_self_check(scales[i], vec3(scales[i], 0.0f, 0.0f), false, 350 + i);
         sphere_self_check(scales[i], vec3(scales[i], 0.0f, 0.0f), true, 360 + i);
     }
@@ -314,7 +314,7 @@ static PatchCorners patch_random(TestRandom *random, bool flat)
     return q;
 }
 
-/* A hit is where ray and patch meet; the ray through a point of the patch finds it or one before it. */
+/* A hit is a point of both ray and patch; the ray through a point of the patch hits it or an earlier point. */
 START_TEST(test_patch)
 {
     TestRandom random = {.seed = 500};
@@ -373,7 +373,7 @@ END_TEST
 
 /* ---- surfaces of triangles --------------------------------------------------------------------------------------- */
 
-/* One triangle with normals and texture coordinates, and the ray through its middle. */
+/* A triangle with normals and texture coordinates, and the ray through its centre. */
 static Surface triangle_surface(uint flags, const float *normals, const float *uvs)
 {
     static const float positions[9] = {0, 0, 0, 2, 0, 0, 0, 1, 0};
@@ -407,7 +407,7 @@ START_TEST(test_triangle_surface)
     s = triangle_surface(SHAPE_FLIP_NORMAL, NULL, uvs);
     ck_assert(s.ng.z == -1.0f && s.ns.z == -1.0f);
     ck_assert(s.uv.x == 0.75f && s.uv.y == 1.0f);
-    /* v grows by 2 along x (2 long), u by 1 along y (1 long). */
+    /* v increases by 2 along x (length 2), u by 1 along y (length 1). */
     ck_assert(s.dpdu.x == 0.0f && s.dpdu.y == 1.0f && s.dpdv.x == 1.0f && s.dpdv.y == 0.0f);
     s = triangle_surface(0, down, NULL);
     ck_assert(s.ng.z == -1.0f && s.ns.z == -1.0f);
@@ -420,8 +420,8 @@ START_TEST(test_triangle_surface)
 }
 END_TEST
 
-/* Two coplanar instances' alpha is not tested here (texture tests cover lookups): that a hash of equal rays is equal,
- * spreads evenly, and differs between primitives. */
+/* The hash for stochastic alpha: equal for equal rays, evenly distributed, and different for different primitives.
+ * Lookups are covered by the texture tests. */
 START_TEST(test_ray_hash)
 {
     TestRandom random = {.seed = 600};

@@ -1,4 +1,4 @@
-/* The CPU backend's ray queries against asking every primitive: the same bits, whatever the hierarchy. */
+/* The CPU backend's ray queries against brute force: the same bits, whatever the hierarchy. */
 #include "geometry/geometry_suites.h"
 #include "rays_embree.h"
 #include "support/geometry_fixture.h"
@@ -22,7 +22,7 @@ static bool brute_occluded(const TestScene *test, const Ray *ray)
     return brute_force(test, ray).primitive != NONE;
 }
 
-/* Walks through the scene: both answers to every ray of it. */
+/* Random walks through the scene: every ray is traced both ways. */
 static Differences walks_compare(const TestScene *test, const RaysEmbree *rays, uint walks, uint steps, Vec3 start,
                                  uint seed)
 {
@@ -104,7 +104,7 @@ START_TEST(test_same_bits_huge)
 }
 END_TEST
 
-/* Rays from a camera far outside, whose rounding is larger than the scene's; the silhouette is hit and missed. */
+/* Rays from a distant camera, whose rounding is larger than the scene's; they hit and miss the silhouette. */
 START_TEST(test_same_bits_far_camera)
 {
     static const float distances[] = {10.0f, 300.0f, 1e4f};
@@ -139,7 +139,7 @@ START_TEST(test_same_bits_far_camera)
 }
 END_TEST
 
-/* Two equal quads: the smaller number wins, in whichever order they come. */
+/* Two equal quads: the smaller number wins, in either order. */
 START_TEST(test_tie_by_id)
 {
     for (uint order = 0; order < 2; ++order) {
@@ -180,7 +180,7 @@ START_TEST(test_tie_by_id)
 }
 END_TEST
 
-/* World geometry, and instances (mirrored and stretched ones among them) of an object with every kind of primitive. */
+/* World geometry, and instances (some mirrored or stretched) of an object with every kind of primitive. */
 static void instances_scene(TestScene *test, TestRandom *random, uint instances)
 {
     Error error = {0};
@@ -226,7 +226,7 @@ static void mesh_transform(TestMesh *mesh, const double m[16])
     }
 }
 
-/* An instance of a mesh is the transformed mesh, to rounding, its normal included. */
+/* An instance of a mesh equals the transformed mesh up to rounding, its normal included. */
 static void instance_compare(bool mirror, uint seed)
 {
     Error error = {0};
@@ -330,7 +330,7 @@ START_TEST(test_nothing_to_hit)
 }
 END_TEST
 
-/* A ray that is not a ray hits nothing and does no harm. */
+/* Invalid rays hit nothing and do no harm. */
 START_TEST(test_untraceable_rays)
 {
     static const float BAD[] = {NAN, INFINITY, -INFINITY, 3e38f, 2e18f};

@@ -22,7 +22,7 @@ static SceneView view_make(const Scene *scene)
     return view;
 }
 
-/* A picture of random texels; floats go from -1 to 3. */
+/* An image of random texels; floats range from -1 to 3. */
 static Image picture_make(int width, int height, int channels, bool is_float, unsigned seed)
 {
     size_t count = (size_t)(width * height * channels);
@@ -46,7 +46,7 @@ static uint picture_add(Scene *scene, const Image *image, uint wrap, uint filter
     return index;
 }
 
-/* The texel that (x, y), any whole numbers, stands for under a wrap mode, in double. */
+/* The texel that (x, y), arbitrary integers, refers to under a wrap mode, in double. */
 static double model_texel(const Image *image, uint wrap, long x, long y, int channel)
 {
     long w = image->width, h = image->height;
@@ -57,7 +57,7 @@ static double model_texel(const Image *image, uint wrap, long x, long y, int cha
         x = x < 0 ? 0 : x >= w ? w - 1 : x;
         y = y < 0 ? 0 : y >= h ? h - 1 : y;
     } else if (wrap == WRAP_OCTAHEDRAL) {
-        /* Crossing a side means landing on the same side, mirrored about its middle. */
+        /* Crossing an edge leads back to the same edge, mirrored about its middle. */
         if (x < 0 || x >= w) {
             x = x < 0 ? -1 - x : 2 * w - 1 - x;
             y = h - 1 - y;
@@ -89,14 +89,14 @@ static double model_lookup(const Image *image, uint wrap, uint filter, double u,
     return sum;
 }
 
-/* Whether float32 may fall on the other side of a texel's border. */
+/* Whether float32 may round to the other side of a texel border. */
 static bool near_border(const Image *image, double u, double v)
 {
     double s = u * image->width, t = v * image->height;
     return fabs(s - rint(s)) < 1e-4 || fabs(t - rint(t)) < 1e-4;
 }
 
-/* Random (u, v), far outside too where the wrap mode has a meaning there. */
+/* Random (u, v), also far outside if the wrap mode defines lookups there. */
 static void lookups_check(const Image *image, uint wrap, uint filter)
 {
     Scene scene;
@@ -114,7 +114,7 @@ static void lookups_check(const Image *image, uint wrap, uint filter)
         const float got[3] = {c.x, c.y, c.z};
         for (int k = 0; k < 3; ++k)
             TEST_NEAR(got[k], model_lookup(image, wrap, filter, (double)u, (double)v, k), 2e-4);
-        /* As a number: grey, the mean of RGB, the alpha of RGBA. */
+        /* As a float texture: grey, the mean of RGB, the alpha of RGBA. */
         double number = (double)vec3_mean(c);
         if (image->channels == 4)
             number = model_lookup(image, wrap, filter, (double)u, (double)v, 3);
@@ -140,7 +140,7 @@ START_TEST(test_lookups)
 }
 END_TEST
 
-/* Nothing that a float can be leads outside the image. */
+/* No float value leads outside the image. */
 START_TEST(test_lookups_of_any_float)
 {
     Image image = picture_make(5, 3, 4, false, 5);
@@ -170,7 +170,7 @@ START_TEST(test_lookups_of_any_float)
 }
 END_TEST
 
-/* pbrt: a float texture of RGB is the mean, of RGBA the alpha, of grey itself. */
+/* pbrt: a float texture of an RGB image is its mean, of RGBA its alpha, of grey its value. */
 START_TEST(test_images_as_numbers)
 {
     const unsigned char grey[] = {51}, rgb[] = {51, 102, 153}, rgba[] = {51, 102, 153, 204};
@@ -245,7 +245,7 @@ START_TEST(test_programs)
 }
 END_TEST
 
-/* Bad programs are found before a kernel sees them. */
+/* Invalid programs are rejected before a kernel sees them. */
 START_TEST(test_program_check)
 {
     const TextureOp one = op_constant(1, 1, 1), end = {0}, scale = {.code = TEXTURE_SCALE}, odd = {.code = 77};
@@ -315,7 +315,7 @@ START_TEST(test_mappings)
             TEST_NEAR(got.y, st[1], 3e-5);
         }
     }
-    /* The origin, where directions have no meaning, is some point of the map. */
+    /* At the origin, where the direction is undefined, the result is some point of the map. */
     Vec2 origin = texture_map_spherical(vec3(0.0f, 0.0f, 0.0f));
     ck_assert(origin.x >= 0.0f && origin.x <= 1.0f && origin.y >= 0.0f && origin.y <= 1.0f);
     const TextureOp uv = {.code = TEXTURE_IMAGE, .uv_map = {2.0f, -3.0f, 0.5f, 0.25f}};
@@ -363,7 +363,7 @@ START_TEST(test_checkerboards)
 }
 END_TEST
 
-/* Scaled first, then inverted, then kept from going below 0; a number inside a colour by TEXTURE_IMAGE_FLOAT. */
+/* Scaled first, then inverted, then clamped to at least 0; a number within a colour by TEXTURE_IMAGE_FLOAT. */
 START_TEST(test_image_ops)
 {
     float rgba[] = {0.25f, 0.5f, -1.0f, 0.125f};

@@ -61,7 +61,7 @@ static double fresnel(double n, double k)
 }
 
 /* Reflectance at normal incidence in linear sRGB as tabulated by S. Lagarde ("Feeding a physically based shading
- * model", 2011) for silver, aluminium and copper; gold's red lies outside sRGB and is kept below 1. */
+ * model", 2011) for silver, aluminium and copper; gold's red lies outside sRGB and is clamped below 1. */
 START_TEST(test_metals)
 {
     const struct {
@@ -84,7 +84,7 @@ START_TEST(test_metals)
 }
 END_TEST
 
-/* n_d (587.6 nm) and n_F (486.1 nm) of Schott's catalogue bracket the channels' averages. */
+/* n_d (587.6 nm) and n_F (486.1 nm) from Schott's catalogue bracket the averages of the channels. */
 START_TEST(test_glass)
 {
     const struct {
@@ -141,7 +141,7 @@ START_TEST(test_samples)
     sampled(grey, 2, COLOR_REFLECTANCE, rgb);
     for (int c = 0; c < 3; ++c)
         ck_assert_float_eq_tol(rgb[c], 0.5f, 1e-6f);
-    /* Illuminant E: the matrix of sRGB times (1, 1, 1). */
+    /* Illuminant E: the sRGB matrix times (1, 1, 1). */
     sampled(grey, 2, COLOR_ILLUMINANT, rgb);
     ck_assert_float_eq_tol(rgb[0], 1.2048f, 1e-3f);
     ck_assert_float_eq_tol(rgb[1], 0.9483f, 1e-3f);
@@ -151,7 +151,7 @@ START_TEST(test_samples)
         ck_assert_float_eq_tol(rgb[c], 1.6f, 1e-6f);
     sampled(edge, 5, COLOR_INDEX, rgb);
     ck_assert(rgb[2] > 1.9f && rgb[2] <= 2.0f && rgb[0] < 1.35f && rgb[0] >= 1.0f && rgb[1] > rgb[0]);
-    /* A saturated reflectance leaves the gamut and is brought back; what was at most 1 stays so. */
+    /* A saturated reflectance leaves the gamut and is mapped back; values of at most 1 remain so. */
     sampled(blue, 3, COLOR_REFLECTANCE, rgb);
     ck_assert(rgb[0] >= 0.0f && rgb[1] >= 0.0f && rgb[2] > 0.8f && rgb[2] <= 1.0f);
     sampled(line, 3, COLOR_ILLUMINANT, rgb);

@@ -1,4 +1,4 @@
-/* Reading pictures: every format, and files that are truncated, damaged or lie about their size. */
+/* Reading images: every format, and files that are truncated, damaged or state a wrong size. */
 #include "support/test_files.h"
 #include "support/test_util.h"
 
@@ -15,7 +15,7 @@ TCase *texture_files_tcase(void);
 #define WIDTH 45
 #define HEIGHT 37
 
-/* Smooth, so that lossy formats stay close; 0.1 ... 0.9. */
+/* Smooth, so that lossy formats stay close; range 0.1 ... 0.9. */
 static float smooth(int x, int y, int c)
 {
     return 0.5f + 0.4f * sinf((float)x * 0.11f + (float)c) * cosf((float)y * 0.13f);
@@ -46,7 +46,7 @@ static void read_bad(const char *path, const char *expected)
     ck_assert_msg(strstr(error.message, expected) != NULL, "%s", error.message);
 }
 
-/* Compares with smooth(); `scale` 255 for bytes. */
+/* Compares with smooth(); `scale` is 255 for bytes. */
 static void image_check(const char *path, int channels, bool is_float, double tolerance)
 {
     Image image = read_good(path);
@@ -112,7 +112,7 @@ START_TEST(test_float_formats)
 }
 END_TEST
 
-/* What exr_make writes. */
+/* The kind of file that exr_make writes. */
 typedef struct ExrKind {
     exr_compression_t compression;
     exr_pixel_type_t type;
@@ -153,7 +153,7 @@ static exr_result_t exr_chunk_write(exr_context_t context, const ExrKind *kind, 
     return result;
 }
 
-/* A picture of smooth() whose data window begins at (-7, 5). */
+/* An image of smooth() whose data window begins at (-7, 5). */
 static exr_result_t exr_make(const char *path, const ExrKind *kind)
 {
     exr_context_t context = NULL;
@@ -213,7 +213,7 @@ START_TEST(test_exr_kinds)
 }
 END_TEST
 
-/* DWA goes another way than the rest. */
+/* DWA uses a different code path. */
 static void dwa_make(const char *path, int compression, int channels)
 {
     static ImfRgba pixels[WIDTH * HEIGHT];
@@ -268,8 +268,8 @@ START_TEST(test_exr_channels)
 }
 END_TEST
 
-/* Any choice among the channels of a file, of either size: their order is the picture's, and those not wanted do not
- * matter. Channel i is i + pixel / 8. */
+/* Any subset of a file's channels, of either pixel size: the result has the image's order, and unwanted channels do not
+ * matter. Channel i holds i + pixel / 8. */
 START_TEST(test_exr_choices)
 {
     static const struct {
@@ -344,7 +344,7 @@ START_TEST(test_truncated)
 }
 END_TEST
 
-/* Bytes changed at random: any answer but a crash. (What stb_image takes for pixels may be anything.) */
+/* Random bytes changed: any result but a crash. (stb_image may take anything for pixels.) */
 START_TEST(test_damaged)
 {
     samples_write();
@@ -407,7 +407,7 @@ START_TEST(test_refused)
 }
 END_TEST
 
-/* The public scenes' reference images, where they are at hand. */
+/* The reference images of public scenes, if available. */
 START_TEST(test_public_references)
 {
     const char *const scenes[] = {"coffee", "cornell-box", "veach-bidir", "veach-mis"};

@@ -15,7 +15,7 @@ TCase *texture_image_tcase(void);
 
 static const TextureImageOptions SRGB = {ENCODING_SRGB, 1.0f, WRAP_REPEAT, FILTER_BILINEAR};
 
-/* A PNG by libpng; `format`: PNG_FORMAT_*; 16 bits when it has PNG_FORMAT_FLAG_LINEAR. */
+/* Writes a PNG by libpng; `format`: PNG_FORMAT_*; 16 bits with PNG_FORMAT_FLAG_LINEAR. */
 static void png_make(const char *path, int width, int height, png_uint_32 format, const void *pixels)
 {
     png_image png = {.version = PNG_IMAGE_VERSION, .width = (png_uint_32)width, .height = (png_uint_32)height};
@@ -106,7 +106,7 @@ START_TEST(test_alpha)
 }
 END_TEST
 
-/* 16 bits are kept as floats, decoded once. */
+/* 16-bit images are kept as floats, decoded once. */
 START_TEST(test_sixteen_bits)
 {
     const png_uint_16 grey[] = {0, 65535, 32768, 1};
@@ -137,7 +137,7 @@ static void warning_catch(const char *line, void *context)
     snprintf(context, 256, "%s", line);
 }
 
-/* Floats are linear whatever the encoding; what is not finite is 0, with a warning. */
+/* Float images are linear whatever the encoding; non-finite values become 0, with a warning. */
 START_TEST(test_floats)
 {
     const float rgb[] = {0.5f, NAN, 2.0f, INFINITY, 1e30f, -1.0f};

@@ -1,4 +1,4 @@
-/* What bidirectional paths are made of: rays that leave lights, points joined to the lens, splats. */
+/* The building blocks of bidirectional paths at their ends: rays from lights, connections to the lens, splats. */
 #include "light/test_emit.h"
 
 #include "support/test_util.h"

@@ -1,8 +1,7 @@
-/* Rays that leave area lights: points and directions against their densities, on every shape.
- *
- * Each shape is described a second time, in double, by a map from the unit square onto its surface under which the
- * points are to be uniform. Where a point came from is found by inverting the map; one over its density must be what
- * the map makes of a small square there. */
+/* Emission from area lights: points and directions against their densities, on every shape.
+ * Each shape is described a second time, in double, by a map from the unit square onto its surface under which sampled
+ * points must be uniform. A point is mapped back by inverting the map; one over its density must be the area scaling of
+ * the map there. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -57,7 +56,7 @@ static const EmitShape SHAPES[] = {
 };
 enum { SHAPE_COUNT = sizeof SHAPES / sizeof *SHAPES };
 
-/* Two chi-square tests a shape (Sidak: 1e-3 together). */
+/* Two chi-square tests per shape (Sidak: 1e-3 overall). */
 #define P_MIN (1e-3 / (2.0 * SHAPE_COUNT))
 
 static void setup(LightFixture *f, const EmitShape *s)
@@ -76,7 +75,7 @@ static void transform(const double m[16], const double p[3], double out[3])
         out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 
-/* Weights of the corners at (a, b). */
+/* Bilinear weights of the corners at (a, b). */
 static void corner_weights(const EmitShape *s, double a, double b, double w[4])
 {
     if (s->kind == PRIMITIVE_TRIANGLE) {
@@ -87,7 +86,7 @@ static void corner_weights(const EmitShape *s, double a, double b, double w[4])
     }
 }
 
-/* The map. */
+/* The map from the unit square to the surface. */
 static void shape_point(const EmitShape *s, double a, double b, double p[3])
 {
     if (s->kind == PRIMITIVE_TRIANGLE || s->kind == PRIMITIVE_BILINEAR) {
@@ -112,7 +111,7 @@ static void shape_point(const EmitShape *s, double a, double b, double p[3])
     transform(s->matrix, local, p);
 }
 
-/* (a, b) of the bilinear patch's point next to p, by Gauss and Newton. */
+/* (a, b) of the bilinear patch's point closest to p, by Gauss-Newton. */
 static void patch_invert(const EmitShape *s, const double p[3], double *a, double *b)
 {
     *a = *b = 0.5;
@@ -167,7 +166,7 @@ static void shape_invert(const EmitShape *s, const double p[3], double *a, doubl
     }
 }
 
-/* World area of a small square at (a, b) over its own; *n: unit normal, on either side. */
+/* Area scaling of the map at (a, b); *n: unit normal, on either side. */
 static double shape_area(const EmitShape *s, double a, double b, double n[3])
 {
     const double h = 1e-6;
@@ -193,7 +192,7 @@ static int cell_of(double x, int cells)
     return (int)fmin(fmax(x * cells, 0.0), cells - 1);
 }
 
-/* The record against the functions that are asked later, and against the map. */
+/* Checks the LightEmission against the functions that evaluate it later, and against the map. */
 static void check_record(const EmitShape *s, const LightFixture *f, const LightEmission *e, double a, double b)
 {
     double n[3];
@@ -207,7 +206,7 @@ static void check_record(const EmitShape *s, const LightFixture *f, const LightE
     TEST_TRUE(light_emit_pdf_w(&f->view, 0, vec3_negate(e->ng), e->w) == (two ? e->pdf_w : 0.0f));
     Surface hit = {.p = e->p, .ng = e->ng, .u = (float)a, .v = (float)b};
     TEST_NEAR(light_emit_pdf_p(&f->view, 0, &hit) / e->pdf_p, 1.0, 1e-4);
-    if (a < 1e-3 || a > 1.0 - 1e-3) /* roots: finite differences fail */
+    if (a < 1e-3 || a > 1.0 - 1e-3) /* square roots in the map: finite differences fail */
         return;
     double area = shape_area(s, a, b, n);
     double cosine = n[0] * (double)e->ng.x + n[1] * (double)e->ng.y + n[2] * (double)e->ng.z;
@@ -215,8 +214,8 @@ static void check_record(const EmitShape *s, const LightFixture *f, const LightE
     TEST_NEAR(fabs(cosine), 1.0, 1e-4);
 }
 
-/* Which cell of both sides' hemispheres w falls into: the square of the cosine and the angle around the normal are
- * uniform. `side`: 1 on the back. */
+/* The cell of w's hemisphere, on either side: the squared cosine and the angle around the normal must be uniform.
+ * `side`: 1 on the back. */
 static int direction_cell(const LightEmission *e, int side)
 {
     Vec3 local = frame_to_local(frame_from_normal(e->ng), e->w);
@@ -258,7 +257,7 @@ START_TEST(test_points_and_directions)
 }
 END_TEST
 
-/* One-sided lights shine to the side that light_emitted says they do. */
+/* One-sided lights emit on the side for which light_emitted is not zero. */
 START_TEST(test_sides)
 {
     for (int i = 0; i < SHAPE_COUNT; ++i) {
@@ -274,7 +273,7 @@ START_TEST(test_sides)
 }
 END_TEST
 
-/* A light that is there with probability alpha sends alpha times its radiance. */
+/* A light whose surface exists with probability alpha emits alpha times its radiance. */
 START_TEST(test_alpha)
 {
     for (int hidden = 0; hidden < 2; ++hidden) {

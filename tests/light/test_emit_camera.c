@@ -1,4 +1,4 @@
-/* Points joined to the lens: camera_connect as the inverse of camera_ray, and its density against differences of
+/* Connections to the lens: camera_connect as the inverse of camera_ray, and its density against finite differences of
  * rays. */
 #include "camera/camera.h"
 #include "light/test_emit.h"
@@ -8,7 +8,7 @@
 typedef struct CameraCase {
     uint kind;
     float lens_radius;
-    int transform; /* 0: rotated and shifted; 1: scaled by 2.5 as well; 2: stretched and sheared */
+    int transform; /* 0: rotation and translation; 1: also scaled by 2.5; 2: stretched and sheared */
     float window[4];
     bool has_window;
     int width, height, crop[4];
@@ -74,7 +74,7 @@ START_TEST(test_inverse)
     for (uint i = 0; i < 4096; ++i) {
         Vec2 u = fixture_random(2, i), film = crop_point(&frame, fixture_random(1, i));
         if (!camera_film_covered(&frame, film))
-            continue; /* a filter narrower than a pixel, at the border */
+            continue; /* at the border, with a filter narrower than a pixel */
         Ray ray = ray_at(&frame, film, u);
         float distance = 1.0f + 20.0f * fixture_random(3, i).x;
         CameraConnection c;
@@ -90,7 +90,7 @@ START_TEST(test_inverse)
 }
 END_TEST
 
-/* Where the ray of a film position meets the plane through p across d. */
+/* Where the ray of a film position intersects the plane through p perpendicular to d. */
 static void meet(const FrameParams *frame, Vec2 film, Vec2 u, Vec3 p, Vec3 d, double out[3])
 {
     Ray ray = ray_at(frame, film, u);
@@ -106,8 +106,8 @@ static void meet(const FrameParams *frame, Vec2 film, Vec2 u, Vec3 p, Vec3 d, do
         out[k] = o[k] + along / cosine * w[k];
 }
 
-/* How far within the reach of the outermost pixels of the crop window the position is, in pixels along the worse
- * axis. */
+/* How far inside the area reached by the filters of the crop window's pixels the position is, in pixels along the worse
+ * axis; negative outside. */
 static double reach_margin(const FrameParams *frame, Vec2 film)
 {
     double rx = (double)frame->filter.radius_x, ry = (double)frame->filter.radius_y;
@@ -116,8 +116,8 @@ static double reach_margin(const FrameParams *frame, Vec2 film)
     return fmin(x, y);
 }
 
-/* One over the density is the area across the ray that a small square of the film sees, times the pixels of the crop
- * window; for film positions up to the filter's radius outside, too. */
+/* One over the density is the area perpendicular to the ray that is seen by a unit square of the film, times the number
+ * of pixels of the crop window; also for film positions up to the filter's radius outside. */
 START_TEST(test_density)
 {
     FrameParams frame = setup(&CASES[_i]);
@@ -150,7 +150,7 @@ START_TEST(test_density)
 }
 END_TEST
 
-/* The density integrates to 1 over the part of a slanted plane that the crop window sees. */
+/* The density integrates to 1 over the part of a slanted plane seen by the crop window. */
 START_TEST(test_integral)
 {
     enum { N = 500 };
@@ -183,7 +183,7 @@ START_TEST(test_integral)
 }
 END_TEST
 
-/* Textbook values: a pinhole with a film of A = 4 at z = 1, and an orthographic camera of the same window. */
+/* Closed forms: a pinhole with a film of A = 4 at z = 1, and an orthographic camera with the same window. */
 START_TEST(test_formulas)
 {
     for (uint kind = CAMERA_PERSPECTIVE; kind <= CAMERA_ORTHOGRAPHIC; ++kind) {

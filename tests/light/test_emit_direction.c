@@ -1,5 +1,4 @@
-/* Directions of rays that leave point lights, spots and light from infinity, and the points that the latter come
- * through. */
+/* Directions of rays leaving point lights, spots and infinite lights, and the origins of the latter. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -10,7 +9,7 @@ static const double ROTATION[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64,
 
 enum { POINT, WIDE_SPOT, NARROW_SPOT, HARD_SPOT, CONSTANT, LATLONG, OCTAHEDRAL, STRETCHED, DISTANT, LIGHT_CASES };
 
-/* Eight chi-square tests of directions, five of points on the disc (Sidak: 1e-3 together). */
+/* Eight chi-square tests of directions, five of points on the disc (Sidak: 1e-3 overall). */
 #define P_MIN (1e-3 / 13.0)
 
 static Light spot(double total, double falloff)
@@ -33,7 +32,7 @@ static void add_image(LightFixture *f, uint flags)
     fixture_add_environment(f, texels, flags != 0u ? 16 : 8, 8, flags, ROTATION);
 }
 
-/* The transform that gives the image's directions in the world becomes S R with S = diag(2, 1, 1/2). */
+/* The transform from the image's directions to the world's becomes S R with S = diag(2, 1, 1/2). */
 static void stretch(LightFixture *f)
 {
     static const float SCALE[3] = {2.0f, 1.0f, 0.5f};
@@ -77,7 +76,7 @@ static void setup(LightFixture *f, int which)
     fixture_finish(f);
 }
 
-/* The directions are cut into cells by angle and cosine around an axis, down to the cosine `low`. */
+/* Cells of directions by azimuth and cosine about an axis, down to the cosine `low`. */
 typedef struct Cells {
     Frame frame;
     double low;
@@ -110,7 +109,7 @@ static int cells_find(const Cells *cells, Vec3 d)
     return i * CELLS + (int)fmin((phi < 0.0 ? phi + 1.0 : phi) * CELLS, CELLS - 1);
 }
 
-/* light_emit_pdf_w integrates to 1, and directions are distributed so. */
+/* light_emit_pdf_w integrates to 1, and directions are distributed accordingly. */
 START_TEST(test_directions)
 {
     double expected[CELLS * CELLS] = {0.0}, observed[CELLS * CELLS] = {0.0}, total = 0.0;
@@ -140,7 +139,8 @@ START_TEST(test_directions)
 }
 END_TEST
 
-/* The record is what the functions say later, but for directions that rounding moves across a texel's border. */
+/* The LightEmission agrees with the functions that evaluate it later, except for directions that rounding moves across
+ * a texel's border. */
 START_TEST(test_records)
 {
     LightFixture f;
@@ -164,10 +164,10 @@ START_TEST(test_records)
                 fabs((double)environment_radiance(&f.view, vec3_negate(e.w)).y / (double)e.radiance.y - 1.0) > 1e-3;
         if (kind != LIGHT_POINT && kind != LIGHT_SPOT)
             continue;
-        /* Intensity: what light_sample finds at distance 1. */
+        /* intensity, as light_sample finds it at distance 1 */
         LightSample s;
         TEST_TRUE(light_sample(&f.view, 0, vec3_add(e.p, e.w), vec2(0.5f, 0.5f), &s));
-        /* A narrow spot's edge is 8.7e-5 wide in the cosine, 1.2e-7 of which rounds away. */
+        /* A narrow spot's edge is 8.7e-5 wide in the cosine, of which rounding takes 1.2e-7. */
         differs += fabs((double)(s.radiance.x - e.radiance.x)) > (_i == NARROW_SPOT ? 0.02 : 1e-3);
     }
     ck_assert_msg(differs <= count / 500, "case %d: %d of %d differ", _i, differs, count);
@@ -175,7 +175,7 @@ START_TEST(test_records)
 }
 END_TEST
 
-/* Points come uniformly from the disc that touches the bounding sphere. */
+/* Origins are uniform on the disc that touches the bounding sphere. */
 START_TEST(test_disc)
 {
     double observed[CELLS * CELLS] = {0.0}, expected[CELLS * CELLS];
@@ -200,8 +200,8 @@ START_TEST(test_disc)
 }
 END_TEST
 
-/* A spot's ratio of intensity to density is at most 9/8 of its least: light paths of all directions weigh about the
- * same. A spot without an opening, and light from infinity on an empty scene, emit nothing. */
+/* A spot's intensity over its density varies by at most 9/8: light paths of all directions have about the same weight.
+ * A spot with no opening angle, and infinite lights in an empty scene, emit nothing. */
 START_TEST(test_bounds)
 {
     LightFixture f;
@@ -224,7 +224,7 @@ START_TEST(test_bounds)
 }
 END_TEST
 
-/* Spots that shine nearly everywhere: also next to the edge, directions are unit vectors. */
+/* Spots that emit in nearly all directions: sampled directions are unit vectors, also next to the edge. */
 START_TEST(test_wide_spots)
 {
     for (int k = 1; k < 20000; ++k)

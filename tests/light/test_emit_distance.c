@@ -1,5 +1,5 @@
-/* Light from infinity in small and large scenes, near and far from (0,0,0): a distant light, and a sun that is one
- * texel of an environment. Nothing of the scene may be missed by rounding. */
+/* Infinite lights in small and large scenes, near and far from the origin: a distant light, and a sun that is one texel
+ * of an environment. Rounding must not leave any part of the scene unlit. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -12,7 +12,7 @@ typedef struct DistanceCase {
 static const DistanceCase CASES[] = {{10.0, 0.0}, {1e3, 0.0}, {1e5, 0.0}, {10.0, 1e5}, {1e3, -1e6}, {1e5, 1e5}};
 enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
 
-/* A cube, as scene_finish bounds it; *low and *high: its corners. */
+/* A cube with bounds as by scene_finish; *low and *high are its corners. */
 static void setup(LightFixture *f, const DistanceCase *c, bool sun, float low[3], float high[3])
 {
     static const double rotation[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6};
@@ -41,7 +41,7 @@ static void setup(LightFixture *f, const DistanceCase *c, bool sun, float low[3]
     fixture_finish(f);
 }
 
-/* Component of the corner `i` of the box, relative to p, in double. */
+/* Corner `i` of the box relative to p, in double. */
 static void corner_from(int i, const float low[3], const float high[3], Vec3 p, double d[3])
 {
     const float at[3] = {p.x, p.y, p.z};
@@ -54,8 +54,8 @@ static double dot(const double a[3], Vec3 w)
     return a[0] * (double)w.x + a[1] * (double)w.y + a[2] * (double)w.z;
 }
 
-/* Rays start outside the scene, behind every corner, also where the disc's rim rounds; and the rim, as computed, lies
- * outside what the scene covers. */
+/* Rays start outside the scene, behind every corner, even if the disc's rim rounds inward; and the computed rim lies
+ * outside of everything that the scene covers. */
 START_TEST(test_covers)
 {
     for (int sun = 0; sun < 2; ++sun) {
@@ -65,7 +65,7 @@ START_TEST(test_covers)
         for (uint i = 0; i < 4000; ++i) {
             LightEmission e;
             Vec2 u = fixture_random(2, i);
-            if (i % 2u == 0u) /* on the rim, 2 / 2^24 inside it */
+            if (i % 2u == 0u) /* on the rim, and 2 / 2^24 inside it */
                 u = i % 4u == 0u ? vec2(5.9604645e-8f, u.y) : vec2(u.x, 1.0f - 5.9604645e-8f);
             TEST_TRUE(light_emit(&f.view, 0, u, fixture_random(9, i), &e));
             double center[3] = {0.0}, scene_radius = 0.0;
@@ -89,13 +89,13 @@ START_TEST(test_covers)
 }
 END_TEST
 
-/* Receivers across the light, a twentieth of the scene wide: in the middle of the scene, inside it and at its rim;
- * their centres in units of the scene's radius, in the frame around the direction to the light. */
+/* Receivers perpendicular to the light, a twentieth of the scene wide: in the middle of the scene, inside it and at its
+ * rim. Centres in units of the scene's radius, in the frame around the direction to the light. */
 static const double RECEIVERS[][2] = {{0.0, 0.0}, {0.94, 0.0}, {-0.5, 0.5}, {0.0, 0.94}};
 enum { RECEIVER_COUNT = sizeof RECEIVERS / sizeof *RECEIVERS };
 #define RECEIVER_RADIUS 0.05
 
-/* Where the ray meets the plane of the receivers through the scene's centre. False: from behind. */
+/* Where the ray intersects the receivers' plane, which contains the scene's centre. Returns false if from behind. */
 static bool receivers_meet(const LightFixture *f, const LightEmission *e, const Frame *frame, double at[2])
 {
     const Vec3 axes[3] = {frame->t, frame->b, frame->n}, p = vec3_sub(e->p, f->scene.frame.world_center);
@@ -111,7 +111,7 @@ static bool receivers_meet(const LightFixture *f, const LightEmission *e, const 
     return d[2] < 0.0;
 }
 
-/* The irradiance of every receiver, in units of `expected`, by rays from the light. */
+/* The irradiance of every receiver, in units of `expected`, from rays that leave the light. */
 static void receivers_check(const DistanceCase *c, const LightFixture *f, const Frame *frame, double expected)
 {
     enum { SAMPLES = 400000 };
@@ -145,7 +145,7 @@ START_TEST(test_irradiance)
         double expected = 0.0;
         setup(&f, &CASES[_i], sun != 0, low, high);
         TEST_TRUE(light_sample(&f.view, 0, vec3(0, 0, 0), vec2(0.5f, 0.5f), &s));
-        Frame frame = frame_from_normal(s.wi); /* towards the sun, whose texel is 0.7 degrees wide */
+        Frame frame = frame_from_normal(s.wi); /* toward the sun, whose texel is 0.7 degrees wide */
         for (uint i = 0; i < 10000; ++i)
             if (light_sample(&f.view, 0, vec3(0, 0, 0), fixture_stratified(7, i, 100), &s))
                 expected += (double)s.radiance.x * fmax(0.0, (double)vec3_dot(s.wi, frame.n)) / (double)s.pdf_w / 1e4;
@@ -155,9 +155,9 @@ START_TEST(test_irradiance)
 }
 END_TEST
 
-/* How fine the points on the disc are: random_float has 2^23 values along a side of the square, 2^-22 of the radius
- * apart and stretched by up to 1.27 on the disc, and coordinates as large as the radius are rounded: neighbouring
- * points are no further apart than 6e-7 of the radius. */
+/* Resolution of the points on the disc: random_float has 2^23 values along a side of the square, 2^-22 of the radius
+ * apart and stretched by up to 1.27 on the disc, and coordinates as large as the radius are rounded: adjacent points
+ * are at most 6e-7 of the radius apart. */
 START_TEST(test_resolution)
 {
     float low[3], high[3];

@@ -1,4 +1,4 @@
-/* Pictures of a plane made by light paths alone (one ray from a light to the plane, joined to the lens) against path
+/* Images of a plane by light tracing alone (a single ray from a light to the plane, connected to the lens) against path
  * tracing, pixel by pixel, for every filter and every kind of light and camera. */
 #include "camera/camera.h"
 #include "camera/film_splat.h"
@@ -43,8 +43,8 @@ static const ImageCase CASES[] = {
 };
 enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
 
-/* The camera is turned and scaled by 2; the plane spans 12 by 12 around (0,0,0), all that the camera sees; lights
- * that have a surface are beside what it sees. */
+/* The camera is rotated and scaled by 2; it sees only the plane, which spans 12 by 12 around the origin; lights with a
+ * surface are out of its view. */
 static void scene_text(const ImageCase *c, char *text, size_t size)
 {
     snprintf(text, size,
@@ -57,7 +57,7 @@ static void scene_text(const ImageCase *c, char *text, size_t size)
 
 enum { BATCHES = 24, PATHS = 200, LIGHT_PATHS = 4 * PATHS, PIXELS = 12 * 8 };
 
-/* Means and squares over batches, one value a pixel. */
+/* Sums and sums of squares over batches, one value per pixel. */
 typedef struct Batches {
     double sum[PIXELS], squares[PIXELS];
 } Batches;
@@ -76,7 +76,7 @@ static double batches_variance(const Batches *b, int i)
     return fmax(0.0, b->squares[i] - b->sum[i] * b->sum[i]) / (BATCHES - 1);
 }
 
-/* Path tracing of two segments; pixels of the crop first. */
+/* Path tracing with two segments; the crop window's pixels come first. */
 static void trace_from_camera(const char *text, int pixels, Batches *batches)
 {
     for (uint64_t seed = 0; seed < BATCHES; ++seed) {
@@ -91,7 +91,7 @@ static void trace_from_camera(const char *text, int pixels, Batches *batches)
     }
 }
 
-/* Where a ray meets the plane, or false. */
+/* Intersects a ray with the plane; returns false if it misses. */
 static bool plane_meet(const LightEmission *e, Vec3 *p)
 {
     float t = -e->p.z / e->w.z;
@@ -102,7 +102,7 @@ static bool plane_meet(const LightEmission *e, Vec3 *p)
     return float_abs(p->x) <= 6.0f && float_abs(p->y) <= 6.0f;
 }
 
-/* One light path, added to its pixel of the crop. */
+/* Adds one light path to its pixel of the crop window. */
 static void path_from_light(const SceneView *scene, uint index, uint stream, double *image)
 {
     const FrameParams *frame = scene->frame;

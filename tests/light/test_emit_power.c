@@ -1,5 +1,4 @@
-/* How much light leaves: power against closed forms, and what arrives at a receiver by shooting against what
- * light_sample finds from there. */
+/* Emitted power against closed forms, and irradiance of a receiver by light tracing against light_sample. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -9,7 +8,7 @@
 
 enum { SQUARE, TRIANGLE, PATCH, SPHERE, PART, DISK, POINT, SPOT, DISTANT, CONSTANT, IMAGE, LIGHT_CASES };
 
-/* One light that shines down onto the receiver. Returns its power; 0 where that has no closed form. */
+/* One light that illuminates the receiver from above. Returns its power; 0 if that has no closed form. */
 static double setup(LightFixture *f, int which)
 {
     static const float square[12] = {-1, -1, 0, -1, 1, 0, 1, -1, 0, 1, 1, 0};
@@ -89,7 +88,7 @@ static Estimate estimate(double sum, double squares, double count)
     return (Estimate){mean, sqrt(fmax(0.0, squares / count - mean * mean) / count)};
 }
 
-/* A patch or part of a sphere has its area from the scene's own quadrature. */
+/* The area of a patch or a partial sphere comes from the scene's own quadrature. */
 START_TEST(test_power)
 {
     enum { SAMPLES = 100000 };
@@ -118,7 +117,7 @@ static const Vec3 RECEIVER = {0.2f, -0.3f, -2.0f};
 static const Vec3 RECEIVER_N = {0.0f, 0.28f, 0.96f};
 #define RECEIVER_RADIUS 1.2
 
-/* Irradiance, mean over the receiver: of rays that leave the light, those that cross the front of the receiver. */
+/* Mean irradiance over the receiver, from the rays leaving the light that hit its front. */
 static Estimate irradiance_by_shooting(const LightFixture *f, uint samples)
 {
     double sum = 0.0, squares = 0.0, area = M_PI * RECEIVER_RADIUS * RECEIVER_RADIUS;
@@ -138,7 +137,7 @@ static Estimate irradiance_by_shooting(const LightFixture *f, uint samples)
     return estimate(sum, squares, samples);
 }
 
-/* The same from points of the receiver. */
+/* The same by sampling the light from points on the receiver. */
 static Estimate irradiance_by_sampling(const LightFixture *f, uint samples)
 {
     double sum = 0.0, squares = 0.0;

@@ -1,9 +1,9 @@
-/* Splats against the filter that they stand for. */
+/* Splats against the pixel filter that they represent. */
 #include "camera/film_splat.h"
 #include "light/test_emit.h"
 #include "support/filter_cases.h"
 
-/* A film of 12 x 11 whose crop window touches its left edge and no other. */
+/* A film of 12 x 11 pixels whose crop window touches the film's left edge only. */
 enum { WIDTH = 12, X0 = 0, X1 = 6, Y0 = 3, Y1 = 8, ROWS = Y1 - Y0, COLUMNS = X1 - X0 };
 
 static void setup(LightFixture *f, const FilterSettings *settings)
@@ -35,8 +35,8 @@ static double filter_density(const FilterSettings *s, double radius, double offs
     return sum / integral;
 }
 
-/* At a few film positions, inside the crop window and around it, the mean over u of what every pixel gets. A table's
- * cells are differences of floats up to 1, which rounds densities by up to 1e-5. */
+/* At a few film positions, inside and around the crop window, the mean over u of each pixel's share. A table's cells
+ * are differences of floats up to 1, which rounds densities by up to 1e-5. */
 START_TEST(test_expectation)
 {
     enum { N = 256, POSITIONS = 60 };
@@ -74,7 +74,7 @@ START_TEST(test_expectation)
 }
 END_TEST
 
-/* Film positions uniform in and around the crop window: every pixel gets 1, those of the border too. */
+/* Film positions uniform in and around the crop window: every pixel gets 1, at the border, too. */
 START_TEST(test_constant)
 {
     enum { SAMPLES = 600000 };
@@ -104,8 +104,8 @@ START_TEST(test_constant)
 }
 END_TEST
 
-/* A box of one pixel takes every position to the pixel that it lies in, with weight 1. Positions that no pixel sees, or
- * that are no numbers, go nowhere. */
+/* A box of one pixel assigns each position to the pixel that contains it, with weight 1. Positions that no pixel sees,
+ * and NaN, go nowhere. */
 START_TEST(test_box)
 {
     LightFixture f;
@@ -115,7 +115,7 @@ START_TEST(test_box)
         Vec2 r = fixture_random(1, i);
         Vec2 film = vec2(X0 + r.x * COLUMNS, Y0 + r.y * ROWS);
         uint column = X0 + i % COLUMNS, row = Y0 + i / COLUMNS;
-        if (i < ROWS * COLUMNS) /* corners belong to the pixel on their lower right */
+        if (i < ROWS * COLUMNS) /* a corner belongs to the pixel to its lower right */
             film = vec2((float)column, (float)row);
         uint pixel = film_splat_pixel(&f.view, film, fixture_random(2, i), &weight);
         TEST_TRUE(pixel == (uint)film.y * WIDTH + (uint)film.x && weight == 1.0f);

@@ -1,5 +1,4 @@
-/* Area lights: points drawn by light_sample against light_pdf_w, on every shape.
- *
+/* Sampling of area lights: points from light_sample against light_pdf_w, on every shape.
  * Each shape is described a second time, in double, by a map from the unit square onto its visible surface. The
  * expected number of samples in a cell of the square is the integral of light_pdf_w |cos| / distance^2 over the cell's
  * surface; the cell of a sample is found by inverting the map. */
@@ -8,7 +7,7 @@
 
 enum { GRID = 10, SUB = 24, SAMPLES = 40000 };
 
-/* Twelve cases: each may fail by chance with 1e-3 / 12 (Sidak: 1e-3 together). */
+/* Twelve cases, each with a chance of failure of 1e-3 / 12 (Sidak: 1e-3 overall). */
 #define P_MIN (1e-3 / 12.0)
 
 typedef struct AreaShape {
@@ -17,7 +16,7 @@ typedef struct AreaShape {
     double matrix[16];
     double corners[4][3];
     double ref[3];
-    bool cone; /* a whole sphere seen from outside: only the cap is visible */
+    bool cone; /* a full sphere seen from outside: only the cap is visible */
 } AreaShape;
 
 static double dot(const double a[3], const double b[3])
@@ -38,7 +37,7 @@ static void transform(const double m[16], const double p[3], double out[3])
         out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
 }
 
-/* An orthonormal basis whose third axis points from the sphere's centre to ref; *distance: to ref. */
+/* An orthonormal basis whose third axis points from the sphere's centre to ref; *distance is that to ref. */
 static void cap_basis(const AreaShape *s, double axes[3][3], double *distance)
 {
     double center[3] = {s->matrix[3], s->matrix[7], s->matrix[11]};
@@ -106,7 +105,7 @@ static double turn(double y, double x, double phi_max)
     return (phi < 0.0 ? phi + 2.0 * M_PI : phi) / phi_max;
 }
 
-/* Newton's method on the square of the distance. */
+/* Newton's method on the squared distance. */
 static void patch_invert(const AreaShape *s, const double p[3], double ab[2])
 {
     ab[0] = ab[1] = 0.5;
@@ -150,7 +149,7 @@ static void shape_invert(const AreaShape *s, const double p[3], double ab[2])
         double low = world_radius(s) / distance, d[3];
         for (int i = 0; i < 3; ++i)
             d[i] = p[i] - s->matrix[4 * i + 3];
-        double length = sqrt(dot(d, d)); /* not the radius: rounding along it would move a point near the pole */
+        double length = sqrt(dot(d, d)); /* not the radius, whose rounding would move points near the pole */
         for (int i = 0; i < 3; ++i)
             d[i] /= length;
         ab[0] = (dot(d, axes[2]) - low) / (1.0 - low);
@@ -203,7 +202,7 @@ static void expected_counts(const LightFixture *f, const AreaShape *s, double *e
                 shape_density(f, s, (x + 0.5) / (GRID * SUB), (y + 0.5) / (GRID * SUB)) / (GRID * SUB * GRID * SUB);
 }
 
-/* The sample's own density must be what light_pdf_w says of its point, and its point must lie on the shape. */
+/* The sample's density must equal light_pdf_w at its point, and the point must lie on the shape. */
 static void check_sample(const LightFixture *f, const AreaShape *s, const LightSample *sample, const double ab[2])
 {
     double p[3], distance = (double)vec3_length(vec3_sub(sample->p, to_vec3(s->ref)));
@@ -216,8 +215,8 @@ static void check_sample(const LightFixture *f, const AreaShape *s, const LightS
     ck_assert_double_eq_tol((double)vec3_length(sample->ng), 1.0, 1e-6);
 }
 
-/* The ray towards the sample meets the light in the same point with the same normal, and there light_pdf_w says what
- * the sample said. False when something nearer of the same shape is met. */
+/* The ray toward the sample hits the light at the same point with the same normal, and light_pdf_w there equals the
+ * sample's density. Returns false if a closer point of the shape is hit. */
 static bool check_ray(const LightFixture *f, const AreaShape *s, const LightSample *sample)
 {
     Ray ray = {.o = to_vec3(s->ref), .d = sample->wi, .t_max = FLOAT_MAX};

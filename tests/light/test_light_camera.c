@@ -1,11 +1,11 @@
-/* Cameras: rays against a model in double and facts of pbrt-v4, and projection as their inverse. */
+/* Cameras: rays against a model in double and known properties of pbrt-v4, and projection as their inverse. */
 #include "camera/camera.h"
 #include "light/test_light.h"
 #include "scene/camera_setup.h"
 #include "support/light_fixture.h"
 #include "support/test_files.h"
 
-/* pbrt's LookAt and more: a left-handed frame, scaled by 1. Row-major world from camera. */
+/* As pbrt's LookAt would make it: a left-handed frame of scale 1. Row-major world from camera. */
 static const double WORLD_FROM_CAMERA[16] = {0.6, 0.0, 0.8, 3.0, 0.0, 1.0, 0.0, -1.0, -0.8, 0.0, 0.6, 2.0, 0, 0, 0, 1};
 
 static CameraSettings settings_identity(uint kind, float fov)
@@ -44,8 +44,7 @@ static const Vec2 MIDDLE = {0.5f, 0.5f};
 
 START_TEST(test_perspective)
 {
-    /* fov 90 spans the shorter side: on a film of 200 x 100 the edges are at y = +-1, x = +-2; y of the raster is
-     * down. */
+    /* fov 90 spans the shorter side: on a film of 200 x 100 the edges are at y = +-1, x = +-2; raster y points down. */
     CameraSettings settings = settings_identity(CAMERA_PERSPECTIVE, 90.0f);
     Camera camera = make_camera(&settings, 200, 100);
     assert_direction(camera_ray(&camera, vec2(100, 50), 200, 100, MIDDLE), 0, 0, 1);
@@ -56,7 +55,7 @@ START_TEST(test_perspective)
     settings.fov = 60.0f;
     camera = make_camera(&settings, 100, 100);
     assert_direction(camera_ray(&camera, vec2(100, 50), 100, 100, MIDDLE), tan(M_PI / 6.0), 0, 1);
-    /* An aspect ratio of the frame squeezes the picture; a window replaces it. */
+    /* A frame aspect ratio squeezes the image; a screen window overrides it. */
     settings.fov = 90.0f;
     settings.frame_aspect = 0.5f;
     camera = make_camera(&settings, 100, 100);
@@ -83,7 +82,7 @@ START_TEST(test_orthographic)
 }
 END_TEST
 
-/* All rays of a film position meet in the plane in focus, there where the pinhole's ray goes; their origins fill the
+/* All rays of a film position meet in the plane of focus where the pinhole's ray intersects it; their origins fill the
  * lens. */
 START_TEST(test_lens)
 {
@@ -107,13 +106,13 @@ START_TEST(test_lens)
             ck_assert_double_lt(r, 0.3 + 1e-5);
             inside_half += r < 0.15;
         }
-        /* A quarter of the lens; five standard deviations. */
+        /* a quarter of the lens; five standard deviations */
         ck_assert_double_lt(fabs(inside_half / count - 0.25), 5.0 * sqrt(0.25 * 0.75 / count));
     }
 }
 END_TEST
 
-/* The model in double, random film positions, cameras far from the origin. */
+/* Against the model in double, for random film positions and cameras far from the origin. */
 START_TEST(test_double_model)
 {
     CameraSettings settings = settings_placed(CAMERA_PERSPECTIVE, 35.0f);
@@ -171,8 +170,8 @@ START_TEST(test_projection)
 }
 END_TEST
 
-/* What the header of an image says of the camera leads points of its rays to where on the film they were seen, also
- * where camera space is scaled and the importer has moved the scene. */
+/* The camera matrices in an image's header project points on a pixel's ray back to that pixel, also if camera space is
+ * scaled and the importer has moved the scene. */
 START_TEST(test_matrices)
 {
     static const double SCALES[] = {1.0, 1e-13, 37.0};
@@ -201,7 +200,7 @@ START_TEST(test_matrices)
             z += (double)view[8 + j] * p[j];
         ck_assert_double_eq_tol(q[0] / q[3], (double)film.x / 200.0, 2e-5);
         ck_assert_double_eq_tol(q[1] / q[3], (double)film.y / 100.0, 2e-5);
-        ck_assert(z > 0.0 || (kind == CAMERA_ORTHOGRAPHIC && scale < 1.0)); /* it is 10^13 across */
+        ck_assert(z > 0.0 || (kind == CAMERA_ORTHOGRAPHIC && scale < 1.0)); /* the window is 10^13 wide */
     }
 }
 END_TEST
@@ -219,7 +218,7 @@ START_TEST(test_outside_film)
 }
 END_TEST
 
-/* A film position is covered if and only if the filter of some pixel of the crop window reaches it. */
+/* A film position is covered if and only if the filter of some pixel in the crop window reaches it. */
 START_TEST(test_reach)
 {
     FrameParams frame = {.crop_x0 = 20, .crop_x1 = 26, .crop_y0 = 30, .crop_y1 = 33};
@@ -239,8 +238,8 @@ START_TEST(test_reach)
 }
 END_TEST
 
-/* Far from the origin a camera sees a point where one at the origin sees the same point beside it: places and
- * differences are whole numbers of floats here, so that nothing is rounded before it is turned. */
+/* A camera far from the origin sees a point exactly where a camera at the origin sees the same point relative to it:
+ * positions and differences are exactly representable here, so that nothing is rounded before the rotation. */
 START_TEST(test_far)
 {
     CameraSettings settings = settings_placed(CAMERA_PERSPECTIVE, 90.0f);

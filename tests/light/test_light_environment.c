@@ -1,8 +1,8 @@
-/* Light from infinity: constant and images, in both parametrisations. */
+/* Infinite lights: constant and images, in both parametrisations. */
 #include "light/test_light.h"
 #include "support/light_fixture.h"
 
-/* A proper rotation about no axis of the image. */
+/* A proper rotation, not about an axis of the image. */
 static const double ROTATION[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6};
 
 enum { CELLS = 12, SUB = 24, SAMPLES = 60000 };
@@ -10,15 +10,15 @@ enum { CELLS = 12, SUB = 24, SAMPLES = 60000 };
 /* Four chi-square tests. */
 #define P_MIN (1e-3 / 4.0)
 
-/* Direction at cos(theta) = 1 - 2 a, phi = 2 pi b of the world. */
+/* The world direction with cos(theta) = 1 - 2 a, phi = 2 pi b. */
 static Vec3 direction(double a, double b)
 {
     double z = 1.0 - 2.0 * a, r = sqrt(1.0 - z * z);
     return vec3((float)(r * cos(2.0 * M_PI * b)), (float)(r * sin(2.0 * M_PI * b)), (float)z);
 }
 
-/* Directions in equal-area cells of the world against environment_pdf_w. `smooth` is how exactly the midpoint rule
- * can integrate the density, which has steps. */
+/* Directions in equal-area cells of the world against environment_pdf_w. `smooth`: accuracy of the midpoint rule for
+ * the density, which is discontinuous. */
 static void check_density(const char *name, const LightFixture *f, double smooth)
 {
     double expected[CELLS * CELLS] = {0.0}, observed[CELLS * CELLS] = {0.0}, total = 0.0;
@@ -46,8 +46,8 @@ static void check_density(const char *name, const LightFixture *f, double smooth
     ck_assert_msg(p > P_MIN, "%s: chi-square p = %g", name, p);
 }
 
-/* Every sample's density and radiance are those that its direction is asked for later, but for directions that
- * rounding moves across the border of a cell. */
+/* Every sample's density and radiance equal those evaluated for its direction, except for directions that rounding
+ * moves across a cell's border. */
 static void check_samples(const char *name, const LightFixture *f)
 {
     int pdf_differs = 0, radiance_differs = 0, count = 20000;
@@ -65,7 +65,7 @@ static void check_samples(const char *name, const LightFixture *f)
     ck_assert_msg(radiance_differs < count / 1000, "%s: %d radiances differ", name, radiance_differs);
 }
 
-/* Irradiance by a rule that knows nothing of the light's distribution. */
+/* Irradiance by quadrature that is independent of the light's distribution. */
 static double irradiance_by_quadrature(const LightFixture *f, Vec3 n)
 {
     double sum = 0.0;
@@ -121,8 +121,8 @@ START_TEST(test_images)
 }
 END_TEST
 
-/* One bright texel, at an edge of the image: its light bleeds into its neighbours, across the seam too, and all of it
- * has a density. */
+/* A single bright texel at an edge of the image: interpolation spreads its light into its neighbours, across the seam,
+ * too, and all of it has a density. */
 START_TEST(test_hot_texel)
 {
     for (uint equirectangular = 0; equirectangular < 2; ++equirectangular) {
@@ -158,7 +158,7 @@ START_TEST(test_hot_texel)
 }
 END_TEST
 
-/* Where pbrt's octahedral map and the latitude-longitude map have their texels: the direction of a texel's middle sees
+/* Texel positions of pbrt's octahedral map and of the latitude-longitude map: the direction of a texel's centre sees
  * that texel. */
 START_TEST(test_orientation)
 {
@@ -166,11 +166,11 @@ START_TEST(test_orientation)
     static const struct {
         uint flags;
         uint x, y; /* texel of 8 x 4 or 8 x 8 */
-        float d[3]; /* not unit */
+        float d[3]; /* not normalised */
     } cases[] = {{LIGHT_EQUIRECTANGULAR, 0, 1, {0.853553f, 0.353553f, 0.382683f}},
                  {LIGHT_EQUIRECTANGULAR, 2, 0, {-0.146447f, 0.353553f, 0.923880f}},
                  {LIGHT_EQUIRECTANGULAR, 5, 3, {-0.146447f, -0.353553f, -0.923880f}},
-                 /* In the square's middle +z, right +x, below +y; corners -z. */
+                 /* +z in the middle of the square, +x on the right, +y at the bottom; -z in the corners. */
                  {0, 3, 3, {-0.05f, -0.05f, 1.0f}},
                  {0, 7, 4, {1.0f, 0.1f, 0.0f}},
                  {0, 4, 7, {0.1f, 1.0f, 0.0f}},
@@ -190,7 +190,7 @@ START_TEST(test_orientation)
 }
 END_TEST
 
-/* The top row of a latitude-longitude image does not shine out of the bottom, though the image repeats. */
+/* The top row of a latitude-longitude image does not wrap around to the bottom, though the image repeats. */
 START_TEST(test_poles)
 {
     static const double IDENTITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,12 +1,12 @@
-/* Pixel filters: what is drawn against the filter's definition. */
+/* Pixel filters: samples against the filter's definition. */
 #include "camera/pixel_filter.h"
 #include "light/test_light.h"
 #include "support/filter_cases.h"
 
-/* Two chi-square tests a case. */
+/* Two chi-square tests per case. */
 #define P_MIN (1e-3 / (2.0 * FILTER_CASE_COUNT))
 
-/* Integrals over [-radius, radius] of |f|, f, x^2 f and, over `cells` cells, of |f|, by a fine midpoint rule. */
+/* Integrals over [-radius, radius] of |f|, f, x^2 f and, per cell of `cells`, of |f|, by a fine midpoint rule. */
 static void integrate(const FilterSettings *s, double radius, double *absolute, double *moments, double *cells, int n)
 {
     enum { SUB = 512 };
@@ -50,8 +50,8 @@ START_TEST(test_density)
 }
 END_TEST
 
-/* Evenly spaced points along one axis have no noise to speak of (the other axis stays in the middle, where every filter
- * is positive): the weighted sums give the filter's integral, mean and variance to 1e-3. */
+/* Evenly spaced points along one axis have practically no noise (the other coordinate stays in the middle, where every
+ * filter is positive): the weighted sums give the filter's integral, mean and variance to 1e-3. */
 START_TEST(test_moments)
 {
     enum { N = 65536 };
@@ -82,7 +82,7 @@ START_TEST(test_moments)
 }
 END_TEST
 
-/* What weights of both signs are for: the filtered value of an image x -> 1 + a step, by random points. */
+/* The purpose of weights of both signs: the filtered value of an image x -> 1 + a step, by random points. */
 START_TEST(test_filtered_edge)
 {
     enum { SAMPLES = 400000 };

@@ -1,5 +1,5 @@
-/* Light guides: which lights a scene has for them, and that numbers of 0, 0 draw the direction to one wherever a
- * surface is and however it is turned, while each pair of numbers stays as probable as any other. */
+/* Light guides: which lights of a scene become guides; random numbers of 0, 0 sample the direction to the guide at any
+ * surface with any orientation, and every pair of numbers remains equally probable. */
 #include "math/test_math.h"
 
 #include "light/light_guide.h"
@@ -16,7 +16,7 @@ static void guides_of(const char *text, Scene *scene)
     fixture_scene(&(RenderSetup){.text = text}, scene);
 }
 
-/* Whether light guide i is there, to within 1e-4 in every coordinate. */
+/* Light guide i is at `place`, to within 1e-4, with that `near`. */
 static void guide_require(const Scene *scene, uint i, Vec3 place, float near)
 {
     Vec3 guide = scene->guide.lights[i];
@@ -26,13 +26,13 @@ static void guide_require(const Scene *scene, uint i, Vec3 place, float near)
     ck_assert_float_eq(scene->guide.lights_near[i], near);
 }
 
-/* ---- which ------------------------------------------------------------------------------------------------------- */
+/* ---- which lights ------------------------------------------------------------------------------------------------ */
 
 START_TEST(test_shapes)
 {
     Scene scene;
-    /* Two triangles of a mesh, the first of three times the area of the second, are one light guide at the mean of
-     * their boxes. */
+    /* Two triangles of a mesh, the first with three times the area of the second, become one guide at the mean of their
+     * boxes. */
     guides_of(HEAD "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] "
                    "Shape \"trianglemesh\" \"point3 P\" [0 0 0  3 0 0  0 2 0  0 0 4  1 0 4  0 2 4] "
                    "\"integer indices\" [0 1 2 3 4 5] AttributeEnd "
@@ -64,7 +64,7 @@ START_TEST(test_none)
 }
 END_TEST
 
-/* Of more lights than there is room for the strongest, the strongest first. */
+/* If there are more lights than guides, the strongest are taken, in descending order. */
 START_TEST(test_strongest)
 {
     enum { LIGHTS = 3 * LIGHT_GUIDES_MAX };
@@ -83,7 +83,7 @@ START_TEST(test_strongest)
 }
 END_TEST
 
-/* The sun of scenes/windows.pbrt, which is no light that a shape has; the sky has no place to light guide at. */
+/* The sun of scenes/windows.pbrt, which is not the light of a shape; the sky has no position that could be a guide. */
 START_TEST(test_sun)
 {
     Scene scene;
@@ -100,9 +100,9 @@ START_TEST(test_sun)
 }
 END_TEST
 
-/* ---- where to ------------------------------------------------------------------------------------------------------ */
+/* ---- directions -------------------------------------------------------------------------------------------------- */
 
-/* Two light guides and a direction. */
+/* Two guides with a position and one with a direction. */
 static const FrameParams THREE = {.guide_count = 3};
 static const Guide THREE_GUIDE = {.lights = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
                                   .lights_near = {1.0f, 1.0f, 0.0f},
@@ -113,7 +113,7 @@ static Vec3 three_from(Vec3 p)
     return light_guide_from(THREE.guide_count, &THREE_GUIDE, p);
 }
 
-/* The strongest from here, whatever the order. */
+/* Selects the guide that is strongest at the point, whatever their order. */
 START_TEST(test_nearest)
 {
     Vec3 d = three_from(vec3(0.0f, 0.0f, 0.0f));
@@ -123,7 +123,7 @@ START_TEST(test_nearest)
     ck_assert_float_eq(d.x, 6.0f);
     d = three_from(vec3(0.0f, -40.0f, 0.0f));
     ck_assert_float_eq(d.z, 1.0f);
-    d = three_from(vec3(0.0f, 3.0f, 0.0f)); /* the light guide itself: something finite */
+    d = three_from(vec3(0.0f, 3.0f, 0.0f)); /* at the guide itself: any finite direction */
     ck_assert(vec3_finite(d));
 }
 END_TEST
@@ -140,7 +140,7 @@ START_TEST(test_zero_is_the_light)
         Random4 random = light_guide_numbers(&view, p, shading, zero);
         ck_assert(random.x[0] == 5 && random.x[3] == 6);
         Vec3 w = warp_cosine_hemisphere(vec2(random_float(random.x[1]), random_float(random.x[2])));
-        /* A light behind is mirrored. z is the root of a difference: as good as its square. */
+        /* A light behind the surface is mirrored. z is the root of a difference, so its square is compared. */
         double away = hypot((double)(w.x - to.x), (double)(w.y - to.y));
         test_require(away < 1e-5 && fabs((double)(w.z * w.z - to.z * to.z)) < 1e-5, "(%g, %g, %g) for (%g, %g, %g)",
                      (double)w.x, (double)w.y, (double)w.z, (double)to.x, (double)to.y, (double)to.z);
@@ -148,7 +148,7 @@ START_TEST(test_zero_is_the_light)
 }
 END_TEST
 
-/* Numbers are shifted modulo 2^32 by what depends on the place alone. */
+/* Numbers are offset modulo 2^32 by amounts that depend on the position alone. */
 START_TEST(test_shift)
 {
     const SceneView view = {.frame = &THREE, .guide = &THREE_GUIDE};
@@ -162,9 +162,9 @@ START_TEST(test_shift)
 }
 END_TEST
 
-/* ---- which integrators --------------------------------------------------------------------------------------------- */
+/* ---- integrators ------------------------------------------------------------------------------------------------- */
 
-/* Chains have light guides, unless told not to; others do not, and the paper's scheme does not. */
+/* Chains use light guides unless switched off; other integrators and the paper's scheme do not. */
 START_TEST(test_users)
 {
     Scene scene;

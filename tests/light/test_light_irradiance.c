@@ -1,9 +1,9 @@
-/* Irradiance from every kind of light against its closed form, and what of an area light shines. */
+/* Irradiance from every kind of light against its closed form, and which side and part of an area light emits. */
 #include "light/test_light.h"
 #include "support/light_fixture.h"
 
-/* Lambert's formula for a polygon of radiance 1 wholly above the horizon: half the sum over edges of the angle that
- * the edge subtends times the component along n of its plane's normal. */
+/* Lambert's formula for a polygon of radiance 1 entirely above the horizon: half the sum over edges of the angle
+ * subtended by the edge times the component along n of the normal of the edge's plane. */
 static double polygon_irradiance(const float *positions, const int *order, int count, Vec3 ref, Vec3 n)
 {
     double sum = 0.0;
@@ -55,7 +55,7 @@ START_TEST(test_disks)
         Quadric disk = {.radius = 1.1f, .inner_radius = (float)inner, .z_min = -0.8f, .phi_max = 6.28318531f};
         fixture_add_quadric(&f, PRIMITIVE_DISK, disk, matrix, 1.0f, 0, 0);
         fixture_finish(&f);
-        /* On the axis, parallel to the disk: pi sin^2 of its half-angle. */
+        /* on the axis, parallel to the disk: pi sin^2 of its half-angle */
         ASSERT_IRRADIANCE(&f, 0, vec3(0, 0, 0), vec3(0, 0, 1),
                           M_PI * (1.21 / (1.21 + 0.64) - inner * inner / (inner * inner + 0.64)));
         fixture_destroy(&f);
@@ -69,16 +69,16 @@ START_TEST(test_spheres)
     fixture_init(&f);
     fixture_add_sphere(&f, 0.7f, 1.0, 2.0, 3.0, 1.0f, LIGHT_TWO_SIDED);
     fixture_finish(&f);
-    /* Above the horizon: pi (R / d)^2 cos. */
+    /* above the horizon: pi (R / d)^2 cos */
     ASSERT_IRRADIANCE(&f, 0, vec3(0, 0, 0), vec3(0, 0, 1), M_PI * 0.49 / 14.0 * 3.0 / sqrt(14.0));
-    /* From inside, anywhere: pi. */
+    /* from inside, anywhere: pi */
     ASSERT_IRRADIANCE(&f, 0, vec3(1.0f, 2.0f, 3.0f), vec3(0, 0, 1), M_PI);
     ASSERT_IRRADIANCE(&f, 0, vec3(1.2f, 1.8f, 2.8f), vec3(0.6f, 0.8f, 0), M_PI);
     fixture_destroy(&f);
 }
 END_TEST
 
-/* Radiance proportional to 1 / radius^2: the irradiance is the same for every size that is seen as a whole. */
+/* With radiance proportional to 1 / radius^2, the irradiance is the same for all sizes of a fully visible sphere. */
 START_TEST(test_tiny_spheres)
 {
     for (double radius = 1.0; radius > 0.9e-6; radius *= 0.1)
@@ -95,7 +95,7 @@ START_TEST(test_tiny_spheres)
 }
 END_TEST
 
-/* Sampled points of a tiny sphere lie on it, and on its near side. */
+/* Sampled points of a tiny sphere lie on it, on the near side. */
 START_TEST(test_tiny_sphere_points)
 {
     LightFixture f;
@@ -135,7 +135,7 @@ START_TEST(test_delta_lights)
     ASSERT_IRRADIANCE(&f, 0, vec3(1.5f, 0, 0), up, 3.0 / 6.25 * 0.8);
     ASSERT_IRRADIANCE(&f, 2, vec3(1.5f, 0, 0), up, 3.0 * 0.8);
     ASSERT_IRRADIANCE(&f, 1, vec3(0, 0, 0), up, 3.0 / 4.0);
-    /* Half-way between the cosines the falloff is one half; outside there is nothing. */
+    /* Half-way between the cosines the falloff is one half; outside the cone it is zero. */
     double tangent = tan(acos((double)half));
     ASSERT_IRRADIANCE(&f, 1, vec3((float)(2.0 * tangent), 0, 0), up, 0.5 * 3.0 / 4.0 * pow((double)half, 3.0));
     ck_assert(!light_sample(&f.view, 1, vec3(2.0f, 0, 0), vec2(0.5f, 0.5f), &s));
@@ -149,7 +149,7 @@ START_TEST(test_delta_lights)
 }
 END_TEST
 
-/* A step, where both angles agree. */
+/* A step function if both angles are equal. */
 START_TEST(test_spot_step)
 {
     ck_assert((spot_falloff(0.8f, 0.8f, 0.8f) == 1.0f));
@@ -157,7 +157,7 @@ START_TEST(test_spot_step)
 }
 END_TEST
 
-/* One-sided lights shine to the side of ng; vertex normals and ReverseOrientation turn it. */
+/* One-sided lights emit on the side of ng; vertex normals and ReverseOrientation flip it. */
 START_TEST(test_sides)
 {
     static const float square[12] = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
@@ -184,8 +184,8 @@ START_TEST(test_sides)
 }
 END_TEST
 
-/* A light that is there with probability alpha sends alpha times its radiance; and what of a sphere's far side is seen
- * through holes of the near one, the cone does not sample. */
+/* A light whose surface exists with probability alpha emits alpha times its radiance; the far side of a sphere, visible
+ * through holes in the near side, is not sampled by the cone. */
 START_TEST(test_alpha)
 {
     LightFixture f;

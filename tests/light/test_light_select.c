@@ -1,4 +1,4 @@
-/* Which light is chosen how often, and scenes that have none. */
+/* Light selection probabilities, and scenes without lights. */
 #include "base/log.h"
 #include "light/test_light.h"
 #include "support/light_fixture.h"
@@ -21,7 +21,7 @@ START_TEST(test_powers)
     fixture_add_environment(&f, texels, 4, 2, LIGHT_EQUIRECTANGULAR, identity);
     ARRAY_AT(&f.scene.lights, Light, 7).emission = vec3(0.05f, 0.05f, 0.05f);
     fixture_finish(&f);
-    /* pbrt-v4's estimates. The image's hemispheres average to 2. */
+    /* pbrt-v4's power estimates. The hemispheres of the image average to 2. */
     const double expected[8] = {2.0 * M_PI,
                                 2.0 * M_PI,
                                 4.0 * M_PI,
@@ -69,7 +69,7 @@ START_TEST(test_no_light)
     fixture_add_environment(&f, black, 2, 1, LIGHT_EQUIRECTANGULAR, identity);
     ck_assert(!light_setup(&f.scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "the scene has no light"));
-    /* Beside another light the black one is no light. */
+    /* Next to another light, the black one does not count as a light. */
     fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
     fixture_finish(&f);
     LightSample s;

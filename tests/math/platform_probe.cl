@@ -1,5 +1,5 @@
-/* What math/test_platform_bits.c runs both as C and as OpenCL C. Item i of a kernel reads words 4 i ... 4 i + 3 of `in`
- * and writes PROBE_WORDS words of `out`, zeroed before; `table` holds what distributions need. */
+/* Kernels that math/test_platform_bits.c runs both as C and as OpenCL C. Item i of a kernel reads words 4 i ... 4 i + 3
+ * of `in` and writes PROBE_WORDS words of `out`, which are zeroed before; `table` holds tabulated distributions. */
 #include "layout/distribution.h"
 #include "layout/struct_members.h"
 #include "math/rng.h"
@@ -7,7 +7,7 @@
 
 #define PROBE_WORDS 32u
 
-/* Sizes and offsets: item 0 writes all. */
+/* Sizes and offsets; item 0 writes them all. */
 __kernel void probe_layout(__global const uint *in, __global const uint *table, __global uint *out)
 {
     (void)in;
@@ -27,7 +27,7 @@ __kernel void probe_layout(__global const uint *in, __global const uint *table, 
 #undef MEMBER
 }
 
-/* The operations that everything else is made of. */
+/* The operations on which everything else is built. */
 __kernel void probe_arithmetic(__global const uint *in, __global const uint *table, __global uint *out)
 {
     (void)table;
@@ -65,7 +65,7 @@ __kernel void probe_elementary(__global const uint *in, __global const uint *tab
     o[5] = float_bits(float_acos(x));
     o[6] = float_bits(float_atan2(y, x));
     o[7] = float_bits(float_pow(x, y));
-    /* arguments that are not out of range most of the time */
+    /* arguments that are mostly within range */
     float small = bits_float((in[4 * i + 2] & 0x81ffffffu) | 0x3e000000u);
     o[8] = float_bits(float_asin(small));
     o[9] = float_bits(float_acos(small));
@@ -108,7 +108,7 @@ __kernel void probe_warp(__global const uint *in, __global const uint *table, __
     size_t i = get_global_id(0);
     __global uint *o = out + PROBE_WORDS * i;
     Vec2 u = vec2(random_float(in[4 * i]), random_float(in[4 * i + 1]));
-    float omc = bits_float(in[4 * i + 2] & 0x3fffffffu); /* 0 ... 2, half of them below 1e-9, denormals too */
+    float omc = bits_float(in[4 * i + 2] & 0x3fffffffu); /* 0 ... 2, half of them below 1e-9, including denormals */
     Vec3 d = warp_sphere(u);
     probe_store2(o, warp_disk_concentric(u));
     probe_store3(o + 2, warp_cosine_hemisphere(u));
@@ -127,7 +127,7 @@ __kernel void probe_warp(__global const uint *in, __global const uint *table, __
     probe_store3(o + 29, vec3_normalize(frame.t));
 }
 
-/* table: width, height, first_marginal, first_conditional, bucket count, first bucket, and then the arrays, counted in
+/* table: width, height, first_marginal, first_conditional, bucket count, first bucket, then the arrays; positions in
  * words from the start of `table`. */
 __kernel void probe_distribution(__global const uint *in, __global const uint *table, __global uint *out)
 {

@@ -6,7 +6,8 @@
 
 #include "math/platform.h"
 
-/* ck_assert_msg without its message to the parent process, which costs a microsecond every time it holds: for loops. */
+/* ck_assert_msg for loops: it does not message the parent process when the condition holds, which costs a
+ * microsecond. */
 #define test_require(condition, ...)                                                                                   \
     do {                                                                                                               \
         if (!(condition))                                                                                              \
@@ -21,7 +22,7 @@ TCase *test_math_sphere_maps(void);
 TCase *test_math_alias(void);
 TCase *test_math_distribution2d(void);
 
-/* The generator of the tests, independent of the one under test (SplitMix64, Steele et al. 2014). */
+/* The tests' own generator, independent of the one under test (SplitMix64, Steele et al. 2014). */
 static inline uint64_t test_random(uint64_t *state)
 {
     uint64_t z = (*state += 0x9e3779b97f4a7c15u);
@@ -36,8 +37,8 @@ static inline float test_uniform(uint64_t *state)
     return ((float)(test_random(state) >> 41) + 0.5f) * 0x1p-23f;
 }
 
-/* The error of `ours` in units in the last place of `exact`. 0 where both are NaN (ours the canonical one), or where
- * `exact` rounds to infinity and ours is that infinity or the largest float; infinite where only one of the two is. */
+/* The error of `ours` in units in the last place of `exact`. 0 if both are NaN (ours the canonical one), or if `exact`
+ * rounds to infinity and ours is that infinity or the largest float; infinite if only one of the two is. */
 static inline double test_ulp_error(float ours, double exact)
 {
     if (isnan(exact) || isnan(ours))

@@ -1,12 +1,12 @@
-/* Alias tables: the probabilities they imply, the arithmetic of drawing, refusals. */
+/* Alias tables: the probabilities they imply, the arithmetic of sampling, invalid inputs. */
 #include "math/test_math.h"
 
 #include "layout/distribution.h"
 #include "math/rng.h"
 #include "scene/distribution_build.h"
 
-/* Largest relative difference between weight / sum and what the table implies; infinite when an index of weight 0 can
- * be chosen. */
+/* Largest relative difference between weight / sum and the table's probability; infinite if an index of weight 0 can be
+ * sampled. */
 static double alias_error(const double *weights, size_t n, const AliasBucket *buckets)
 {
     double *implied = calloc(n, sizeof *implied), sum = 0.0, worst = 0.0;
@@ -25,7 +25,7 @@ static double alias_error(const double *weights, size_t n, const AliasBucket *bu
     return worst;
 }
 
-/* Families of weights; those of case 2 (a few large among many nearly equal) pile up the rounding of q. */
+/* Families of weights; those of case 2 (a few large ones among many nearly equal) accumulate the rounding of q. */
 static double alias_weight(int family, size_t i, size_t n, uint64_t *state)
 {
     double u = (double)test_uniform(state);
@@ -69,7 +69,7 @@ START_TEST(test_alias_implied)
 }
 END_TEST
 
-/* The bucket is floor(count x / 2^64) and the rest decides, exactly: against 128-bit integers. */
+/* The bucket is floor(count x / 2^64), and the remainder decides, exactly: against 128-bit integers. */
 START_TEST(test_alias_arithmetic)
 {
     enum { N = 1000003 };
@@ -89,7 +89,7 @@ START_TEST(test_alias_arithmetic)
         test_require(got == bucket, "count %u: bucket %u, not %u", count, got, bucket);
         bool kept = alias_sample(half, count, (uint)(bits >> 32), (uint)bits) == bucket;
         uint64_t rest = (uint64_t)product;
-        if (rest < 0x7fffff0000000000u || rest > 0x800000ffffffffffu) /* but for the rounding to float32 */
+        if (rest < 0x7fffff0000000000u || rest > 0x800000ffffffffffu) /* except for rounding to float32 */
             test_require(kept == (rest >> 63 == 0), "count %u: rest %llx", count, (unsigned long long)rest);
     }
     free(keep);

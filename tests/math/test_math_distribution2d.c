@@ -14,7 +14,7 @@ static void table_build(Table *table, const float *weights, uint width, uint hei
 {
     Error error;
     array_init(&table->lookup, sizeof(float));
-    test_require(array_grow(&table->lookup, 13, &error) != NULL, "memory"); /* tables do not begin at 0 */
+    test_require(array_grow(&table->lookup, 13, &error) != NULL, "memory"); /* tables need not start at 0 */
     test_require(distribution2d_build(weights, width, height, &table->lookup, &table->d, &error), "%s", error.message);
 }
 
@@ -23,7 +23,7 @@ static const float *table_floats(const Table *table)
     return table->lookup.data;
 }
 
-/* An image like those of the sky: smooth, a sun a million times brighter, black rows, columns and scattered pixels. */
+/* An image like a sky's: smooth, a sun a million times brighter, black rows, columns and scattered pixels. */
 static void sky_fill(float *weights, uint width, uint height)
 {
     uint64_t state = 40;
@@ -37,7 +37,8 @@ static void sky_fill(float *weights, uint width, uint height)
         weights[4 * width + 5] = 1e6f;
 }
 
-/* Sums to 1, is in proportion to the weights but for the 2^-23 that each cell is given, and is 0 where they are. */
+/* The density sums to 1, is proportional to the weights except for the 2^-23 granted to each cell, and is 0 where they
+ * are 0. */
 static void table_check_density(const Table *table, const float *weights)
 {
     uint width = table->d.width, height = table->d.height;
@@ -86,7 +87,7 @@ START_TEST(test_density)
 }
 END_TEST
 
-/* The point lies in a cell of positive weight, and its density is, bit for bit, the one returned with it. */
+/* The point lies in a cell of positive weight, and the density at the point is bitwise the one returned with it. */
 static void sample_check(const Table *table, const float *weights, Vec2 u, double *observed)
 {
     float pdf;
@@ -128,7 +129,7 @@ START_TEST(test_samples)
 }
 END_TEST
 
-/* Uniform within a cell: the fractions of points inside the cells of a small table. */
+/* Uniformity within a cell: the fractional positions of points inside the cells of a small table. */
 START_TEST(test_inside_cells)
 {
     enum { SIDE = 16, SAMPLES = 300000 };
@@ -151,7 +152,7 @@ START_TEST(test_inside_cells)
 }
 END_TEST
 
-/* All 2^23 numbers that random_float makes: the share that falls into a cell is its probability, with no error. */
+/* Over all 2^23 values of random_float, the fraction that falls into a cell is exactly its probability. */
 START_TEST(test_exact)
 {
     enum { WIDTH = 4099 };
@@ -172,7 +173,7 @@ START_TEST(test_exact)
 }
 END_TEST
 
-/* Every cell of tables up to the largest size: the point stays in its cell at both ends. */
+/* Every cell of tables up to the largest size: points at both ends of its interval stay within the cell. */
 START_TEST(test_place)
 {
     static const uint COUNTS[] = {1, 2, 3, 5, 7, 10, 97, 1000, 4095, 4096, 8191, 16384, 99991, 1048575, 1048576};

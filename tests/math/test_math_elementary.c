@@ -9,8 +9,8 @@ typedef struct Unary {
     const char *name;
     float (*ours)(float x);
     int (*exact)(mpfr_t y, const mpfr_t x, mpfr_rnd_t rounding);
-    double (*reference)(double x); /* the C library's, in double: its error is 1e-8 of an ulp of ours */
-    double bound; /* ulp, as math/elementary.h states it */
+    double (*reference)(double x); /* the C library's, in double: its error is 1e-8 of a float ulp */
+    double bound; /* in ulp, as stated in math/elementary.h */
 } Unary;
 
 static const Unary UNARY[] = {
@@ -35,7 +35,7 @@ static void unary_check(const Unary *unary, float x, double exact, double *worst
     *worst = error > *worst ? error : *worst;
 }
 
-/* Every 32771st bit pattern (a prime: all exponents and signs) against MPFR. */
+/* Every 32771st bit pattern (a prime, so that all exponents and signs occur) against MPFR. */
 START_TEST(test_unary_mpfr)
 {
     const Unary *unary = &UNARY[_i];
@@ -48,11 +48,11 @@ START_TEST(test_unary_mpfr)
     }
     mpfr_clears(argument, value, (mpfr_ptr)0);
     mpfr_free_cache();
-    test_require(worst > 0.4, "worst > 0.4"); /* the sweep met inexact results */
+    test_require(worst > 0.4, "worst > 0.4"); /* the sweep includes inexact results */
 }
 END_TEST
 
-/* Every 521st bit pattern against double arithmetic. TWINLIGHT_TEST_STRIDE=1 takes all floats (minutes). */
+/* Every 521st bit pattern against double arithmetic. TWINLIGHT_TEST_STRIDE=1 tests all floats (minutes). */
 START_TEST(test_unary_sweep)
 {
     const Unary *unary = &UNARY[_i];
@@ -68,7 +68,7 @@ START_TEST(test_unary_sweep)
 }
 END_TEST
 
-/* 1000 floats on either side of where the algorithms change: bounds against MPFR. */
+/* 1000 floats on either side of each breakpoint of the algorithms: error bounds against MPFR. */
 START_TEST(test_unary_breakpoints)
 {
     static const float POINTS[] = {0x1p-126f,  0x1p-12f,   0.5f,        0.70710678f, 0.78539816f, 1.0f,
@@ -89,8 +89,8 @@ START_TEST(test_unary_breakpoints)
 }
 END_TEST
 
-/* The floats closest to multiples of pi/2, where a poor reduction loses every bit (Muller, "Elementary Functions",
- * section 11.2: the worst for float32 is 16367173 x 2^72, 1.6e-9 away). */
+/* The floats closest to multiples of pi/2, for which a poor argument reduction loses every bit (Muller, "Elementary
+ * Functions", section 11.2: the worst for float32 is 16367173 x 2^72, at a distance of 1.6e-9). */
 START_TEST(test_reduction_worst)
 {
     static const float POINTS[] = {0x1.f37ce2p95f, 0x1.921fb6p0f, 0x1.921fb6p1f, 0x1.8bc2b2p87f, 0x1.fc2da2p10f};
@@ -106,7 +106,7 @@ END_TEST
 
 typedef struct Special {
     float (*function)(float x);
-    uint x, y; /* bits */
+    uint x, y; /* as bits */
 } Special;
 
 static const Special SPECIALS[] = {
@@ -129,7 +129,7 @@ static const Special SPECIALS[] = {
     {float_exp, 0x42b17218u, 0x7f800000u},
     {float_exp, 0x7f7fffffu, 0x7f800000u}, /* 88.72284: overflow */
     {float_exp, 0x42b17217u, 0x7f7fff84u},
-    {float_exp, 0xc2cff1b5u, 0x00000000u}, /* largest; e^-103.97208: underflow */
+    {float_exp, 0xc2cff1b5u, 0x00000000u}, /* largest finite; e^-103.97208: underflow */
     {float_exp, 0xc2cff1b4u, 0x00000001u},
     {float_exp, 0xff7fffffu, 0x00000000u},
     {float_log, 0x00000000u, 0xff800000u},
@@ -163,8 +163,8 @@ START_TEST(test_unary_specials)
 }
 END_TEST
 
-/* No step backwards between neighbouring floats within `reach` of a breakpoint of the algorithm. rising: the function
- * grows with the bit pattern there. */
+/* Monotonicity between adjacent floats within `reach` of a breakpoint of the algorithm. rising: the function increases
+ * with the bit pattern there. */
 static void monotone_check(float (*function)(float x), float at, bool rising, int reach)
 {
     uint first = float_bits(at) - (uint)reach;
@@ -184,7 +184,7 @@ START_TEST(test_unary_monotone)
         monotone_check(float_log, at, true, 50);
         monotone_check(float_exp, (float)fabs((k + 0.5) * 0.69314718055994531), true, 50);
     }
-    for (int k = 0; k < 128; ++k) { /* where the quadrant changes, (k + 1/2) pi/2, and the extrema are between */
+    for (int k = 0; k < 128; ++k) { /* breakpoints at quadrant changes, (k + 1/2) pi/2; the extrema are between them */
         float at = (float)((k + 0.5) * 1.5707963267948966);
         monotone_check(float_sin, at, k % 4 == 0 || k % 4 == 3, 50);
         monotone_check(float_cos, at, k % 4 == 2 || k % 4 == 3, 50);

@@ -1,11 +1,11 @@
-/* Functions of two arguments: power and angle. */
+/* Functions of two arguments: pow and atan2. */
 #include "math/test_math.h"
 
 #include "math/elementary.h"
 
 #include <mpfr.h>
 
-/* A y for x such that x^y is an ordinary number (most pairs of floats overflow). */
+/* A y such that x^y is of ordinary size (most pairs of floats overflow). */
 static float power_exponent(float x, uint64_t *state)
 {
     double limit = 128.0 / fmax(fabs(log2((double)x)), 1e-30);
@@ -85,7 +85,8 @@ static double atan2_exact(float y, float x, mpfr_t a, mpfr_t b, mpfr_t value)
     return mpfr_get_d(value, MPFR_RNDN);
 }
 
-/* A third of the pairs are any two floats, the others of similar size or next to where the reduction changes. */
+/* A third of the pairs are arbitrary floats, the others of similar size or next to a breakpoint of the argument
+ * reduction. */
 START_TEST(test_atan2_mpfr)
 {
     mpfr_t a, b, value;
@@ -129,7 +130,7 @@ START_TEST(test_atan2_specials)
 }
 END_TEST
 
-/* Growing y at fixed x, dense where the ratio crosses 1/2, 1 and 2. */
+/* Increasing y at fixed x, densely where the ratio crosses 1/2, 1 and 2. */
 START_TEST(test_atan2_monotone)
 {
     static const float POINTS[] = {0.25f, 0.5f, 1.0f, 2.0f, 4.0f};

@@ -1,4 +1,4 @@
-/* Philox4x32-10 against its published vectors, and the floats made from it. */
+/* Philox4x32-10 against its published vectors, and the floats derived from it. */
 #include "math/test_math.h"
 
 #include "math/rng.h"
@@ -30,13 +30,13 @@ START_TEST(test_float_range)
     for (uint bits = 0; bits < 0xffff0000u; bits += 65521u) {
         float u = random_float(bits);
         test_require(u > 0.0f && u < 1.0f, "u > 0.0f && u < 1.0f");
-        test_require(random_float(~bits) == 1.0f - u, "random_float(~bits) == 1.0f - u"); /* symmetric, exactly */
+        test_require(random_float(~bits) == 1.0f - u, "random_float(~bits) == 1.0f - u"); /* exactly symmetric */
     }
 }
 END_TEST
 
-/* Counters that differ in one word only, as the renderer's do: every pair of (word of the counter, word of the result)
- * uniform in 256 bins of its upper byte. 16 tests: p > 1e-3 each after Sidak is 6e-5. */
+/* Counters that differ in one word only, as the renderer's do: for every pair of (word of the counter, word of the
+ * result), the upper byte is uniform over 256 bins. 16 tests: 1e-3 overall after Sidak is p > 6e-5 each. */
 START_TEST(test_uniform_words)
 {
     enum { BINS = 256, SAMPLES = 200000 };
@@ -80,7 +80,7 @@ START_TEST(test_pairs)
 }
 END_TEST
 
-/* Flipping any input bit flips each output bit half of the time. */
+/* Flipping any input bit flips each output bit with probability 1/2. */
 START_TEST(test_avalanche)
 {
     uint64_t state = 5;
@@ -98,7 +98,7 @@ START_TEST(test_avalanche)
                 flips += __builtin_popcount(p.x[i] ^ q.x[i]);
         }
         double z = (flips - TRIALS * 64.0) / sqrt(TRIALS * 128.0 * 0.25);
-        test_require(fabs(z) < 5.0, "input bit %d: z = %g", bit, z); /* 192 tests: p = 1e-4 in all */
+        test_require(fabs(z) < 5.0, "input bit %d: z = %g", bit, z); /* 192 tests: p = 1e-4 overall */
     }
 }
 END_TEST

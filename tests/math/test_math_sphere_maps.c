@@ -1,4 +1,4 @@
-/* The two parametrisations of the sphere by images: orientation, inverses, precision. */
+/* The two image parametrisations of the sphere: orientation, inverses, precision. */
 #include "math/test_math.h"
 
 #include "math/warp.h"
@@ -8,9 +8,9 @@ static void assert_near(double value, double expected, double tolerance, const c
     test_require(fabs(value - expected) <= tolerance, "%s: %.9g, expected %.9g", what, value, expected);
 }
 
-/* Directions and their places in the square: pbrt-v4's convention (+z in the middle, -z in the corners, axes in the
- * middle of the edges) and points of Clarberg's formula worked out by hand: r = sqrt(1 - |z|), phi from 0 to pi/2
- * becomes v / r from 0 to 1. */
+/* Directions and their positions in the square: pbrt-v4's convention (+z in the middle, -z in the corners, the other
+ * axes in the middle of the edges) and points computed by hand from Clarberg's formula: r = sqrt(1 - |z|), and phi from
+ * 0 to pi/2 maps to v / r from 0 to 1. */
 static const float OCTAHEDRAL[][5] = {
     {0, 0, 1, 0.5f, 0.5f},
     {1, 0, 0, 1, 0.5f},
@@ -40,7 +40,7 @@ START_TEST(test_octahedral_points)
 }
 END_TEST
 
-/* The formula again, in double and by another route: quadrant by quadrant. */
+/* The formula evaluated independently in double, quadrant by quadrant. */
 static void octahedral_double(double u, double v, double *d)
 {
     double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0, x = fabs(a), y = fabs(b);
@@ -61,7 +61,7 @@ START_TEST(test_octahedral_both_ways)
     uint64_t state = 20;
     for (int i = 0; i < 500000; ++i) {
         Vec2 uv = vec2(test_uniform(&state), test_uniform(&state));
-        if (i % 4 == 0) /* close to the middle, where 1 - |z| would lose everything */
+        if (i % 4 == 0) /* close to the middle, where 1 - |z| would cancel */
             uv = vec2(0.5f + 1e-5f * (uv.x - 0.5f), 0.5f + 1e-5f * (uv.y - 0.5f));
         Vec3 d = octahedral_to_sphere(uv);
         double exact[3];
@@ -96,7 +96,7 @@ START_TEST(test_equirectangular_points)
     }
     Vec2 seam = sphere_to_equirectangular(vec3(1.0f, -1e-30f, 0.0f));
     test_require(seam.x >= 0.0f && seam.x < 1.0f,
-                 "seam.x >= 0.0f && seam.x < 1.0f"); /* the texel before the seam or after it, never outside */
+                 "seam.x >= 0.0f && seam.x < 1.0f"); /* the texel before or after the seam, never outside */
 }
 END_TEST
 
@@ -106,7 +106,7 @@ START_TEST(test_equirectangular_both_ways)
     for (int i = 0; i < 500000; ++i) {
         Vec2 uv = vec2(test_uniform(&state), test_uniform(&state));
         if (i % 4 == 0)
-            uv.y *= 1e-4f; /* near the pole: acos(z) would be off by 1e-4 */
+            uv.y *= 1e-4f; /* near the pole: acos(z) would have an error of 1e-4 */
         Vec3 d = equirectangular_to_sphere(uv);
         double theta = M_PI * (double)uv.y, phi = 2.0 * M_PI * (double)uv.x;
         assert_near((double)d.x, sin(theta) * cos(phi), 5e-7, "x");

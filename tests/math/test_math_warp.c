@@ -8,12 +8,12 @@
 #define ROWS 16
 #define COLUMNS 32
 #define CELLS (ROWS * COLUMNS)
-#define P_MIN 1e-4 /* a dozen chi-square tests in this file: 1e-3 in all after Sidak */
+#define P_MIN 1e-4 /* a dozen chi-square tests in this file: 1e-3 overall after Sidak */
 
 typedef struct DirectionWarp {
     const char *name;
     Vec3 (*sample)(Vec2 u);
-    float (*pdf)(Vec3 d); /* over solid angle */
+    float (*pdf)(Vec3 d); /* with respect to solid angle */
 } DirectionWarp;
 
 static float cosine_pdf(Vec3 d)
@@ -100,7 +100,7 @@ START_TEST(test_direction_chi_square)
 }
 END_TEST
 
-/* Area of the image of a small square times the density, over the area of the square. */
+/* Area of the image of a small square times the density, divided by the area of the square. */
 static double warp_jacobian(const DirectionWarp *warp, Vec2 u, float h)
 {
     Vec3 right = vec3_sub(warp->sample(vec2(u.x + h, u.y)), warp->sample(vec2(u.x - h, u.y)));
@@ -109,7 +109,7 @@ static double warp_jacobian(const DirectionWarp *warp, Vec2 u, float h)
     return area * (double)warp->pdf(warp->sample(u));
 }
 
-/* The points where a map has a crease or a pole are left out. */
+/* Points near a crease or a pole of a map, which are left out. */
 static bool near_crease(Vec2 u)
 {
     float a = float_abs(2.0f * u.x - 1.0f), b = float_abs(2.0f * u.y - 1.0f);
@@ -129,7 +129,7 @@ START_TEST(test_direction_jacobian)
 }
 END_TEST
 
-/* Cones down to a solid angle of 1e-14: (1 - cos) / (1 - cos_max), recovered from x and y, and phi are uniform. */
+/* Cones down to a solid angle of 1e-14: (1 - cos) / (1 - cos_max), recomputed from x and y, and phi are uniform. */
 START_TEST(test_cone_tiny)
 {
     static const float CONES[] = {1e-30f, 1e-14f, 1e-7f, 1e-3f, 1.0f};
@@ -200,7 +200,7 @@ static Vec3 disk_as_vec3(Vec2 u)
     return vec3(d.x, d.y, 0.0f);
 }
 
-/* And back. The square's border, the diagonals and the middle are among the points. */
+/* Round trip, for points that include the square's border, diagonals and centre. */
 START_TEST(test_disk_inverse)
 {
     uint64_t state = 12;
@@ -228,8 +228,8 @@ static Vec3 triangle_as_vec3(Vec2 u)
     return vec3(b.x, b.y, 0.0f);
 }
 
-/* Distance moved per distance in the square, over random small steps: bounded also across creases, where a map with a
- * seam would jump. */
+/* Distance on the image over distance in the square, for small random steps: bounded also across creases, where a map
+ * with a seam would jump. */
 START_TEST(test_continuous)
 {
     static Vec3 (*const MAPS[])(Vec2) = {disk_as_vec3, triangle_as_vec3, cone_wide, octahedral_to_sphere};
@@ -249,7 +249,7 @@ START_TEST(test_continuous)
 }
 END_TEST
 
-/* The corners and edges of the square that u of random_float can reach. */
+/* The corners and edges of the square that random_float can reach. */
 START_TEST(test_extremes)
 {
     static const float EDGES[] = {0.0f, 0x1p-24f, 0.5f, 0x1.fffffep-1f, 1.0f};

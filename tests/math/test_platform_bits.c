@@ -1,6 +1,6 @@
-/* The same text as C and as OpenCL C gives the same layouts and the same bits: math/platform_probe.cl is compiled into
- * this program and built for an OpenCL CPU device, and both are run over the same inputs. Skipped (exit 77) where there
- * is no such device. */
+/* The same source as C and as OpenCL C yields the same layouts and the same bits: math/platform_probe.cl is compiled
+ * into this program and built for an OpenCL CPU device, and both run on the same inputs. Skipped (exit 77) if there is
+ * no such device. */
 #include "math/test_math.h"
 
 #include "layout/scene_types.h"
@@ -10,7 +10,7 @@
 #include "math/platform_probe.cl"
 
 #define ITEMS (1u << 20)
-#define CHUNK (1u << 16) /* items run and compared at a time */
+#define CHUNK (1u << 16) /* items that are run and compared at a time */
 
 static OpenclProbe *probe;
 
@@ -46,8 +46,8 @@ START_TEST(test_layout)
 }
 END_TEST
 
-/* Members are 4-byte words and structs of them, so a struct without a gap is as large as its members together: a member
- * missing in layout/struct_members.h shows, and so does padding. */
+/* Members are 4-byte words and structs of them, so a struct without padding is as large as the sum of its members: this
+ * finds a member missing in layout/struct_members.h as well as padding. */
 START_TEST(test_layout_complete)
 {
     static uint words[4 * LAYOUT_COUNT];
@@ -78,7 +78,7 @@ static bool layout_lists(const char *type)
     return false;
 }
 
-/* Every struct of layout/scene_types.h is in layout/struct_members.h. */
+/* Every struct of layout/scene_types.h is listed in layout/struct_members.h. */
 START_TEST(test_layout_structs)
 {
     char path[4096], line[512], type[64];
@@ -101,7 +101,7 @@ END_TEST
 typedef struct BitsCase {
     const char *name;
     ProbeKernel kernel;
-    bool nan_payloads; /* a NaN's sign and payload must agree too; C and OpenCL leave those of + - * / open */
+    bool nan_payloads; /* a NaN's sign and payload must agree too; C and OpenCL do not specify them for + - * / */
 } BitsCase;
 
 static const BitsCase CASES[] = {
@@ -113,7 +113,7 @@ static const BitsCase CASES[] = {
 };
 #define CASE_COUNT ((int)(sizeof CASES / sizeof CASES[0]))
 
-/* Any bits; denormals, infinities, NaNs and zeros often; floats next to breakpoints. */
+/* Arbitrary bits; often denormals, infinities, NaNs and zeros; floats next to breakpoints. */
 static uint input_word(uint64_t *state)
 {
     static const uint SPECIALS[] = {0x00000000u, 0x80000000u, 0x00000001u, 0x80000001u, 0x007fffffu, 0x00800000u,
@@ -139,7 +139,8 @@ static bool same_bits(uint a, uint b, bool nan_payloads)
     return a == b || (nans && !nan_payloads);
 }
 
-/* Words of `table` as probe_distribution wants them: an image with black cells and a bright one, and 1000 buckets. */
+/* Words of `table` in the layout of probe_distribution: an image with black cells and a bright one, and 1000
+ * buckets. */
 static uint *table_make(size_t *words)
 {
     enum { WIDTH = 61, HEIGHT = 40, BUCKETS = 1000, HEADER = 6 };
@@ -203,8 +204,8 @@ START_TEST(test_bits)
 }
 END_TEST
 
-/* The test must be able to fail: a built program whose options allow what the promise forbids would pass if nothing
- * were compared. One flipped bit of the input is enough to differ. */
+/* The comparison must be able to fail: a flipped bit, the sign of zero and, with NaN payloads compared, the sign of a
+ * NaN count as differences. */
 START_TEST(test_comparison_sees)
 {
     ck_assert(!same_bits(0x3f800000u, 0x3f800001u, false));
@@ -219,7 +220,7 @@ int main(void)
 {
     char message[8192] = "", options[4096];
     bool absent;
-    setenv("POCL_KERNEL_CACHE", "0", 0); /* a cache does not see that an included header has changed */
+    setenv("POCL_KERNEL_CACHE", "0", 0); /* the cache does not notice changed include files */
     snprintf(options, sizeof options, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -I%s/shared -I%s/tests",
              test_source_folder(), test_source_folder());
     probe = opencl_probe_open("#include \"math/platform_probe.cl\"\n", options, message, sizeof message, &absent);

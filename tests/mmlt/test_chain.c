@@ -1,6 +1,6 @@
-/* The chain's rule on a target that is known: what begins in proportion to it stays so, under every kind of mutation
- * and with all of them, coordinates that a mutation leaves alone keep their bits, and the film gets one visit for each
- * step. */
+/* The chain's transition kernel on a known target: states distributed proportionally to it remain so under each kind of
+ * mutation and under all of them; coordinates that a mutation does not change keep their bits; the film receives one
+ * visit per step. */
 #include "mmlt/test_chain.h"
 
 #include "chain/mutation.h"
@@ -54,8 +54,7 @@ static void toy_end(Toy *toy)
     free(toy->vertices);
 }
 
-/* The three coordinates that the target looks at: of the film, of a vertex of the light's half, of one of the
- * camera's. */
+/* The three coordinates on which the target depends: of the film, of a light vertex, and of a camera vertex. */
 static void coordinates(const Toy *toy, uint t, float x[3])
 {
     x[0] = random_float(chain_camera(&toy->frame, toy->paths, t).x[0]);
@@ -63,7 +62,7 @@ static void coordinates(const Toy *toy, uint t, float x[3])
     x[2] = random_float(chain_vertex(&toy->frame, toy->paths, t, SIDE_CAMERA, DEPTH, 1u).x[2]);
 }
 
-/* A target with a step, a slope, a hole and a share for each s. Never above 8. */
+/* A target with a step, a slope, a zero region and a different weight for each s; at most 8. */
 static float target(const float x[3], uint s)
 {
     float f = (1.0f + x[0]) * (x[1] > 0.7f ? 4.0f : 1.0f);
@@ -74,14 +73,14 @@ static float target(const float x[3], uint s)
 
 /* ---- shifts ------------------------------------------------------------------------------------------------------ */
 
-/* Of the numbers u that draw a direction at z_1, z_2 has the places u^e, which depend on the film position x. */
+/* The number u that samples a direction at z_1 puts z_2 at u^e; e depends on the film position x. */
 static float place_exponent(float x)
 {
     return 1.0f + 2.0f * x;
 }
 
-/* The camera's half of a proposal: where z_2 is, or if it is to stay, by which numbers it does. Paths from a part of
- * the film cannot be shifted. */
+/* Makes the camera subpath of a proposal: the position of z_2 or, if that is kept, the numbers that lead to it. Paths
+ * from one part of the film cannot be shifted. */
 static void walk(Toy *toy, uint t)
 {
     uint number = shift_number(&toy->frame, DEPTH, 1, 0),
@@ -105,7 +104,7 @@ static void walk(Toy *toy, uint t)
 
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
-/* Draws the state of chain t exactly from the target by rejection: uniform coordinates, taken with probability f /
+/* Draws the state of chain t exactly from the target by rejection: uniform coordinates, accepted with probability f /
  * 8. */
 static void draw(Toy *toy, uint t, bool any_s)
 {
@@ -128,7 +127,7 @@ static void draw(Toy *toy, uint t, bool any_s)
             state_store_float(toy->paths, STRIDE, CHAIN_FILM, t, 1.0f);
             state_store_float(toy->paths, STRIDE, CHAIN_FILM + 1u, t, 1.0f);
             state_store(toy->paths, STRIDE, CHAIN_MOVE, t, SUBPATH_BOTH << MOVE_CHANGED | SUBPATH_BOTH << MOVE_BANKS);
-            walk(toy, t); /* to bank 0 */
+            walk(toy, t); /* writes to bank 0 */
             state_store(toy->paths, STRIDE, CHAIN_MOVE, t, 0u);
             return;
         }
@@ -157,7 +156,7 @@ static double step(Toy *toy, uint t)
 
 #define BINS 8u
 
-/* Integral of the target over bin (i, j, k) of the unit cube and s, over its integral. */
+/* Integral of the target over bin (i, j, k) of the unit cube and over s, as a fraction of the total. */
 static double bin_share(uint i, uint j, uint k, bool any_s, uint s)
 {
     double bright = fmin(fmax(((double)(j + 1) / BINS - 0.7) * BINS, 0.0), 1.0);
@@ -233,7 +232,7 @@ END_TEST
 
 /* ---- bits -------------------------------------------------------------------------------------------------------- */
 
-/* A small step and its opposite are equally probable: they are the same random word but for its lowest bit. Sizes are
+/* A small step and its opposite are equally probable: their random words differ only in the lowest bit. Sizes are
  * uniform up to 2^-(shift + 1) of the range times 4 / (d + 1). */
 START_TEST(test_offsets_symmetric)
 {
@@ -254,7 +253,7 @@ START_TEST(test_offsets_symmetric)
 }
 END_TEST
 
-/* Both steps of one word: turned signs turn both, and sizes are uniform and know nothing of one another. */
+/* The two steps made from one word: flipping the signs negates both; their sizes are uniform and uncorrelated. */
 START_TEST(test_offsets_of_a_word)
 {
     const uint draws = 1u << 20, shift = STEP_SHIFT_OTHERS, length = mutation_length(5u);
@@ -278,7 +277,7 @@ START_TEST(test_offsets_of_a_word)
 }
 END_TEST
 
-/* Kinds of steps in their proportion, of those that are wanted alone; scales all alike. */
+/* Kinds of steps occur in their proportions, and only those enabled; all scales are equally frequent. */
 START_TEST(test_kinds)
 {
     const uint draws = 1u << 16, set = (uint)_i;
@@ -304,7 +303,7 @@ START_TEST(test_kinds)
 }
 END_TEST
 
-/* f = const: a million steps of the camera's half leave the light's coordinates alone to the bit, and the other way. */
+/* f = const: a million steps of the camera subpath leave the light's coordinates bitwise unchanged, and vice versa. */
 START_TEST(test_null_mutations)
 {
     Toy toy;
@@ -333,7 +332,7 @@ START_TEST(test_null_mutations)
 }
 END_TEST
 
-/* What is never there is never taken, and leaves no bit of a coordinate behind. */
+/* Proposals that are zero or not finite are never accepted and leave the coordinates bitwise unchanged. */
 START_TEST(test_zero_never_accepted)
 {
     Toy toy;
@@ -359,8 +358,8 @@ START_TEST(test_zero_never_accepted)
 }
 END_TEST
 
-/* A chain that carries a million times as much as what is around it stays: its run is every step since it began, as far
- * as the count goes, and is remembered when it has ended. */
+/* A chain whose path carries a million times as much as its neighbourhood stays there: its run counts every step since
+ * it started, up to the counter's maximum, and the longest run is remembered after it has ended. */
 START_TEST(test_stuck)
 {
     Toy toy;

@@ -4,7 +4,7 @@
 
 #include "support/test_util.h"
 
-/* What chains and pools show of one path. */
+/* what chains and pools show of a single path */
 TCase *chain_shown_tests(void);
 
 #endif

@@ -1,5 +1,5 @@
-/* A population and a pool together: sums come out right whatever the part of either, at once and after many
- * generations. */
+/* A population and a pool combined: expected sums are right for any partition between them, in a single generation and
+ * over many. */
 #include "mmlt/chain_population.h"
 
 #include "chain/chain.h"
@@ -19,8 +19,7 @@
 #define OFFSETS 4096u
 #define FIELDS (CHAIN_PASS_NUMBERS + 2u)
 
-/* Every chain and sample has a depth of its own, so that it is known again, and chains coordinates that go on with
- * them. */
+/* Every chain and sample has its own depth, by which it is recognised, and chains have coordinates to carry along. */
 static void chains_make(ChainPopulation *population, uint *words)
 {
     chain_population_init(population, FIELDS);
@@ -50,13 +49,14 @@ static void pool_make(uint *pool)
     }
 }
 
-/* Of the cell that chain i is in, under the loop test's importance. */
+/* The change of importance in the cell of chain i, as used by _i. */
 static float change_of(int loop, uint i)
 {
     return loop == 0 ? 1.0f : 0.25f + 0.5f * (float)i;
 }
 
-/* Over all offsets of the comb a path weighs what its part is; with another importance, what its part of that is. */
+/* Averaged over all offsets of the comb, the weight of a path is its part of the partition; if importance has changed,
+ * that part times the change. */
 START_TEST(test_parts)
 {
     static float change[IMPORTANCE_CELLS];
@@ -106,9 +106,9 @@ START_TEST(test_parts)
 }
 END_TEST
 
-/* ---- what they begin with ---------------------------------------------------------------------------------------- */
+/* ---- starting paths ---------------------------------------------------------------------------------------------- */
 
-/* The next population of eight, its starts counted; every chain then carries 1. */
+/* Makes the next population of eight and counts its starts; every chain then has luminance 1. */
 static void eight_renew(ChainPopulation *population, const uint *pool, ChainStarts *starts, ChainStatistics *statistics)
 {
     Error error = {0};
@@ -118,9 +118,9 @@ static void eight_renew(ChainPopulation *population, const uint *pool, ChainStar
         population->words[CHAIN_PASS_LUMINANCE * 8 + i] = float_bits(1.0f);
 }
 
-/* Eight chains from samples worth 4, 2, 1 and 1, of 3, 5, 3 and 5 segments. Then half of everything is the chains': of
- * a comb of eight teeth, (k + 0.4) / 4, five meet chains, whose weights are 1/8, and three the samples of 1/2, 1/4,
- * 1/8, 1/8. */
+/* Eight chains from samples of contribution weight 4, 2, 1 and 1, with 3, 5, 3 and 5 segments. In the next generation
+ * half of everything belongs to the chains: of the comb's eight teeth at (k + 0.4) / 4, five hit chains, of weight 1/8
+ * each, and three hit samples, of weight 1/2, 1/4, 1/8 and 1/8. */
 START_TEST(test_starts)
 {
     uint pool[POOL_WORDS * 4];
@@ -143,7 +143,7 @@ START_TEST(test_starts)
     ck_assert(statistics.starts[5] == 6 && statistics.distinct_starts[5] == 5);
     ck_assert_uint_eq(statistics.seeds, 11);
     ck_assert_double_eq(statistics.least_distinct, 0.5);
-    /* A dark pool begins none. */
+    /* A black pool starts no chains. */
     for (uint i = 0; i < 4; ++i)
         pool[POOL_KEY * 4 + i] = 0;
     chain_population_destroy(&population);
@@ -154,7 +154,7 @@ START_TEST(test_starts)
 }
 END_TEST
 
-/* ---- many -------------------------------------------------------------------------------------------------------- */
+/* ---- many generations -------------------------------------------------------------------------------------------- */
 
 #define STATES 24u
 #define SAMPLES 12u
@@ -163,7 +163,7 @@ END_TEST
 
 static double state_value(uint state)
 {
-    return state == 0 ? 200.0 : 0.25 + 0.125 * state; /* one in a hundred meets most of the light */
+    return state == 0 ? 200.0 : 0.25 + 0.125 * state; /* one sample in a hundred finds most of the light */
 }
 
 static double state_probability(uint state)
@@ -180,7 +180,7 @@ static uint state_draw(uint repeat, uint generation, uint i)
     return state < STATES ? state : STATES - 1;
 }
 
-/* Moves that keep f: between two neighbours by Metropolis's rule. */
+/* Moves that preserve f: Metropolis steps between two neighbouring states. */
 static uint state_move(uint state, uint repeat, uint generation, uint i)
 {
     Random4 random = random_four(repeat, generation, i, 1, 7, 7);
@@ -191,7 +191,7 @@ static uint state_move(uint state, uint repeat, uint generation, uint i)
     return random.x[0] < ratio * 4294967296.0 ? other : state;
 }
 
-/* rare: all other states are black, and most pools. */
+/* rare: all states but one are black, and so are most pools. */
 static void generation_run(ChainPopulation *population, bool rare, uint repeat, uint generation, uint count,
                            double *sums)
 {
@@ -215,8 +215,8 @@ static void generation_run(ChainPopulation *population, bool rare, uint repeat, 
     }
 }
 
-/* In every generation, of a population that grows, every state has on average what it is worth, also where there is
- * mostly no population because all pools were black. */
+/* In every generation of a growing population, the mean of every state is right, even if there is mostly no population
+ * because all pools were black. */
 START_TEST(test_unbiased)
 {
     const bool rare = _i == 1;
@@ -246,7 +246,7 @@ START_TEST(test_unbiased)
             /* 144 values, 4.5 deviations: fails once in a thousand times by chance, and the seed is fixed. */
             ck_assert_double_eq_tol(got, expected, 4.5 * error);
         }
-    /* What is remembered is the mean of all pools so far: the rare state's spread falls with their number. */
+    /* What is remembered is the mean of all pools so far: the rare state's variance decreases with their number. */
     double first = square[0][0] - mean[0][0] * mean[0][0];
     double last = square[GENERATIONS - 1][0] - mean[GENERATIONS - 1][0] * mean[GENERATIONS - 1][0];
     ck_assert_double_lt(last, 0.4 * first);

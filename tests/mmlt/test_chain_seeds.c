@@ -1,4 +1,4 @@
-/* Systematic resampling of a pool: counts, order, and what a chain is worth. */
+/* Systematic resampling of a pool: counts, order, and the weight of a chain. */
 #include "chain/pool.h"
 #include "mmlt/chain_seeds.h"
 
@@ -6,7 +6,7 @@
 
 #define POOL 1000u
 
-/* Weights of very different size, a third of them none, keys of a few depths. */
+/* Weights of very different size, a third of them zero, with keys of a few depths. */
 static void pool_make(double *weights, uint *keys, double *sum)
 {
     *sum = 0.0;
@@ -50,7 +50,7 @@ START_TEST(test_counts)
 }
 END_TEST
 
-/* The offset moves the comb: over a fine grid of offsets every sample is taken as often as it is worth. */
+/* The offset shifts the comb: over a fine grid of offsets, every sample is selected in proportion to its weight. */
 START_TEST(test_mean)
 {
     static uint keys[POOL], seeds[64], times[POOL];

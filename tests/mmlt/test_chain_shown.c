@@ -1,5 +1,5 @@
-/* Single paths in chains and pools: how much of them path tracing shows, where they are splatted and how often, and
- * which path of a sample the pool keeps. Expectations over the random numbers are compared with the definitions. */
+/* Single paths in chains and pools: the part that path tracing shows, where and how often they are splatted, and which
+ * path of a sample the pool keeps. Expected values over the random numbers are compared with the definitions. */
 #include "mmlt/test_chain.h"
 
 #include "chain/chain_light.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* A crop window inside the film, and a triangle filter whose radii differ. */
+/* A crop window inside the film, and a triangle filter with two different radii. */
 enum { WIDTH = 9, X0 = 1, X1 = 7, Y0 = 2, Y1 = 6, COLUMNS = X1 - X0, ROWS = Y1 - Y0 };
 #define RADIUS_X 2.0
 #define RADIUS_Y 1.0
@@ -56,7 +56,7 @@ static Vec3 color_draw(Shown *shown)
     return vec3(octaves(shown, 2.0), octaves(shown, 2.0), octaves(shown, 2.0));
 }
 
-/* Area of the film positions that filters reach over that of the crop window: radius - 1/2 more on each side. */
+/* Area of the film positions that filters reach, divided by that of the crop window: radius - 1/2 more on each side. */
 static double reach_factor(void)
 {
     return (COLUMNS + 2.0 * RADIUS_X - 1.0) * (ROWS + 2.0 * RADIUS_Y - 1.0) / (COLUMNS * ROWS);
@@ -77,7 +77,7 @@ static double importance_at(const Shown *shown, Vec2 film)
     return (double)shown->light.scene.guide.importance[y * (int)IMPORTANCE_SIDE + x];
 }
 
-/* The filter of pixel (x, y) at a film position, its integral 1. */
+/* The filter of pixel (x, y) at a film position, normalised to integral 1. */
 static double filter_at(Vec2 film, int x, int y)
 {
     double across = fmax(1.0 - fabs((double)film.x - x - 0.5) / RADIUS_X, 0.0) / RADIUS_X;
@@ -101,9 +101,9 @@ static double luminance_of(Vec3 color)
 
 /* ---- chains ------------------------------------------------------------------------------------------------------ */
 
-/* Path tracing would contribute color / path_tracing. It shows that, times the importance, up to four times the limit.
- * Camera walks of chains start with the reach as a factor, which is divided out; paths with t = 1 have none. Depth and
- * s stay in the key. */
+/* Path tracing would contribute color / path_tracing. Of that, times the importance, it shows at most four times the
+ * clamping threshold. Camera subpaths of chains start with a factor for the filters' reach, which is divided out; paths
+ * with t = 1 have none. Depth and s remain in the key. */
 START_TEST(test_key)
 {
     Shown shown;
@@ -129,7 +129,8 @@ START_TEST(test_key)
 }
 END_TEST
 
-/* Averaged over u, min(1, limit / f) of a path is below the limit, and what path tracing does not show is rare. */
+/* Averaged over u, a part min(1, threshold / f) of a path is not excess, and the part that path tracing does not show
+ * is rare. */
 START_TEST(test_flags)
 {
     enum { N = 4096 };
@@ -188,7 +189,7 @@ START_TEST(test_splat)
 }
 END_TEST
 
-/* With s = 0 the light's half has no coordinates, with s = d the camera's: then a step changes both. */
+/* With s = 0 the light subpath has no coordinates, with s = d the camera subpath; a step then changes both. */
 START_TEST(test_halves)
 {
     for (uint d = CHAIN_DEPTH_MIN; d < 9; ++d)
@@ -230,7 +231,7 @@ START_TEST(test_large)
 }
 END_TEST
 
-/* Of the steps of the camera's half the part `shifts` are shifts, of whatever set of kinds. */
+/* Of the steps of the camera subpath, a fraction `shifts` are shifts, for any set of enabled kinds. */
 START_TEST(test_shifts)
 {
     enum { STEPS = 1 << 16 };
@@ -254,8 +255,8 @@ START_TEST(test_shifts)
 }
 END_TEST
 
-/* One light at infinity, drawn with u, stands for all: the luminance is that of all for every u, the expected color is
- * the sum of all, and color / path_tracing is that of the light drawn. */
+/* A single infinite light, selected with u, represents all: for every u the luminance is that of all lights, the
+ * expected color is their sum, and color / path_tracing is that of the selected light. */
 START_TEST(test_environment)
 {
     enum { LIGHTS = 4, N = 4096 };
@@ -310,8 +311,8 @@ START_TEST(test_environment)
 }
 END_TEST
 
-/* A camera walk of four segments meets a lamp (s = 0): its weight takes the walk's delta vertices into account, and the
- * key has what path tracing shows, by the weight of s = 0 and s = 1 together. */
+/* A camera subpath of four segments hits a lamp (s = 0): its weight accounts for the subpath's delta vertices, and the
+ * key holds the part that path tracing shows, with the weights of s = 0 and s = 1 together. */
 START_TEST(test_met_lamp)
 {
     enum { D = 4 };
@@ -346,7 +347,7 @@ START_TEST(test_met_lamp)
         DensityView view = {.light = full, .camera = full, .stride = 1, .camera_delta = delta << 2};
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, D + 1, &view, &ends);
         weights_seen[delta] = weights.own;
-        TEST_TRUE(weights.own < 0.9f * weights.path_tracing); /* else the two could not be told apart below */
+        TEST_TRUE(weights.own < 0.9f * weights.path_tracing); /* else the comparison below could not fail */
         memset(shown.paths, 0, sizeof shown.paths);
         state_store(shown.paths, 1, CHAIN_PROPOSED_KEY, 0, chain_key(D, 0));
         state_store_vec3(shown.paths, 1, BD_BETA, 0, beta);
@@ -390,24 +391,24 @@ static double density_ratio_of(uint pixel)
     return (pixel % WIDTH - X0) % 2 == 0 ? 2.0 : 2.0 / 3.0;
 }
 
-/* Luminance times importance over the density of the numbers that make the path: pool_lights_weight where only samples
- * with a light walk can (s > 1); film positions have the density of the pixel's filter, or are uniform where the path
- * has none (t = 1). */
+/* Contribution weight: luminance times importance over the density of the numbers that make the path. Paths that only
+ * samples with a light subpath can make (s > 1) count pool_lights_weight times; film positions have the density of the
+ * pixel's filter, or are uniform for t = 1. */
 static double contribution_of(uint s, uint t, double luminance, double cover, uint pixel)
 {
     return luminance * (s > 1 ? (double)LIGHTS_WEIGHT : 1.0) *
            (t == 1 ? cover : density_ratio_of(pixel) / reach_factor());
 }
 
-/* The candidate is a sample's path with probability proportional to its worth; its f is without roulette. The film is
- * shown min(1, limit / f) of every path. */
+/* The candidate is one of a sample's paths with probability proportional to its contribution weight; its f excludes
+ * Russian roulette. The film is shown min(1, threshold / f) of every path. */
 START_TEST(test_candidates)
 {
     enum { PATHS = 8, SAMPLES = 40000 };
     static const uint KINDS[PATHS][2] = {{0, 4}, {1, 2}, {1, 3}, {2, 1}, {2, 2}, {3, 1}, {3, 4}, {0, 6}};
     Shown shown;
     const FrameParams *frame = &shown.light.scene.frame;
-    double worths[PATHS], sum = 0.0;
+    double weights[PATHS], sum = 0.0;
     float survival[PATHS], cover[PATHS], importance[PATHS];
     uint counts[PATHS] = {0};
     Vec3 colors[PATHS];
@@ -418,10 +419,10 @@ START_TEST(test_candidates)
         survival[i] = 0.25f + 0.125f * (float)(i % 4);
         cover[i] = 0.5f + 0.0625f * (float)i;
         importance[i] = octaves(&shown, 1.0);
-        colors[i] = vec3_scale(color_draw(&shown), i % 2 == 0 ? 2.0f : 40.0f); /* below the limit and above */
-        worths[i] = contribution_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
-                                    (double)cover[i], pixel);
-        sum += worths[i];
+        colors[i] = vec3_scale(color_draw(&shown), i % 2 == 0 ? 2.0f : 40.0f); /* below and above the threshold */
+        weights[i] = contribution_of(KINDS[i][0], KINDS[i][1], luminance_of(colors[i]) * (double)importance[i],
+                                     (double)cover[i], pixel);
+        sum += weights[i];
     }
     for (uint sample = 0; sample < SAMPLES; ++sample) {
         memset(shown.paths, 0, sizeof shown.paths);
@@ -447,7 +448,7 @@ START_TEST(test_candidates)
         ++counts[kept];
     }
     for (int i = 0; i < PATHS; ++i) {
-        double share = worths[i] / sum;
+        double share = weights[i] / sum;
         ck_assert_double_eq_tol((double)counts[i] / SAMPLES, share, 5.0 * sqrt(share * (1.0 - share) / SAMPLES));
     }
     fixture_destroy(&shown.light);
@@ -455,8 +456,8 @@ START_TEST(test_candidates)
 END_TEST
 
 /* Film positions of a pool's sample have the mean and variance of its pixel's triangle filter, 0 and radius^2 / 6. Its
- * weight is the density_ratio of its pixel over the reach; roulette is scaled by the density_ratio where that is above
- * one, and by pool_lights_weight where the sample has a light walk. */
+ * weight is the pixel's density ratio over the reach factor; Russian roulette is scaled by the density ratio if that
+ * exceeds one, and by pool_lights_weight if the sample has a light subpath. */
 START_TEST(test_start)
 {
     enum { SAMPLES = 20000 };
@@ -469,7 +470,7 @@ START_TEST(test_start)
         frame->camera.world_from_camera.m[5 * k] = frame->camera.camera_from_world.m[5 * k] = 1.0f;
     frame->pool_items = 8;
     frame->pool_lights = 3;
-    frame->pool_lights_first = 6; /* 6, 7 and 0 */
+    frame->pool_lights_first = 6; /* items 6, 7 and 0 */
     for (uint item = 0; item < 8; ++item) {
         bool walk = item >= 6 || item < 1;
         uint pixel = 3 * WIDTH + 3 + item % 2;
@@ -496,7 +497,7 @@ START_TEST(test_start)
             ck_assert_double_eq_tol(sum[a], 0.0, 5.0 * sqrt(variance / SAMPLES));
             ck_assert_double_eq_tol(squares[a] / variance, 1.0, 0.05);
         }
-        /* walk_begin divides by the throughput, which is the reach. */
+        /* walk_begin divides by the throughput, which is the reach factor. */
         double counts = fmax(density_ratio_of(pixel), 1.0) * (walk ? (double)LIGHTS_WEIGHT : 1.0);
         ck_assert_double_eq_tol((double)bits_float(shown.paths[BD_WEIGHT]), density_ratio_of(pixel) / reach_factor(),
                                 1e-6);

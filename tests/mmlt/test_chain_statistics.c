@@ -1,4 +1,4 @@
-/* What is counted of chains, from words as a pass leaves them: acceptance and runs by depth, and R-hat over groups. */
+/* Statistics of chains, from the words that a pass leaves: acceptance and runs by depth, and R-hat over groups. */
 #include "mmlt/chain_groups.h"
 #include "render/chain_statistics.h"
 
@@ -17,7 +17,7 @@ static uint *word(uint *words, uint field, uint i)
     return words + (size_t)field * CHAINS + i;
 }
 
-/* Chains of 3 + i % 2 segments, one vertex from the light, that carry e^(value) and are seen at (x, y). */
+/* Chains of 3 + i % 2 segments with one light vertex, of luminance e^(value), at film position (x, y). */
 static void chain_place(uint *words, uint i, double value, double x, double y)
 {
     *word(words, CHAIN_PASS_KEY, i) = chain_key(3 + i % 2, 1);
@@ -51,7 +51,7 @@ START_TEST(test_pass)
 }
 END_TEST
 
-/* Chains of two halves, alike in what they carry and in y; the second half's are `apart` further to the right. */
+/* Two halves of chains with the same luminances and y; those of the second half are `apart` further to the right. */
 static double halves_r_hat(double apart)
 {
     static uint words[FIELDS * CHAINS];
@@ -69,7 +69,7 @@ static double halves_r_hat(double apart)
     return chain_groups_r_hat(&groups, 3);
 }
 
-/* n = 32 draws at the places k / 256: W = (n^2 - 1) / 12 n / (n - 1) / 256^2, B / n = apart^2 / 2. */
+/* n = 32 draws at positions k / 256: W = (n^2 - 1) / 12 n / (n - 1) / 256^2, B / n = apart^2 / 2. */
 START_TEST(test_halves)
 {
     const double n = CHAINS / 2.0, within = (n * n - 1.0) / 12.0 * n / (n - 1.0) / 65536.0;
@@ -79,8 +79,8 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Chains that never begin again: the parts are those that stand together, and have no more than that in common. Where
- * the light's walk meets the lens, the coordinates of the film say nothing. */
+/* Chains that never restart: the groups are ranges of adjacent chains that have nothing else in common. With t = 1 the
+ * film coordinates are meaningless. */
 START_TEST(test_parts)
 {
     static uint words[FIELDS * CHAINS];
@@ -100,7 +100,7 @@ START_TEST(test_parts)
         ck_assert_double_eq(groups.moments[3][1][group].count, 40.0);
     ck_assert_double_gt(chain_groups_r_hat(&groups, 3), 20.0);
     ck_assert_double_eq_tol(chain_groups_r_hat(&groups, 4), sqrt(39.0 / 40.0), 1e-9);
-    *word(words, CHAIN_PASS_LUMINANCE, 0) = 0; /* it never began */
+    *word(words, CHAIN_PASS_LUMINANCE, 0) = 0; /* a chain that never started */
     chain_groups_add(&groups, words, CHAINS, 0, CHAIN_GROUPS);
     ck_assert_double_eq(groups.moments[3][0][0].count, 43.0);
 }

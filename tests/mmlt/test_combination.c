@@ -1,4 +1,4 @@
-/* Shares of chains, pool and path tracing, on generations made up of noise. */
+/* Weights of chains, pool and path tracing, from generations of synthetic noise. */
 #include "math/rng.h"
 #include "mmlt/combination.h"
 #include "mmlt/importance.h"
@@ -10,7 +10,7 @@
 #define SIDE 32
 #define PIXELS ((size_t)SIDE * SIDE)
 
-static const atomic_int never = 0; /* a stop */
+static const atomic_int never = 0; /* never stops */
 
 typedef struct Estimators {
     Film films[ESTIMATOR_COUNT];
@@ -45,7 +45,7 @@ static double noise(Estimators *estimators)
     return (((double)random.x[0] + 0.5) / 4294967296.0 - 0.5) * sqrt(12.0);
 }
 
-/* Every pixel of the estimator shows `mean` + noise: `deviation` for one sample a pixel. */
+/* Every pixel of the estimator gets `mean` + noise of standard deviation `deviation` at one sample per pixel. */
 static void estimator_set(Estimators *estimators, int s, double samples, double mean, double deviation)
 {
     Film *film = &estimators->films[s];
@@ -69,7 +69,7 @@ static double generation(Estimators *estimators)
     return sum * 0x1p-30 / 3.0 / (double)films[ESTIMATOR_CHAINS]->light_samples;
 }
 
-/* Shares go as samples over variance. */
+/* Weights are proportional to samples over variance. */
 START_TEST(test_weights)
 {
     Estimators estimators;
@@ -91,7 +91,7 @@ START_TEST(test_weights)
 }
 END_TEST
 
-/* A estimator that never sees the light has no variance, and yet no weight worth speaking of. */
+/* An estimator that never finds the light has no variance, but must not get a substantial weight. */
 START_TEST(test_blind)
 {
     Estimators estimators;
@@ -110,9 +110,10 @@ START_TEST(test_blind)
 }
 END_TEST
 
-/* A estimator without samples this time has no weight, and the others have all. Before variances are known path
- * tracing's goes as a part of its work, those of chains and pool as the pool's: in hard light it is far worse than the
- * others, and of a large picture it is nearly all. */
+/* An estimator without samples in a generation has weight zero, and the others share its weight. Before variances are
+ * known, path tracing's weight goes by a fraction of its work, and that of chains and of the pool by the pool's work:
+ * in difficult light path tracing is far worse than the others, and in large images it makes up most of the early
+ * work. */
 START_TEST(test_absent)
 {
     Estimators estimators;
@@ -141,7 +142,7 @@ START_TEST(test_absent)
 }
 END_TEST
 
-/* A estimator that is shown alone has all, and nothing in a generation in which it has no samples. */
+/* If one estimator alone is shown, its weight is one, or zero in a generation in which it has no samples. */
 START_TEST(test_alone)
 {
     Estimators estimators;
@@ -160,8 +161,9 @@ START_TEST(test_alone)
 }
 END_TEST
 
-/* A pool of half a sample a pixel shows every other pixel twice as bright, and the next pool the others: that is no
- * variance of what it shows in the end, and counts as little as a correction may make it. */
+/* With half a sample per pixel, each pool shows every other pixel, twice as bright, and the next pool shows the rest.
+ * This alternation is not variance of the final image and must not count as such, beyond the limit of the
+ * correction. */
 START_TEST(test_partial)
 {
     Estimators estimators;
@@ -174,7 +176,7 @@ START_TEST(test_partial)
             estimators.films[ESTIMATOR_POOL].light_sums[i] *= i / 3 % 2 == (size_t)g % 2 ? 2 : 0;
         generation(&estimators);
     }
-    /* 4 / 1, 0.5 / (0.5 / 4), 2 / 4: without the correction the pool's were 0.5 / 0.5. */
+    /* 4 / 1, 0.5 / (0.5 / 4), 2 / 4; without the correction the pool's would be 0.5 / 0.5. */
     const double *weight = estimators.combination.weight;
     printf("weights with a partial pool %.3f %.3f %.3f\n", weight[0], weight[1], weight[2]);
     ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], 4.0 / 8.5, 0.04);
@@ -182,7 +184,7 @@ START_TEST(test_partial)
 }
 END_TEST
 
-/* Bright dots in one tile are expected in those beside it, and not elsewhere. */
+/* Bright dots in one tile are expected in adjacent tiles as well, but not elsewhere. */
 START_TEST(test_beside)
 {
     Estimators estimators;
@@ -204,7 +206,7 @@ START_TEST(test_beside)
 }
 END_TEST
 
-/* What chains keep apart counts with chains and pool, not with path tracing. */
+/* The excess that chains show goes with chains and pool, not with path tracing. */
 START_TEST(test_excess)
 {
     Estimators estimators;
@@ -221,8 +223,8 @@ START_TEST(test_excess)
 }
 END_TEST
 
-/* The plan gives the time to what is good: nothing but path tracing is, or nothing but chains. Their errors fall with
- * the pools, too, so that pools get 0.45 of the time of both; path tracing gets the least there is, a part of 20. */
+/* The plan gives time to the estimator with low variance: only path tracing, or only chains. The error of chains also
+ * falls with the size of pools, so these get 0.45 of the time of both; path tracing gets its minimum, one twentieth. */
 START_TEST(test_plan)
 {
     Estimators estimators;
@@ -248,14 +250,14 @@ START_TEST(test_plan)
 }
 END_TEST
 
-/* Of a picture whose right half is a hundred times as dark as its left one: far from the border the root of that, but
- * for what every place has at least, so that the mean worth of a path stays the same. A picture without light has no
- * place before another. */
+/* An image whose right half is a hundred times darker than its left half: far from the border, the ratio of importance
+ * is the square root of that, apart from a minimum of light that each place is assumed to have, and the mean
+ * contribution weight of paths stays the same. Without light, importance is uniform. */
 START_TEST(test_importance)
 {
     Estimators estimators;
     float importance[IMPORTANCE_CELLS];
-    double sum = 0.0, worth = 0.0, least = 0.05 * 0.505;
+    double sum = 0.0, weighted = 0.0, least = 0.05 * 0.505;
     estimators_init(&estimators);
     for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
         estimator_set(&estimators, s, 1.0, 0.0, 0.0);
@@ -270,7 +272,7 @@ START_TEST(test_importance)
     importance_learn(&estimators.combination, importance);
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
         uint column = i % IMPORTANCE_SIDE;
-        ck_assert_float_eq(importance[i], importance[column]); /* all rows are alike */
+        ck_assert_float_eq(importance[i], importance[column]); /* all rows are equal */
         ck_assert(column == 0 || importance[i] >= importance[i - 1]);
     }
     ck_assert_double_eq_tol((double)importance[IMPORTANCE_SIDE - 1] / (double)importance[0],
@@ -278,17 +280,17 @@ START_TEST(test_importance)
     for (size_t i = 0; i < IMPORTANCE_CELLS; ++i) {
         double light = i % IMPORTANCE_SIDE < IMPORTANCE_SIDE / 2 ? 1.0 : 0.01;
         sum += light;
-        worth += light * (double)importance[i];
+        weighted += light * (double)importance[i];
     }
-    ck_assert_double_eq_tol(worth / sum, 1.0, 0.1);
+    ck_assert_double_eq_tol(weighted / sum, 1.0, 0.1);
     estimators_destroy(&estimators);
 }
 END_TEST
 
-/* Pools go where the error is: of a picture of four columns of tiles, whose last one has ten times the standard
- * deviation of the others, by the root of the square error, but for a quarter that is even. The column beside it is
- * believed to have a third of that square (mmlt/combination_learn.c). Pools that have been there more often already say
- * that there is more. What nothing is known of is visited alike. */
+/* Pools visit where the error is: the image has four columns of tiles, the last with ten times the standard deviation
+ * of the others. Visits are proportional to the root of the square error, except for a quarter that is uniform. The
+ * adjacent column is assumed to have a third of that square error (mmlt/combination_learn.c). If pools already visited
+ * a column more often, the same error means a larger variance per visit. Without data, visits are uniform. */
 START_TEST(test_visits)
 {
     Estimators estimators;
@@ -311,7 +313,7 @@ START_TEST(test_visits)
     }
     ck_assert(importance_visits(&estimators.combination, samples, visited, visits, &error));
     double columns[4] = {0.0}, all = (double)visits[IMPORTANCE_CELLS] / (double)PIXELS, sum = 0.0;
-    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) { /* a pixel each */
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) { /* a cell is a pixel */
         double each = visits[i + 1] - visits[i];
         ck_assert(each >= 1.0 && each <= VISITS_MOST);
         ck_assert_double_eq_tol(importance_density_ratio(&estimators.combination, visits, i) * each, all, 1e-9);

@@ -4,7 +4,7 @@
 
 #include "support/test_util.h"
 
-/* Blends of given variances. */
+/* combinations of given variances */
 TCase *combination_known_tests(void);
 
 #endif

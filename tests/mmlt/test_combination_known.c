@@ -1,4 +1,4 @@
-/* Shares, errors, plans, importance and visits that a combination derives from given variances, against a search for
+/* Weights, errors, plans, importance and visits that a combination derives from given variances, against a search for
  * the optimum. */
 #include "mmlt/test_combination.h"
 #include "support/test_files.h"
@@ -7,15 +7,15 @@
 #include "mmlt/combination_learn.h"
 #include "mmlt/importance.h"
 
-/* Width and height differ, and the last row of tiles is half outside the picture. */
+/* Width and height differ, and half of the last row of tiles is outside the image. */
 #define WIDTH 64
 #define HEIGHT 44
 #define PIXELS ((size_t)WIDTH * HEIGHT)
 #define ROUNDS 40
 
-static const atomic_int never = 0; /* a stop */
+static const atomic_int never = 0; /* never stops */
 
-/* The part that pools have of the time of pools and chains together where both are all that counts (test_plan in
+/* The pools' part of the time of pools and chains together if only these matter (test_plan in
  * mmlt/test_combination.c). */
 #define POOL_PART 0.45
 
@@ -30,7 +30,7 @@ static double octaves(Known *known, double most)
     return exp2(most * (2.0 * test_random_unit(&known->state) - 1.0));
 }
 
-/* Sets random variances of all estimators, and random numbers of the samples that they were estimated from. */
+/* Sets random variances for all estimators, and random numbers of samples from which they were estimated. */
 static void known_tell(Known *known, double range)
 {
     for (size_t i = 0; i < combination_tile_count(&known->combination); ++i) {
@@ -66,9 +66,9 @@ static void known_destroy(Known *known)
 /* ---- weights ------------------------------------------------------------------------------------------------------ */
 
 /* Variance of a tile in which path tracing has the weight w and the rest is split between chains (weight c) and pool.
- * What pools clamp (excess) comes from chains and goes with chains and pool; what path tracing clamps (rare) goes with
- * path tracing. The model of mmlt/combination.c: the chains' part of the first estimate weights the rare remainder with
- * the second. */
+ * The excess that pools clamp comes from chains and goes with chains and pool; the rare remainder of path tracing goes
+ * with path tracing. Model of mmlt/combination.c: the rare remainder is correlated with the other estimate through the
+ * chains' weight c in it. */
 static double combined_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double w, double c)
 {
     double rare = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS];
@@ -77,12 +77,12 @@ static double combined_variance(const CombinationTile *tile, const double sample
                     tile->spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
     double paths = tile->spread[ESTIMATOR_PATHS] / samples[ESTIMATOR_PATHS] + rare;
     if (!(w > 0.0))
-        return others; /* also where path tracing has no samples */
+        return others; /* also if path tracing has no samples */
     return (1.0 - w) * (1.0 - w) * others + w * w * paths + 2.0 * w * (1.0 - w) * c * fmin(rare, others);
 }
 
-/* Ternary search in [0, 1] for the weight of path tracing (of_paths) or of chains among chains and pool with the least
- * variance, which is convex in either. */
+/* Ternary search in [0, 1] for the weight with the least variance, which is convex in either: of path tracing
+ * (of_paths), or of chains relative to the pool. */
 static double weight_search(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], bool of_paths, double c)
 {
     double low = 0.0, high = 1.0;
@@ -102,16 +102,16 @@ static double least_variance(const CombinationTile *tile, const double samples[E
     return combined_variance(tile, samples, *w, *c);
 }
 
-/* What a estimator has in a channel of pixel i, in units of the film: different in all estimators, channels and
- * neighbouring pixels. */
+/* The estimator's value in a channel of pixel i, in units of the film: different for all estimators, channels and
+ * adjacent pixels. */
 static double estimator_value(int s, size_t i, size_t channel)
 {
     return ldexp(1.0 + s * 3.0 + (double)(i % 7) + 20.0 * (double)channel, 20);
 }
 
-/* A generation is combined with the teacher's weights of least variance, not the pupil's, in every pixel and channel. A
- * estimator without samples has no weight, and then its variances need not be known. Pixels with a full sum in a
- * estimator count as saturated. */
+/* A generation is combined with the teacher's weights of least variance rather than the pupil's, in every pixel and
+ * channel. An estimator without samples has weight zero, and its variances need not be known. Pixels with a full sum in
+ * an estimator count as saturated. */
 START_TEST(test_weights_known)
 {
     Known teacher, pupil, others[2];
@@ -169,8 +169,7 @@ static double dark_square(const Combination *combination)
     return DARK_PART * light * light;
 }
 
-/* The error of a tile is the least variance over the square of its light, to which DARK_PART of the mean's square is
- * added. */
+/* The error of a tile is the least variance over the square of its light plus DARK_PART of the mean's square. */
 START_TEST(test_errors_known)
 {
     Known known;
@@ -189,8 +188,8 @@ START_TEST(test_errors_known)
 }
 END_TEST
 
-/* The variance of chains is a / T_pool + b / T_steps. In a given time it is least where pools have the part
- * sqrt(a) / (sqrt(a) + sqrt(b)), which is POOL_PART. Returns the variance of one step relative to that of the past. */
+/* The variance of chains is a / T_pool + b / T_steps. In a given total time it is least if pools have the part sqrt(a)
+ * / (sqrt(a) + sqrt(b)), which is POOL_PART. Returns the variance of one step relative to that of the past. */
 static double chains_vary(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                           const double costs[ESTIMATOR_COUNT])
 {
@@ -203,7 +202,7 @@ static double chains_vary(const Combination *combination, const double samples[E
     return now / before;
 }
 
-/* The picture's error with so many samples. */
+/* The image's error with these numbers of samples. */
 static double picture_error(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                             const double costs[ESTIMATOR_COUNT])
 {
@@ -219,13 +218,13 @@ static double picture_error(const Combination *combination, const double samples
     return sum;
 }
 
-/* Of all divisions of the time into twentieths the plan has the least error. */
+/* Among all divisions of the time into twentieths, the plan has the least error. */
 START_TEST(test_plan_known)
 {
     Known known;
     double costs[ESTIMATOR_COUNT];
     known_init(&known, 11);
-    known.combination.tiles[0] = 2; /* two tiles, so that 171 plans are quickly searched */
+    known.combination.tiles[0] = 2; /* only two tiles, so that 171 plans are searched quickly */
     known.combination.tiles[1] = 1;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
         double one[ESTIMATOR_COUNT] = {0.0};
@@ -274,13 +273,13 @@ static bool tile_near(int tile, int cell, int size)
     return tile_meets(tile - 1, cell, size) || tile_meets(tile, cell, size) || tile_meets(tile + 1, cell, size);
 }
 
-/* Importance is (L + 0.05 mean)^(-1/2), L the light per pixel of the tiles that the cell overlaps and their neighbours,
- * scaled so that the sum of L times importance is the sum of L. */
+/* Importance is (L + 0.05 mean)^(-1/2), where L is the light per pixel of the tiles that the cell overlaps and their
+ * neighbours, scaled so that the sum of L times importance equals the sum of L. */
 START_TEST(test_importance_known)
 {
     Known known;
     float importance[IMPORTANCE_CELLS];
-    double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
+    double light[IMPORTANCE_CELLS], sum = 0.0, weighted = 0.0;
     known_init(&known, 13);
     importance_learn(&known.combination, importance);
     for (int cell = 0; cell < (int)IMPORTANCE_CELLS; ++cell) {
@@ -295,16 +294,16 @@ START_TEST(test_importance_known)
         sum += light[cell] = all / pixels;
     }
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
-        worth += light[cell] / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS);
+        weighted += light[cell] / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS);
     for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
-        TEST_NEAR(importance[cell], sum / worth / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS), 1e-5);
+        TEST_NEAR(importance[cell], sum / weighted / sqrt(light[cell] + 0.05 * sum / IMPORTANCE_CELLS), 1e-5);
     known_destroy(&known);
 }
 END_TEST
 
-/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, VISITS_MOST at most, v the root of `visited`
- * times the mean error of the tiles that its pixels are in. Rarity is the mean number of visits over the cell's; that
- * of a tile is the mean over its pixels. */
+/* A cell's pixels have round(4 (0.25 + 0.75 v / mean v)) visits each, at most VISITS_MOST, where v is the root of
+ * `visited` times the mean error of the tiles that contain its pixels. The density ratio is the mean number of visits
+ * over the cell's; that of a tile is the mean over its pixels. */
 START_TEST(test_visits_known)
 {
     Known known;

@@ -1,5 +1,5 @@
-/* Metropolis light transport against bidirectional path tracing, from the first step on: chains that begin in
- * proportion to what they carry have the right mean however few steps they make. Blended pictures are consistent. */
+/* Metropolis light transport against bidirectional path tracing, from the first step: chains that start in proportion
+ * to their contribution have the right mean, however few steps they make. Combined images are consistent. */
 #include "support/bidirectional.h"
 
 #include "backend/group.h"
@@ -19,7 +19,7 @@ static GroupSetup bdpt_setup(const BidirectionalScene *scene, unsigned samples)
                                    .integrator = integrator_bdpt()}};
 }
 
-/* The scene by bidirectional path tracing; what it returns renders the same by chains. */
+/* Renders the scene by bidirectional path tracing; returns the setup that renders the same by chains. */
 static GroupSetup expected_render(const BidirectionalScene *scene, unsigned samples, PictureGroups *expected)
 {
     GroupSetup setup = bdpt_setup(scene, samples);
@@ -35,7 +35,7 @@ START_TEST(test_unbiased)
     GroupSetup setup = expected_render(scene, 16, &expected);
     for (int i = 0; i < STEPS_COUNT; ++i) {
         if (test_effort() == 1 && i % 2 != _i % 2)
-            continue; /* make check-long does them all */
+            continue; /* only in make check-long */
         PictureGroups got;
         char name[96];
         setup.render.samples = STEPS[i] < 4 ? 8 : 32;
@@ -51,13 +51,13 @@ START_TEST(test_unbiased)
 }
 END_TEST
 
-/* Many generations, so that weights and plans follow what earlier ones have shown: no bias to be seen. */
+/* Many generations, so that weights and plans depend on what earlier ones have shown: no visible bias. */
 START_TEST(test_combined)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
     PictureGroups expected, got;
     if (test_effort() == 1 && _i % 3 != 0)
-        return; /* make check-long does them all */
+        return; /* only in make check-long */
     GroupSetup setup = expected_render(scene, 32, &expected);
     setup.render.samples = 256;
     setup.render.seed = 5000;
@@ -69,7 +69,7 @@ START_TEST(test_combined)
 }
 END_TEST
 
-/* Each estimator alone with what it leaves to chains is all of the light. */
+/* Each estimator alone plus what it leaves to chains is the whole image. */
 START_TEST(test_estimators)
 {
     const int estimator = _i % ESTIMATOR_COUNT;
@@ -77,7 +77,7 @@ START_TEST(test_estimators)
     PictureGroups expected, got;
     char name[96];
     if (test_effort() == 1 && (estimator != ESTIMATOR_PATHS || _i / ESTIMATOR_COUNT % 3 != 1))
-        return; /* make check-long does them all */
+        return; /* only in make check-long */
     GroupSetup setup = expected_render(scene, 32, &expected);
     setup.render.samples = 128;
     setup.render.seed = 7000;
@@ -90,12 +90,13 @@ START_TEST(test_estimators)
 }
 END_TEST
 
-/* The layer of every number of segments against bidirectional path tracing of such paths; of chains alone, too. */
+/* The layer of each depth against bidirectional path tracing of paths of that depth, alternately combined and by chains
+ * alone. */
 START_TEST(test_depths)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i];
     if (test_effort() == 1 && _i % 3 != 2)
-        return; /* make check-long does them all */
+        return; /* only in make check-long */
     for (int depth = 3; depth <= scene->depth; ++depth) {
         PictureGroups expected, got;
         char name[96];
@@ -121,7 +122,7 @@ END_TEST
 
 /* ---- modes ------------------------------------------------------------------------------------------------------- */
 
-/* A glass ball shows two caustics on the floor that nothing connects: each of a small lamp through a small ball. */
+/* A glass ball shows two isolated caustics on the floor, each of a small lamp through a small ball. */
 #define TWO_CAUSTICS_HALF(x)                                                                                           \
     "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 64 64 64 ] Translate " x "2.2 1.7 0\n"                     \
     "Shape \"sphere\" \"float radius\" 0.2 AttributeEnd\n"                                                             \
@@ -134,7 +135,7 @@ static const char TWO_CAUSTICS[] =
     "Shape \"bilinearmesh\" \"point3 P\" [ -4 0 -4  4 0 -4  -4 0 4  4 0 4 ]\n"
     "Material \"dielectric\" Translate 0 3.2 0 Shape \"sphere\"\n";
 
-/* Mean of the pixels about one caustic. */
+/* Mean of the pixels around one caustic. */
 static double caustic_mean(const PictureGroups *picture, int group, int x0)
 {
     double sum = 0.0;
@@ -144,8 +145,7 @@ static double caustic_mean(const PictureGroups *picture, int group, int x0)
     return sum;
 }
 
-/* The scene is its own mirror image: with every seed both caustics get half. 97,000 samples of path tracing show
- * 0.759. */
+/* The scene is symmetric: with every seed, both caustics get half. 97,000 samples of path tracing show 0.759. */
 START_TEST(test_modes)
 {
     PictureGroups got;
@@ -169,7 +169,7 @@ END_TEST
 
 /* ---- several backends -------------------------------------------------------------------------------------------- */
 
-/* The picture by two backends of one thread each, or (alone) by one of two. 3 x 256 floats. */
+/* Renders by two backends of one thread each or, if `alone`, by one of two threads. `rgb`: 3 x 256 floats. */
 static void picture_render(const RenderSetup *setup, const Scene *scene, bool alone, float *rgb)
 {
     Error error = {0};
@@ -195,7 +195,7 @@ static void picture_render(const RenderSetup *setup, const Scene *scene, bool al
         backend_cpu()->close(members[1].backend);
 }
 
-/* Chains that go on know nothing of who has run them before, nor who runs their neighbours. */
+/* A continuing chain does not depend on who ran it before or on who runs its neighbours. */
 START_TEST(test_shared)
 {
     float one[3 * 256], two[3 * 256];
@@ -213,9 +213,10 @@ START_TEST(test_shared)
 }
 END_TEST
 
-/* ---- what is counted --------------------------------------------------------------------------------------------- */
+/* ---- statistics -------------------------------------------------------------------------------------------------- */
 
-/* Chains of `paper` know nothing of passes: in short ones or long ones they refuse as many proposals in a row. */
+/* With `paper`, passes do not affect chains: runs of rejected proposals are equally long in short and in long
+ * passes. */
 START_TEST(test_runs)
 {
     ChainStatistics counted[2];
@@ -235,17 +236,17 @@ START_TEST(test_runs)
     }
     for (int depth = 3; depth <= 6; ++depth)
         printf("longest run of refused proposals at depth %d: %u\n", depth, (unsigned)counted[0].longest_run[depth]);
-    ck_assert_uint_eq(counted[0].steps, counted[1].steps); /* 22 samples are enough for 192 of each chain */
+    ck_assert_uint_eq(counted[0].steps, counted[1].steps); /* 22 samples suffice for 192 steps of each chain */
     ck_assert_mem_eq(counted[0].accepted, counted[1].accepted, sizeof counted[0].accepted);
     ck_assert_mem_eq(counted[0].longest_run, counted[1].longest_run, sizeof counted[0].longest_run);
     uint64_t longest = 0;
     for (int depth = 3; depth <= 6; ++depth)
         longest = counted[0].longest_run[depth] > longest ? counted[0].longest_run[depth] : longest;
-    ck_assert_uint_gt(longest, 4); /* over several passes */
+    ck_assert_uint_gt(longest, 4); /* spans several passes */
 }
 END_TEST
 
-/* Small steps alone leave parts of the chains where they began; large ones bring them together. */
+/* With small steps alone, groups of chains stay where they started; large steps mix them. */
 START_TEST(test_groups)
 {
     double r_hat[2];
@@ -269,9 +270,9 @@ END_TEST
 
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
-/* The mean square error against what path tracing sees falls as one over the work: nothing is left over. Of chains
- * alone over two decades; combined, it falls faster as long as weights and where pools look are learnt (glass, from
- * 3000 samples to 30,000: slope -1.19), and then as it should. */
+/* The mean square error against a path-traced reference falls as 1 / work, without a floor. For chains alone over two
+ * decades; combined, it first falls faster, while weights and the pools' visits are learnt (glass, from 3000 samples to
+ * 30,000: slope -1.19), and then as 1 / work. */
 START_TEST(test_slope)
 {
     enum { BUDGETS = 3 };
@@ -290,8 +291,7 @@ START_TEST(test_slope)
                                    .threads = 2}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_mmlt();
-    setup.render.chains =
-        (ChainOptions){.chains = 64, .chains_only = !combined}; /* many generations from the first on */
+    setup.render.chains = (ChainOptions){.chains = 64, .chains_only = !combined}; /* many generations from the start */
     for (int i = 0; i < BUDGETS; ++i) {
         PictureGroups got;
         setup.render.samples = (unsigned)work[i] / test_effort();
@@ -310,7 +310,8 @@ START_TEST(test_slope)
 }
 END_TEST
 
-/* Five seconds' work on 64 x 64 pixels: the mean of every seed is that of bidirectional path tracing to 1 %. */
+/* About five seconds' work on 64 x 64 pixels: for every seed the mean equals that of bidirectional path tracing to 1
+ * %. */
 START_TEST(test_brightness)
 {
     enum { SEEDS = 5 };
@@ -344,7 +345,7 @@ START_TEST(test_brightness)
 }
 END_TEST
 
-/* A lamp in a ball of glass: pools meet it rarely by the camera's walk, so that weights, limits and where pools look
+/* A lamp in a glass ball: pools rarely hit it by camera subpaths, so that weights, clamping thresholds and visits
  * change most from one generation to the next. */
 static const char LAMP_IN_GLASS[] = BD_BEGIN
     "AttributeBegin Translate 0 0.2 0 AreaLightSource \"diffuse\" \"rgb L\" [ 60 60 60 ]\n"
@@ -352,9 +353,9 @@ static const char LAMP_IN_GLASS[] = BD_BEGIN
     "AttributeBegin Translate 0 0.2 0 Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5 "
     "AttributeEnd\n" BD_GREY BD_FLOOR "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 3  4 -1 3  -4 4 3  4 4 3 ]\n";
 
-/* What the two halves of a picture learn from each other makes it a ratio of sums that are not independent: consistent,
- * not unbiased. Means of many short pictures, which have the most of that, against bidirectional path tracing. Fewer
- * than two generations there are not. */
+/* Because the replicas learn from each other, the image is a ratio of dependent sums: consistent, not unbiased. Means
+ * of many short renderings, which have most of the bias, against bidirectional path tracing. A rendering has at least
+ * two generations. */
 START_TEST(test_bias)
 {
     enum { SIZES = 5, REPETITIONS = 80000 };

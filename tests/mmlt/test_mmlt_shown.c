@@ -1,11 +1,12 @@
-/* What path tracing shows beside chains and what chains put out of the rest are the same function of a path, whatever
- * strategy makes it, wherever on the film it begins, and however many lights send what it carries. */
+/* Path tracing and chains agree on the partition: what path tracing shows of a path, and what chains therefore show of
+ * the rest, is the same function of the path, whatever strategy makes it, wherever on the film it starts, and however
+ * many lights contribute to it. */
 #include "support/bidirectional.h"
 
 #include "mmlt/combination.h"
 
-/* A sun in the sky, a hundredth of all directions, over a pane of glass: paths that meet it are some times above path
- * tracing's limit, which shows a part of them and leaves the rest to chains. */
+/* A sun that covers a hundredth of all directions, over a pane of glass: paths that hit it are sometimes above path
+ * tracing's clamping threshold, so that path tracing shows part of them and leaves the rest to chains. */
 #define SUN(scale)                                                                                                     \
     "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "            \
     "\"float scale\" " scale " AttributeEnd\n"
@@ -13,9 +14,9 @@
     "Material \"thindielectric\" \"float eta\" 1.5 Shape \"bilinearmesh\" \"point3 P\" [ -" side " " y " -" side       \
     "  " side " " y " -" side "  -" side " " y " " side "  " side " " y " " side " ]\n"
 
-/* The scene with one estimator alone and what that leaves to chains, against path tracing. */
-static void stream_compare(const char *name, const BidirectionalScene *scene, int estimator, unsigned expected_samples,
-                           unsigned samples)
+/* One estimator alone plus what it leaves to chains, against path tracing. */
+static void estimator_compare(const char *name, const BidirectionalScene *scene, int estimator,
+                              unsigned expected_samples, unsigned samples)
 {
     PictureGroups expected, got;
     char line[128];
@@ -35,21 +36,21 @@ static void stream_compare(const char *name, const BidirectionalScene *scene, in
     groups_destroy(&expected);
 }
 
-/* At effort 1 the estimator of path tracing alone; make check-long does them all. */
-static bool stream_left_out(int estimator)
+/* At effort 1 only path tracing's estimator; all of them in make check-long. */
+static bool estimator_left_out(int estimator)
 {
     return test_effort() == 1 && estimator != ESTIMATOR_PATHS;
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
-/* Large pixels of a small scene, so that the light's walks (t = 1) make a good part of it, and a small crop window, so
- * that filters reach far beyond it. */
+/* Large pixels in a small scene, so that light tracing (t = 1) contributes much of the image, and a small crop window,
+ * so that filters extend far beyond it. */
 START_TEST(test_shown_filters)
 {
     const int estimator = _i % ESTIMATOR_COUNT, filter = _i / ESTIMATOR_COUNT;
     char text[2048];
-    if (stream_left_out(estimator))
+    if (estimator_left_out(estimator))
         return;
     snprintf(text, sizeof text,
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
@@ -58,7 +59,7 @@ START_TEST(test_shown_filters)
              "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
              BIDIRECTIONAL_FILTERS[filter]);
     const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
-    stream_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
+    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
 }
 END_TEST
 
@@ -68,7 +69,7 @@ END_TEST
     BD_BEGIN BD_GREY                                                                                                   \
         "Shape \"bilinearmesh\" \"point3 P\" [ -40 -1 -40  40 -1 -40  -40 -1 40  40 -1 40 ]\n" PANE("1.5", "40")
 
-/* A floor under a pane in the sun: a path that ends outside meets all of the lights at once. */
+/* A floor under a pane in the sun: a path that leaves the scene gathers all infinite lights at once. */
 static const BidirectionalScene SUNS[] = {
     {"one sun", UNDER_PANE SUN("1"), SUPPORT_SUM_ONLY, 4, 2},
     {"two suns", UNDER_PANE SUN("0.75") SUN("0.25"), SUPPORT_SUM_ONLY, 4, 2},
@@ -80,14 +81,15 @@ START_TEST(test_shown_lights)
 {
     const int estimator = _i % ESTIMATOR_COUNT;
     const BidirectionalScene *scene = &SUNS[_i / ESTIMATOR_COUNT];
-    if (!stream_left_out(estimator))
-        stream_compare(scene->name, scene, estimator, 128, 512);
+    if (!estimator_left_out(estimator))
+        estimator_compare(scene->name, scene, estimator, 128, 512);
 }
 END_TEST
 
 /* ---- signs ------------------------------------------------------------------------------------------------------- */
 
-/* A sky and reflectances that a file has below 0: of an image, a factor of -1, a mix that goes beyond. */
+/* A sky and reflectances that a scene file makes negative: by an image, by a factor of -1, by a mix with an amount
+ * outside 0 ... 1. */
 static const char SIGNS[] = BD_BEGIN BD_LAMP
     "AttributeBegin LightSource \"infinite\" \"string filename\" \"$FILES/signs.pfm\" AttributeEnd\n"
     "Texture \"image\" \"spectrum\" \"imagemap\" \"string filename\" \"$FILES/signs.pfm\"\n"
@@ -100,8 +102,8 @@ static const char SIGNS[] = BD_BEGIN BD_LAMP
     "Material \"diffusetransmission\" \"texture reflectance\" \"factor\" \"texture transmittance\" \"mix\"\n"
     "AttributeBegin Translate 1 0 0 " BD_BALL "AttributeEnd\n";
 
-/* Chains go after luminance, and what has none above 0 they cannot show, though pools and path tracing would. No path
- * carries such a thing: lights and what surfaces reflect are nowhere below 0. */
+/* Chains follow luminance, so they cannot show paths without positive luminance, though pools and path tracing could.
+ * No path has such a contribution: lights and reflectances are clamped to be non-negative. */
 START_TEST(test_signs)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};

@@ -1,5 +1,4 @@
-/* Which pixels' samples of a pool have a walk from the light, over many generations: on a backend that only keeps a
- * record. */
+/* Which pixels get pool samples with a light subpath, over many generations, on a fake backend that only records. */
 #include "support/test_util.h"
 
 #include "base/sample_statistics.h"
@@ -12,11 +11,11 @@
 #define GENERATIONS 64u
 
 struct Backend {
-    uint *samples, *walks; /* of every pixel: samples of pools, and those that have a walk from the light */
-    uint chunks, begun, whole; /* chunks of a pool that have such a sample, and as many were they all together */
-    uint wrong; /* pools that have more or fewer such samples than they say */
-    bool pilot; /* the next pool is the one before the first generation, which shows nothing */
-    bool bright; /* path tracing meets light, so that pools learn where to look */
+    uint *samples, *walks; /* per pixel: pool samples, and those with a light subpath */
+    uint chunks, begun, whole; /* chunks; those with such samples; how many if these were contiguous */
+    uint wrong; /* pools with more or fewer such samples than stated */
+    bool pilot; /* the next pool is the pilot, before the first generation, which shows nothing */
+    bool bright; /* path tracing finds light, so that pools adapt their visits */
 };
 
 #define CHUNK 512u
@@ -40,7 +39,7 @@ static void pool_record(Backend *backend, const FrameParams *frame, const Guide 
     backend->wrong += walks != frame->pool_lights;
 }
 
-/* A splat of its own for every sample of path tracing, of which the lower half of the picture has a thousandth. */
+/* A separate splat for each path-tracing sample; the lower half of the image is a thousand times darker. */
 static void paths_record(const FrameParams *frame, const SplatSink *sink)
 {
     uint words[SPLAT_WORDS];
@@ -73,7 +72,7 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
 
 static const BackendInterface RECORD = {.name = "record", .run = record_run};
 
-/* Generations with pools of `pool` samples, of a picture of width x height. */
+/* Runs generations with pools of `pool` samples on an image of width x height pixels. */
 static void generations_record(Backend *backend, int width, int height, uint pool, uint64_t seed, uint generations)
 {
     Error error = {0};
@@ -104,7 +103,7 @@ static void generations_record(Backend *backend, int width, int height, uint poo
     film_destroy(&film);
 }
 
-/* Pixels a side, samples of a pool over those pixels, whether pools visit some pixels more often. */
+/* Pixels per side, pool samples per pixel, whether pools adapt their visits. */
 static const struct {
     int side;
     double part;
@@ -113,9 +112,8 @@ static const struct {
              {128, 0.37, false},    {128, 0.81, false}, {128, 1.13, false}, {128, 0.2, false}, {128, 1.0 / 13, false},
              {127, 2.0 / 3, false}, {128, 1.0, true},   {128, 0.5, true},   {128, 0.37, true}, {128, 0.1, true}};
 
-/* Numbers of walks of the pixels vary no more than half as much as if they were drawn, whatever the sizes, and where
- * pools visit some pixels more often, of which they go through few rounds before it changes, no more. Nearly no pixel
- * is left out. */
+/* The numbers of light subpaths per pixel vary at most half as much as with random selection, for all sizes; if visits
+ * adapt, so that few rounds are completed before they change, at most as much. Hardly any pixel gets none. */
 START_TEST(test_even)
 {
     int side = SIZES[_i].side;
@@ -147,7 +145,7 @@ START_TEST(test_even)
 }
 END_TEST
 
-/* The first generation by itself prefers no pixel: over many seeds each has as many walks. */
+/* The first generation alone prefers no pixel: over many seeds, all get the same number of light subpaths. */
 START_TEST(test_first)
 {
     enum { SIDE = 24, PIXELS = SIDE * SIDE, SEEDS = 512 };

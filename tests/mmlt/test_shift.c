@@ -1,4 +1,5 @@
-/* Shifts where surfaces are finer than a thousandth of a segment: what a chain keeps has to be what it kept. */
+/* Shifts among details finer than a thousandth of a segment: the vertices that a chain keeps must be the ones it
+ * had. */
 #include "support/bidirectional.h"
 #include "support/test_files.h"
 
@@ -7,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A distant light comes from below and passes the floor, at y = 0. A black triangle far away makes the scene large and
- * thereby light tracing rare, so that paths with one vertex from the light, whose z_2 shifts keep, have nearly all of
- * the weight. */
+/* A distant light shines upward through the floor at y = 0. A black triangle far away makes the scene large and light
+ * tracing thereby rare, so that paths with one light vertex, whose z_2 shifts keep, have nearly all of the weight. */
 static const char FLOOR[] = BD_FILM "LookAt -1 3 0  -1 0 0  0 0 1 Camera \"perspective\" \"float fov\" 36\n"
                                     "WorldBegin\n"
                                     "LightSource \"distant\" \"point3 from\" [ -.2 -.6 -1.5 ] \"point3 to\" [ 0 0 0 ]\n"
@@ -19,8 +19,8 @@ static const char FLOOR[] = BD_FILM "LookAt -1 3 0  -1 0 0  0 0 1 Camera \"persp
                                     "Material \"diffuse\" \"rgb reflectance\" [ 0.2 0.2 0.2 ]\n"
                                     "Shape \"bilinearmesh\" \"point3 P\" [ .1 1 -.5  .3 1 -.5  .1 1 .5  .3 1 .5 ]\n";
 
-/* Bright fins hang from the dark patch at y = 1, so many, as long as they are apart: 0.0008. The floor's pixels see the
- * patch at slants from 0.2 to 2.2, and more and more of what is between the fins is hidden. */
+/* Bright fins hang from the dark patch at y = 1, 0.0008 long and as far apart. The floor's pixels see the patch at
+ * slants from 0.2 to 2.2, with more and more of the space between the fins occluded. */
 #define FINS 250
 
 static void fins_print(FILE *file)
@@ -37,7 +37,7 @@ static void fins_print(FILE *file)
     fputs("]\n", file);
 }
 
-/* Quarters of the picture by chains of 64 steps and of 2048 against path tracing. */
+/* Quarters of the image by chains of 64 and of 2048 steps, against path tracing. */
 START_TEST(test_fins)
 {
     char *text;
@@ -71,13 +71,13 @@ START_TEST(test_fins)
 }
 END_TEST
 
-/* ---- what is kept ------------------------------------------------------------------------------------------------ */
+/* ---- kept vertices ----------------------------------------------------------------------------------------------- */
 
 /* One chain whose current path is in bank 0; its proposal, a shift or not, goes to bank 1. */
 typedef struct Kept {
     FrameParams frame;
     uint paths[CHAIN_NUMBERS + 64], vertices[CHAIN_VERTEX_WORDS];
-    WalkHit walk_hit; /* of z_2, and then of z_3 */
+    WalkHit walk_hit; /* of z_2, then of z_3 */
 } Kept;
 
 static void kept_init(Kept *kept, uint shift)
@@ -87,7 +87,7 @@ static void kept_init(Kept *kept, uint shift)
     kept->paths[CHAIN_MOVE] = SUBPATH_CAMERA << MOVE_CHANGED | shift << MOVE_SHIFT;
 }
 
-/* The walk that draws directions with density pdf_w goes from o to p, on a primitive whose normal is ng. */
+/* The walk samples a direction with density pdf_w and goes from o to p, on a primitive with normal ng. */
 static void kept_walk(Kept *kept, Vec3 o, Vec3 p, Vec3 ng, float pdf_w)
 {
     WalkHit *walk_hit = &kept->walk_hit;
@@ -113,8 +113,9 @@ static double area_density(const Kept *kept, double pdf_w)
     return pdf_w * fabs((double)vec3_dot(walk_hit->ray.d, walk_hit->surface.ng)) / (double)walk_hit->distance2;
 }
 
-/* The density noted is the product of those of z_2 and z_3 per area, and shift_ratio that of the proposal over that of
- * the current path. A path that cannot be shifted has density 0; none is proposed from there to one that can. */
+/* The stored density is the product of those of z_2 and z_3 with respect to area, and shift_ratio is the proposal's
+ * over the current path's. A path that cannot be shifted has density 0, and none that can be shifted is proposed from
+ * it. */
 START_TEST(test_kept_density)
 {
     Kept kept;
@@ -122,7 +123,7 @@ START_TEST(test_kept_density)
     for (uint path = 0; path < 2; ++path) {
         if (path == 0)
             kept_init(&kept, 0);
-        /* As if the first path had been accepted. */
+        /* as if the first path had been accepted */
         kept.paths[CHAIN_MOVE] = SUBPATH_CAMERA << MOVE_CHANGED | (path == 0 ? 0u : SUBPATH_CAMERA) << MOVE_BANKS;
         kept_walk(&kept, vec3((float)path, 0.0f, 0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), 0.7f);
         expected[path] = area_density(&kept, (double)0.7f);
@@ -133,7 +134,7 @@ START_TEST(test_kept_density)
         ck_assert(kept_hit(&kept, 3));
         TEST_NEAR(shift_density(kept.vertices, 1, 1u - path, 0) / expected[path], 1.0, 1e-6);
     }
-    /* An infinite density is none. */
+    /* An infinite density counts as none. */
     Kept again = kept;
     kept_walk(&again, vec3_splat(0.0f), vec3(1.0f, 2.0f, 3.0f), vec3(0.0f, 0.6f, 0.8f), FLOAT_INFINITY);
     kept_hit(&again, 2);
@@ -147,7 +148,7 @@ START_TEST(test_kept_density)
     kept_walk(&again, vec3(1.0f, 2.0f, 3.0f), vec3(-1.0f, 5.0f, 0.0f), vec3(1.0f, 0.0f, 0.0f), 4.0f);
     ck_assert(kept_hit(&again, 3));
     TEST_NEAR(shift_ratio(again.paths, again.vertices, 1, 0), 1.0, 1e-6);
-    /* The path in bank 0 is proposed, that in bank 1 current. */
+    /* Now the path in bank 0 is proposed, and that in bank 1 is current. */
     kept.paths[CHAIN_MOVE] |= (SHIFT_STEP | SHIFT_KEEPS) << MOVE_SHIFT;
     TEST_NEAR(shift_ratio(kept.paths, kept.vertices, 1, 0) / (expected[1] / expected[0]), 1.0, 1e-6);
     kept.paths[CHAIN_MOVE] ^= SHIFT_KEEPS << MOVE_SHIFT;
@@ -164,9 +165,9 @@ START_TEST(test_kept_density)
 }
 END_TEST
 
-/* shift_found: the same primitive of the same instance, near the old point. Random numbers are 2^-23 apart, which moves
- * a direction of density p by up to 2^-23 / p: a point that far off is found. One further away than a thousandth of the
- * segment is not. */
+/* shift_found accepts a point on the same primitive of the same instance, near the old one. Random numbers are 2^-23
+ * apart, which moves a direction of density p by up to 2^-23 / p: a point that far away is accepted. One farther away
+ * than a thousandth of the segment is not. */
 START_TEST(test_kept_point)
 {
     static const struct {
@@ -200,9 +201,9 @@ START_TEST(test_kept_point)
 }
 END_TEST
 
-/* The numbers that shift_guide finds and stores make walk_scatter draw the direction to the next vertex, also where
- * numbers are relative to the direction to a light (second run). shift_drawn notes the density of the diffuse lobe,
- * cosine / pi. */
+/* With the numbers that shift_guide finds and stores, walk_scatter samples the direction to the next vertex, also if
+ * numbers are relative to a light guide (second run). shift_drawn stores the density of the diffuse lobe, cosine /
+ * pi. */
 START_TEST(test_kept_numbers)
 {
     static Scene scene;
@@ -244,10 +245,10 @@ START_TEST(test_kept_numbers)
 }
 END_TEST
 
-/* On a surface that the ray meets at a slant, one step of the numbers moves the point by one over the cosine as far. */
+/* On a surface hit at a slant, one step of the numbers moves the point by 1 / cosine as far. */
 START_TEST(test_kept_slanted)
 {
-    const float cosine = 1e-3f, away = 0x1p-23f / cosine; /* ten times what is allowed across the ray */
+    const float cosine = 1e-3f, away = 0x1p-23f / cosine; /* ten times the distance allowed across the ray */
     Kept kept;
     uint point = shift_point(0, 2);
     kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);

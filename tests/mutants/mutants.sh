@@ -1,6 +1,6 @@
 #!/bin/sh
-# Do the tests see faults? Plants those of mutants/mutants.txt, all in one build that chooses one of them when it runs, and runs for
-# each the tests that could see it until one fails.
+# Do the tests detect faults? Plants those of mutants/mutants.txt, all in one build that selects one of them at run
+# time, and for each runs the tests that might detect it until one fails.
 set -u
 
 usage() {
@@ -46,7 +46,7 @@ source=$work/source planted=$work/planted build=$work/build results=$work/result
 
 # ---- planting ---------------------------------------------------------------------------------------------------------
 
-# plant FILE: the file with its faults, on standard output. An expression becomes (MUTANT(n) ? (faulty) : (original)).
+# plant FILE: prints the file with its faults. An expression becomes (MUTANT(n) ? (faulty) : (original)).
 plant() {
     awk -v name="$1" '
     function complain(text) { print "mutants/mutants.txt: [" number "]: " text | "cat >&2"; failed = 1 }
@@ -135,7 +135,7 @@ for file in $files; do
 done
 echo "planted: $(echo "$numbers" | wc -l) faults in $(echo "$files" | wc -l) files"
 [ ! "$dry" ] || exit 0
-# Later copies take what differs alone, with the time of now: what was built from older text is built again.
+# Later copies update only files that differ, with the current time, so that what was built from older text is rebuilt.
 (cd "$top" && {
     for folder in shared host backend_cpu backend_ocl tests scenes bench man docs m4 build-aux; do
         [ ! -d $folder ] || find $folder -type f
@@ -154,7 +154,7 @@ for file in $files; do
     cmp -s "$planted/$file" "$source/$file" || cp "$planted/$file" "$source/$file" || exit 1
 done
 
-# Every unit reads the number, all but one of the variables go when they are linked.
+# Every unit reads the number; the linker merges the variables into one.
 cat >"$header.new" <<'TEXT'
 extern int mutant_chosen;
 __attribute__((weak)) int mutant_chosen;
@@ -171,7 +171,7 @@ cmp -s "$header.new" "$header" || mv "$header.new" "$header"
 
 # ---- building ---------------------------------------------------------------------------------------------------------
 
-# One build for all: without the kernels for other processors, which hold the same faults.
+# One build for all, without the kernels for other processors, which contain the same faults.
 [ -x "$source/configure" ] || (cd "$source" && autoreconf -fi) >"$work/configure.log" 2>&1 || exit 1
 mkdir -p "$build" && cd "$build" || exit 1
 [ -f Makefile ] || "$source/configure" -q --without-opencl --enable-native CFLAGS="-O2 -DNDEBUG" >>"$work/configure.log" 2>&1 || {
@@ -185,13 +185,14 @@ make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log"
 
 # ---- running ----------------------------------------------------------------------------------------------------------
 
-# Which programs, or PROGRAM:CASE, could see a fault in FILE: those that are likely to or quick, and then the others.
+# Which programs, or PROGRAM:CASE, might detect a fault in FILE: first those that are likely to or quick, then the
+# others.
 likely() {
     case $1 in
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/chain/mutation.h) echo test_chain:shown test_chain test_shift test_layers ;;
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
-    shared/bsdf/invert.h) echo test_bsdf:inverse test_shift ;;
+    shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_chain test_layers test_pool ;;
     shared/chain/pool.h) echo test_chain:shown test_chain_population test_pool test_layers ;;
     shared/chain/chain_light.h) echo test_chain:shown test_layers test_shift ;;
@@ -211,7 +212,7 @@ others() {
     *) echo test_mmlt test_layers test_light_guide test_numerics test_scenes command/test_cli.sh ;;
     esac
 }
-# Those of `make check-long` that take more samples or have more cases there.
+# Those that take more samples or have more cases in `make check-long`.
 longer() {
     case $1 in
     shared/camera/film_sum.h) echo test_film test_mmlt test_bidirectional test_numerics ;;
@@ -221,10 +222,10 @@ longer() {
     esac
 }
 
-# Other work on the machine is no fault.
+# Tolerates other work on the machine.
 export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-4}"
 
-# test_fails PROGRAM NUMBER EFFORT: runs it; what it says goes to $work/out. 77: it is skipped.
+# test_fails PROGRAM NUMBER EFFORT: runs it, with output to $work/out. 77: skipped.
 test_fails() {
     run=tests/${1%%:*} limit=600 case=''
     case $1 in *.sh) run=$source/tests/$1 ;; *:*) case=${1#*:} ;; esac
@@ -236,12 +237,12 @@ test_fails() {
     case $? in 0 | 77) return 1 ;; esac
 }
 
-# What failed first, by the names of Check: CASE/TEST.
+# What failed first, by Check's names: CASE/TEST.
 failed_case() {
     sed -n 's/^[^ ]*:[0-9]*:[FE]:\([^:]*\):\([^:]*\):.*/\1\/\2/p' "$work/out" | head -n 1
 }
 
-# control: without a fault everything passes, and pictures have the bits of PROGRAM's.
+# control: without a fault everything passes, and images have the bits of PROGRAM's.
 control() {
     for name in $(for file in $files; do likely "$file" && others "$file"; done | tr ' ' '\n' | sort -u); do
         if test_fails "$name" 0 1; then
@@ -261,7 +262,8 @@ control() {
     done
 }
 
-# killer NUMBER EFFORT PROGRAM...: the first program that fails, a tab, and what of it; false: none does.
+# killer NUMBER EFFORT PROGRAM...: prints the first program that fails, a tab, and the test that failed; returns false
+# if none does.
 killer() {
     killer_number=$1 killer_effort=$2
     shift 2
@@ -278,8 +280,8 @@ file_of() {
     sed -n "s/^\[$1\] \([^:]*\): .*/\1/p" "$list"
 }
 
-# record NUMBER VERDICT KILLER: a line of the results, in place of an older one. VERDICT is check, check-long, survives or,
-# before other tests have run, open.
+# record NUMBER VERDICT KILLER: writes a line of the results, replacing an older one. VERDICT is check, check-long,
+# survives or, before the other tests have run, open.
 record() {
     grep -v "^$1	" "$results" >"$results.new"
     printf '%s\t%s\t%s\t%s\n' "$1" "$(file_of "$1")" "$2" "$3" >>"$results.new"
@@ -287,8 +289,8 @@ record() {
     printf '[%s] %s: %s %s\n' "$1" "$(file_of "$1")" "$2" "$(echo "$3" | tr '\t' ' ')"
 }
 
-# step VERDICT EFFORT TESTS NEXT: tests faults of such a verdict (-: none yet) with the programs that the function TESTS
-# names; what survives them has the verdict NEXT.
+# step VERDICT EFFORT TESTS NEXT: tests faults with this verdict (-: none yet) by the programs that the function TESTS
+# lists; survivors get the verdict NEXT.
 step() {
     for number in $chosen; do
         verdict=$(awk -F '\t' -v number="$number" '$1 == number { print $3 }' "$results")
@@ -303,7 +305,7 @@ step() {
 }
 
 touch "$results"
-# When anything has been built since, once more.
+# The control is repeated if anything was built since.
 if [ ! -f "$work/control" ] || find tests twinlight -type f -newer "$work/control" | grep -q .; then
     control || exit 1
     touch "$work/control"

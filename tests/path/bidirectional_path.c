@@ -12,8 +12,8 @@ bool test_path_possible(const TestPath *path, uint set, uint s)
     return !path->delta[t - 1] && !path->delta[t];
 }
 
-/* Compact densities give the same weights: the last two vertices of a side have their own density, those before the
- * ratio of both. Left out where a ratio is not a normal number. */
+/* Compact densities give the same weights: the last two vertices of a subpath store their own density, earlier ones the
+ * ratio of both. Skipped if a ratio is not a normal number. */
 static void compact_check(const DensityView *full, uint set, uint exponent, uint s, uint t, const StrategyEnds *ends,
                           StrategyWeights expected)
 {
@@ -43,8 +43,8 @@ static void compact_check(const DensityView *full, uint set, uint exponent, uint
     TEST_NEAR(got.path_tracing, expected.path_tracing, 1e-5);
 }
 
-/* Everything that the walks of the strategy (s, k + 1 - s) would have stored; what only the connection knows is left
- * out of the buffer: NaN there must not matter. */
+/* Stores what the walks of strategy (s, k + 1 - s) would; values known only to the connection are absent from the
+ * buffer, where NaN must not matter. */
 StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent, uint s)
 {
     uint k = path->k, t = k + 1 - s;
@@ -53,7 +53,7 @@ StrategyWeights test_path_weights(const TestPath *path, uint set, uint exponent,
         for (uint which = 0; which < DENSITY_WORDS; ++which)
             light[i][which] = camera[i][which] = float_bits(NAN);
     StrategyEnds ends;
-    memset(&ends, 0xff, sizeof ends); /* NaN */
+    memset(&ends, 0xff, sizeof ends); /* NaN in unused members */
     ends.connect = path->connect;
     ends.hittable = path->hittable;
     DensityView view = {.light = light[0], .camera = camera[0], .stride = 1};

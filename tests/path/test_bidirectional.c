@@ -1,4 +1,4 @@
-/* Bidirectional integrators: weights, strategies one by one, their sum, film, and what is numerically hard. */
+/* Bidirectional integrators: weights, individual strategies, their sum, the film, and numerically hard cases. */
 #include "support/bidirectional.h"
 
 int main(void)

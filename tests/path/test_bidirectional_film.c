@@ -1,4 +1,5 @@
-/* Where splats go: crop windows, filters, borders; energy through glass both ways; scale; the narrow corner. */
+/* Film positions of splats: crop windows, filters, borders; energy conservation through glass in both directions; scene
+ * scale; the narrow corner. */
 #include "support/bidirectional.h"
 
 #include "base/sample_statistics.h"
@@ -33,7 +34,7 @@ static void pictures_agree(const char *name, const char *text, int depth, unsign
     "\"float focaldistance\" 5\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" BD_LAMP BD_GREY BD_FLOOR   \
         BD_BALL
 
-/* Pixels at the border have as much as inner ones; paths of two segments, by light tracing alone. */
+/* Border pixels get as much as inner ones; paths of two segments, by light tracing alone. */
 START_TEST(test_filters)
 {
     static const unsigned LIGHT_TRACING[2] = {2, 1};
@@ -48,10 +49,10 @@ START_TEST(test_filters)
 }
 END_TEST
 
-/* ---- glass both ways --------------------------------------------------------------------------------------------- */
+/* ---- glass in both directions ------------------------------------------------------------------------------------ */
 
-/* A small light inside a ball of glass over a floor: at 3 segments all light goes lens, floor, glass, light, and
- * light tracing makes all of it (no path of that length misses the floor: the view holds nothing else). */
+/* A small light inside a glass ball over a floor: with 3 segments all light goes lens, floor, glass, light, and light
+ * tracing makes all of it (no path of that length misses the floor, since the view holds nothing else). */
 START_TEST(test_light_inside_glass)
 {
     static const unsigned LIGHT_TRACING[2] = {3, 1};
@@ -66,8 +67,8 @@ START_TEST(test_light_inside_glass)
 }
 END_TEST
 
-/* A diffuse ball inside a rough glass one, lamp outside: light goes in and out again, and a camera inside glass looks
- * out. All strategies. */
+/* A diffuse ball inside a rough glass ball, with the lamp outside: light passes in and out, and a camera inside glass
+ * looks out. All strategies. */
 START_TEST(test_glass_both_ways)
 {
     pictures_agree("ball inside rough glass",
@@ -85,7 +86,7 @@ END_TEST
 
 /* ---- scale ------------------------------------------------------------------------------------------------------- */
 
-/* The same scene at another scale has the same picture. */
+/* A scaled scene has the same image. */
 START_TEST(test_scale)
 {
     static const double SCALES[] = {1e-3, 1e4};
@@ -114,8 +115,8 @@ END_TEST
 
 /* ---- the corner of one degree ------------------------------------------------------------------------------------ */
 
-/* Two planes that meet at one degree, lit from the open side: connections deep inside are arbitrarily close. No pixel
- * is brighter than 100 times the median, over pictures of 16 samples. */
+/* Two planes that meet at one degree, lit from the open side: connections deep inside are arbitrarily short. No pixel
+ * is brighter than 100 times the median, over images of 16 samples. */
 START_TEST(test_corner)
 {
     enum { PIXELS = 16 * 16 };

@@ -1,5 +1,5 @@
-/* Three strategies with running products (IBPT) against all stored densities (BDPT, of the same three): the same random
- * numbers make the same paths, so pictures may differ by rounding alone. */
+/* IBPT, which keeps running products for its three strategies, against BDPT restricted to the same three, which stores
+ * all densities: the same random numbers make the same paths, so images differ by rounding alone. */
 #include "support/bidirectional.h"
 
 #include "backend/step_recorder.h"
@@ -15,7 +15,7 @@ static void picture(const BidirectionalScene *scene, const Integrator *integrato
     fixture_render(&setup, image);
 }
 
-/* Single paths may part where roundings decide a hit, so a few pixels in a thousand may differ by more. */
+/* Individual paths may diverge where rounding decides a hit, so a few pixels in a thousand may differ by more. */
 START_TEST(test_running_products)
 {
     RenderedImage a, b;
@@ -36,7 +36,7 @@ START_TEST(test_running_products)
 }
 END_TEST
 
-/* Bytes of a path's state do not depend on how long it may become. */
+/* The size of a path's state does not depend on its maximum length. */
 START_TEST(test_state_independent_of_depth)
 {
     FrameParams frame = {.max_depth = 2};

@@ -1,5 +1,6 @@
-/* Every strategy alone and unweighted against path tracing's paths of the same length (Veach 1997, section 10.2: each
- * is an unbiased estimator of what it can make), and all together, or IBPT's three, weighted, against path tracing. */
+/* Every strategy alone and unweighted against path tracing of the same path length (Veach 1997, section 10.2: each is
+ * an unbiased estimator of the paths it can make), and all strategies together, or IBPT's three, weighted, against path
+ * tracing. */
 #include "support/bidirectional.h"
 
 /* ---- one strategy ------------------------------------------------------------------------------------------------ */
@@ -76,7 +77,7 @@ START_TEST(test_sum)
 }
 END_TEST
 
-/* `test` on every scene. */
+/* Runs `test` for every scene. */
 static TCase *scenes_case(const char *name, const TTest *test)
 {
     TCase *tcase = tcase_create(name);

@@ -1,5 +1,5 @@
-/* Weights on real walks: paths that BDPT's kernels have made, each with the weight that they gave it, against the
- * weights of all its strategies from densities that are computed here, from the path's vertices alone. */
+/* Weights of actual paths: the weight that BDPT's kernels gave to each path that they made, against the weights of all
+ * its strategies from densities computed here from the path's vertices alone. */
 #include "path/bidirectional_path.h"
 #include "support/bidirectional.h"
 #include "support/verify_fixture.h"
@@ -9,7 +9,7 @@
 
 enum { ITEMS = 4096, DEPTH = 5 };
 
-/* What the kernels have left behind, word after word, `stride` items each. */
+/* The kernels' state words, `stride` items each. */
 typedef struct Walks {
     VerifyPair *pair;
     FrameParams frame;
@@ -26,7 +26,7 @@ static void walks_sink(void *context, BufferId buffer, const uint *words, uint f
                count * sizeof *words);
 }
 
-/* The state after the first `steps` steps. */
+/* Runs the first `steps` steps. */
 static void walks_run(Walks *walks, size_t steps)
 {
     Error error = {0};
@@ -69,15 +69,15 @@ static void walks_close(Walks *walks)
 /* The vertices of one path; x_0 is on the lens and x_k on a light. */
 typedef struct RealPath {
     uint k;
-    Vertex vertices[DEPTH + 1]; /* of x_1 ... x_{k-1} all, of x_k point and normal */
-    Surface end; /* x_k of an area light */
+    Vertex vertices[DEPTH + 1]; /* complete for x_1 ... x_{k-1}; point and normal only for x_k */
+    Surface end; /* x_k, if on an area light */
     uint light;
     bool infinite, delta_light;
-    Vec3 ways[DEPTH + 1]; /* unit, from x_i to x_{i-1} */
+    Vec3 ways[DEPTH + 1]; /* unit vectors from x_i to x_{i-1} */
     TestPath densities;
 } RealPath;
 
-/* Unit, from x_i to its neighbour x_j, and the squared distance; 1 to infinity. */
+/* Unit vector from x_i to its neighbour x_j, and the squared distance; 1 if x_j is at infinity. */
 static Vec3 path_direction(const RealPath *path, uint i, uint j, float *distance2)
 {
     const bool far = path->infinite && (i == path->k || j == path->k);
@@ -85,7 +85,7 @@ static Vec3 path_direction(const RealPath *path, uint i, uint j, float *distance
     return j < i ? path->ways[i] : vec3_negate(path->ways[j]);
 }
 
-/* Density of x_to, per area, when x_at scatters what comes from x_from. */
+/* Density of x_to with respect to area when x_at scatters light from x_from. */
 static float scattered(const Walks *walks, const RealPath *path, uint from, uint at, uint to, uint transport)
 {
     float ignored, distance2;
@@ -99,7 +99,7 @@ static float scattered(const Walks *walks, const RealPath *path, uint from, uint
     return pdf * solid_angle_to_area(on, path->vertices[to].ng, distance2);
 }
 
-/* Density of x_{k-1}, per area, as the light emits towards it. */
+/* Density of x_{k-1} with respect to area when emitted by the light. */
 static float emitted(const Walks *walks, const RealPath *path)
 {
     float distance2;
@@ -110,7 +110,7 @@ static float emitted(const Walks *walks, const RealPath *path)
            solid_angle_to_area(w, ng, distance2);
 }
 
-/* Density of x_k as the light makes it. */
+/* Density of x_k as sampled on the light. */
 static float light_point(const Walks *walks, const RealPath *path)
 {
     const SceneView *view = &walks->view;
@@ -121,8 +121,8 @@ static float light_point(const Walks *walks, const RealPath *path)
                                     : light_emit_pdf_p(view, path->light, &path->end));
 }
 
-/* All densities from the vertices. Those of delta lobes are no densities but ratios: `path->densities` has them from
- * the walk that made them, and keeps them. */
+/* Computes all densities from the vertices, except those of delta lobes, which are mere ratios: `path->densities` keeps
+ * the values stored by the walk that made them. */
 static void path_densities(const Walks *walks, RealPath *path)
 {
     TestPath *d = &path->densities;
@@ -150,8 +150,8 @@ static void path_densities(const Walks *walks, RealPath *path)
 
 /* ---- paths from the kernels' state ------------------------------------------------------------------------------- */
 
-/* Where the camera's ray that made z_1 = p began, `back` from it: a point of the lens, or of the film of an
- * orthographic camera. */
+/* The origin of the camera ray that made z_1 = p, in direction `back` from it: a point on the lens, or on the film of
+ * an orthographic camera. */
 static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
 {
     const Camera *camera = &walks->frame.camera;
@@ -159,7 +159,7 @@ static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
     return vec3_mad(p, -depth / affine_vector(camera->camera_from_world, back).z, back);
 }
 
-/* A walk's part of the path of (s, t), and the densities around its delta vertices, all but the ends of the
+/* A subpath's part of the path of (s, t), and the densities around its delta vertices, except at the ends of the
  * connection. */
 static void camera_part(const Walks *walks, uint item, uint s, uint t, RealPath *path)
 {
@@ -206,7 +206,7 @@ static void light_part(const Walks *walks, uint item, uint s, RealPath *path)
     path->delta_light = (flags & EMITTER_DELTA) != 0u;
 }
 
-/* What connect_light draws for z_{t-1}. */
+/* The z_{t-1} that connect_light samples. */
 static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
 {
     LightSample sample = {0};
@@ -221,7 +221,7 @@ static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
     path->vertices[path->k].ng = sample.ng;
 }
 
-/* Where connect_camera has put the lens point for y_{s-1}. */
+/* The lens point that connect_camera samples for y_{s-1}. */
 static Vec3 lens_drawn(const Walks *walks, uint item, uint s, Vec3 p)
 {
     CameraConnection camera;
@@ -230,7 +230,7 @@ static Vec3 lens_drawn(const Walks *walks, uint item, uint s, Vec3 p)
     return camera.p;
 }
 
-/* The light that the camera's walk has met after its last ray; false when that is more than one. */
+/* The light hit by the camera subpath's last ray; returns false if that is more than one. */
 static bool light_met(const Walks *walks, uint item, RealPath *path)
 {
     const SceneView *view = &walks->view;
@@ -250,7 +250,7 @@ static bool light_met(const Walks *walks, uint item, RealPath *path)
     return true;
 }
 
-/* The path that the strategy (s, t) has made of the item; false when it is not one path. */
+/* The path that strategy (s, t) made for the item; returns false if that is not a single path. */
 static bool path_gather(const Walks *walks, uint item, uint s, uint t, RealPath *path)
 {
     memset(path, 0, sizeof *path);
@@ -279,13 +279,12 @@ static bool path_gather(const Walks *walks, uint item, uint s, uint t, RealPath 
 
 typedef struct Tally {
     uint paths[DEPTH + 1]; /* by s */
-    uint rounded; /* where rounding alone may be more than 1e-4 */
+    uint rounded; /* paths for which rounding alone may exceed 1e-4 */
     double worst;
 } Tally;
 
-/* A ray leaves its surface a little beside the vertex (geometry/ray.h). Kernels take the one way's density along the
- * ray and the other's between the vertices, and these directions, hence cosines, hence densities differ by this
- * part. */
+/* A ray leaves its surface slightly off the vertex (geometry/ray.h). Kernels compute one direction's density along the
+ * ray and the other's between the vertices; their directions, hence cosines and densities, differ by this fraction. */
 static double path_rounding(const RealPath *path)
 {
     double sum = 0.0;
@@ -304,7 +303,7 @@ static double path_rounding(const RealPath *path)
     return sum;
 }
 
-/* `contribution`: weighted and not. */
+/* `contribution`: [0] weighted, [1] unweighted. */
 static void weight_check(const Walks *walks, const char *name, uint item, uint s, uint t, const Vec3 contribution[2],
                          Tally *tally)
 {
@@ -328,7 +327,7 @@ static void weight_check(const Walks *walks, const char *name, uint item, uint s
     ++tally->paths[s];
 }
 
-/* All connections, by the kernel itself. */
+/* All connections, computed by the kernel itself. */
 static void connections_check(Walks *walks, const char *name, Tally *tally)
 {
     uint *paths = walks->words[BUFFER_PATHS], *shadows = walks->words[BUFFER_SHADOWS];
@@ -353,7 +352,7 @@ static void connections_check(Walks *walks, const char *name, Tally *tally)
             }
 }
 
-/* How many steps it takes for the camera's walk to have `segments`. */
+/* The number of steps until the camera subpath has `segments` segments. */
 static size_t steps_to_segment(const StepList *list, uint segments)
 {
     size_t i = 0;
@@ -364,7 +363,7 @@ static size_t steps_to_segment(const StepList *list, uint segments)
     return i;
 }
 
-/* Lights that the camera's walk meets. */
+/* Lights hit by the camera subpath (s = 0). */
 static void hits_check(Walks *walks, const char *name, Tally *tally)
 {
     Vec3 met[ITEMS];
@@ -386,7 +385,8 @@ static void hits_check(Walks *walks, const char *name, Tally *tally)
     }
 }
 
-/* Weights of all strategies of one path sum to 1, the weight of the strategy that made it being the kernel's. */
+/* The weights of all strategies of a path sum to 1, where the weight of the strategy that made the path is the
+ * kernel's. */
 START_TEST(test_real_walks)
 {
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / 2];

@@ -1,4 +1,4 @@
-/* Weights of strategies from densities: against long double, at the ends of float's range, and their sum. */
+/* Weights of strategies from densities: against long double, at the limits of float's range, and their sum. */
 #include "path/bidirectional_path.h"
 #include "support/bidirectional.h"
 
@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* By the definition: densities as whole products, in long double, whose exponent has 15 bits. */
+/* Straight from the definition: densities as full products, in long double, whose exponent has 15 bits. */
 static long double exact_density(const TestPath *path, uint s)
 {
     long double product = s == 1 ? (long double)path->connect : 1.0L;
@@ -34,7 +34,7 @@ static double path_check(const TestPath *path, uint set, uint exponent)
         const StrategyWeights both = test_path_weights(path, set, exponent, s);
         double weight = (double)both.own;
         TEST_NEAR(weight, expected, 1e-5); /* the requirement is 1e-4 */
-        TEST_NEAR(both.path_tracing, path_tracing / sum, 1e-5); /* whoever made the path */
+        TEST_NEAR(both.path_tracing, path_tracing / sum, 1e-5); /* independent of s */
         worst = fmax(worst, fabs(weight - (double)expected));
         weights += weight;
         any = true;
@@ -73,8 +73,8 @@ START_TEST(test_random_paths)
 }
 END_TEST
 
-/* The weight by nested ratios of floats, 1 / (1 + r1 (1 + r2 (...)) ...), which never make a product of the whole path,
- * but overflow where ratios are large far from the connection and small near to it. */
+/* The weight by nested float ratios, 1 / (1 + r1 (1 + r2 (...)) ...), which never forms a product over the whole path
+ * but overflows if ratios are large far from the connection and small near it. */
 static float nested_weight(const TestPath *path, uint s)
 {
     float up = 0.0f, down = 0.0f;
@@ -85,8 +85,6 @@ static float nested_weight(const TestPath *path, uint s)
     return 1.0f / (1.0f + up + down);
 }
 
-/* Ratios of 2^60 and 2^-60 at every vertex of 20: their products are far outside of float's range, and squared even of
- * long double's if they were taken over the whole path. */
 /* Largest error of the weights by nested ratios. */
 static double nested_check(const TestPath *path)
 {
@@ -101,6 +99,8 @@ static double nested_check(const TestPath *path)
     return worst;
 }
 
+/* Ratios of 2^60 and 2^-60 at each of 20 vertices: their products are far outside float's range and, squared and taken
+ * over the whole path, even outside long double's. */
 START_TEST(test_ratios_of_sixty_octaves)
 {
     static const int SIGNS[][2] = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
@@ -125,7 +125,8 @@ START_TEST(test_ratios_of_sixty_octaves)
 }
 END_TEST
 
-/* A density that is zero or infinite: weights stay in [0, 1], are numbers, and a strategy without density has none. */
+/* Zero or infinite densities: weights stay in [0, 1] and are never NaN, and a strategy without density gets no
+ * weight. */
 START_TEST(test_extremes)
 {
     static const float VALUES[] = {0.0f, 1e-45f, 1e-38f, 1.0f, 3e38f, INFINITY};
@@ -150,7 +151,7 @@ START_TEST(test_extremes)
     for (uint s = 0; s <= 2; ++s)
         TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, s), 1.0 / 3.0, 1e-6);
     path.light[2] = 1.0f;
-    path.camera[2] = INFINITY; /* made for certain by the camera's side */
+    path.camera[2] = INFINITY; /* sampled with certainty from the camera */
     TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, 3), 0.0, 0.0);
     TEST_NEAR(test_path_weight(&path, STRATEGIES_BDPT, 2, 4), 0.0, 0.0);
 }

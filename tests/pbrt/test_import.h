@@ -1,4 +1,4 @@
-/* Parts of the import's Check program, and what they share. */
+/* The parts of the import tests, and what they share. */
 #ifndef TWINLIGHT_TESTS_PBRT_TEST_IMPORT_H
 #define TWINLIGHT_TESTS_PBRT_TEST_IMPORT_H
 
@@ -23,24 +23,24 @@ TCase *import_corpus_case(void); /* tests/corpus */
 /* The folder of the tests' sources. */
 const char *import_tests_dir(void);
 
-/* Imports text; the test fails with the message when that fails. Names lead from the folder `directory`. */
+/* Imports the text; if that fails, so does the test, with the error message. File names are relative to `directory`. */
 void import_text_in(const char *text, const char *directory, bool lenient, Scene *scene);
 
-/* The same, without files. */
+/* The same for text without file names. */
 void import_text(const char *text, Scene *scene);
 
-/* Text behind WorldBegin. */
+/* The same for text after WorldBegin. */
 void import_world(const char *text, Scene *scene);
 
 /* The message of an import that must fail, in a static buffer. */
 const char *import_error(const char *text);
 
-/* Messages of the log since the last call, in a static buffer: warnings and infos of an import. */
+/* Log messages since the last call, in a static buffer: warnings and infos of an import. */
 const char *import_log(void);
 
 #define ELEMENT(scene, member, T, i) ARRAY_AT(&(scene)->member, T, i)
 
-/* Check compares floats as doubles, which the compiler warns of unless it is told. */
+/* Check compares floats as doubles; the casts avoid the compiler's warning. */
 #define ASSERT_FLOAT(a, b) ck_assert_double_eq((double)(a), (double)(b))
 #define ASSERT_NEAR(a, b, tolerance) ck_assert_double_eq_tol((double)(a), (double)(b), (double)(tolerance))
 

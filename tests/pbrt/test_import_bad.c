@@ -1,5 +1,5 @@
-/* tests/bad: each file must be refused with the message of its first line, "# expect: MESSAGE". tests/corpus/scene,
- * the seeds of the fuzzer with a name: valid files that use much of the format. */
+/* tests/bad: each file must be rejected with the message in its first line, "# expect: MESSAGE". tests/corpus/scene:
+ * the fuzzer's seeds that have a name are valid files that use much of the format. */
 #include "pbrt/test_import.h"
 
 #include <dirent.h>
@@ -14,7 +14,7 @@ static int is_scene(const struct dirent *entry)
     return length > 5 && strcmp(entry->d_name + length - 5, ".pbrt") == 0;
 }
 
-/* Takes every occurrence of `directory`/ out of text. */
+/* Removes every occurrence of `directory`/ from text. */
 static void directory_strip(char *text, const char *directory)
 {
     size_t length = strlen(directory) + 1;

@@ -1,5 +1,4 @@
-/* Include and Import, the limits that hostile files meet, the public scenes, and the folders of bad and of fuzzed
- * files. */
+/* Include and Import, limits against hostile files, public scenes, and the folders of bad and of fuzzed files. */
 #include "pbrt/test_import.h"
 #include "support/test_files.h"
 
@@ -15,7 +14,7 @@ START_TEST(include_shares_the_state)
     Scene scene;
     file_write("part.inc", "Translate 1 0 0\nMaterial \"dielectric\"\nShape \"sphere\"");
     import_text_in("WorldBegin Include \"part.inc\" \"float radius\" 2 Shape \"sphere\"", test_folder, false, &scene);
-    /* The included file's last parameter list goes on in the file that included it, as in pbrt. */
+    /* As in pbrt, the parameter list at the end of the included file continues in the including file. */
     ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 0).radius, 2.0f);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 1).center, 1, 0, 0, 0.0f);
     ck_assert_uint_eq(scene.materials.count, 1);

@@ -1,4 +1,4 @@
-/* Lights: pbrt's scales. An rgb value of 1 1 1 emits 1 1 1; every other spectrum counts at luminance 1. */
+/* Lights: pbrt's scales. An rgb value of 1 1 1 emits 1 1 1; any other spectrum is normalised to luminance 1. */
 #include "pbrt/test_import.h"
 #include "support/test_files.h"
 
@@ -65,10 +65,10 @@ START_TEST(power_and_illuminance)
     emission_is("LightSource \"point\" \"float power\" 100 \"rgb I\" [ 2 0 0 ] \"float scale\" 3", 600 / four_pi, 0, 0);
     emission_is("LightSource \"distant\" \"float illuminance\" 5 \"float scale\" 2", 10, 10, 10);
     emission_is("LightSource \"infinite\" \"float illuminance\" 5", 5 / PI, 5 / PI, 5 / PI);
-    /* A cone of 90 degrees without falloff is half a sphere. */
+    /* A cone of 90 degrees without falloff is a hemisphere. */
     emission_is("LightSource \"spot\" \"float power\" 10 \"float coneangle\" 90 \"float conedeltaangle\" 0",
                 10 / (2 * PI), 10 / (2 * PI), 10 / (2 * PI));
-    /* The triangle's area is 1: radiance = power / pi; each of the two sides has half of it. */
+    /* The triangle's area is 1: radiance = power / pi; if two-sided, each side has half of it. */
     emission_is("AreaLightSource \"diffuse\" \"float power\" 10 " TRIANGLE, 10 / PI, 10 / PI, 10 / PI);
     emission_is("AreaLightSource \"diffuse\" \"float power\" 10 \"bool twosided\" true " TRIANGLE, 5 / PI, 5 / PI,
                 5 / PI);
@@ -100,7 +100,7 @@ START_TEST(places_and_directions)
     scene_destroy(&scene);
     light = light_of("Rotate 90 1 0 0 LightSource \"distant\"", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_DISTANT);
-    /* From the origin to +z by default; about x, z goes to -y. */
+    /* From the origin toward +z by default; the rotation about x takes z to -y. */
     assert_vec3(light.direction, 0, -1, 0, 1e-6f);
     scene_destroy(&scene);
     light = light_of("LightSource \"distant\" \"point3 from\" [ 1 1 0 ] \"point3 to\" [ 1 -3 0 ]", &scene);
@@ -173,8 +173,8 @@ START_TEST(environment_maps)
     ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.image).wrap, WRAP_OCTAHEDRAL);
     assert_vec3(affine_vector(light.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
     scene_destroy(&scene);
-    /* A constant map of radiance 1/2 lights a plane with pi / 2; pbrt measures half of that, so it doubles the scale
-     * that a constant light gets. */
+    /* A constant map of radiance 1/2 lights a plane with pi / 2; pbrt measures half of that, so its scale is twice a
+     * constant light's. */
     light = light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"float illuminance\" 5", &scene);
     ASSERT_NEAR(light.emission.x * 0.5f, 2.0f * 5.0f / PI, 0.01f);
     scene_destroy(&scene);
@@ -198,8 +198,8 @@ static void emission_not_negative(const char *text)
     scene_destroy(&scene);
 }
 
-/* Chains go after luminance (chain/mutation.h): no light may have a channel below 0. Spectra whose colour is outside of
- * the gamut of sRGB lose what is below 0, numbers below 0 are refused (tests/bad has those of a point light). */
+/* Chains follow luminance (chain/mutation.h), so no light may have a negative channel: spectra whose colour is outside
+ * sRGB's gamut are clamped at 0, and negative numbers are rejected (tests/bad has those of a point light). */
 START_TEST(no_light_is_negative)
 {
     static const char *const REFUSED[] = {

@@ -1,4 +1,4 @@
-/* Counts that overflow 32 bits, or announce more than there is: refused with a message before memory is taken. */
+/* Counts that overflow 32 bits or announce more than there is: rejected with a message before memory is allocated. */
 #include "pbrt/test_import.h"
 
 #include "pbrt/ply.h"
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-/* Address space for a test, so that an allocation of what is announced would fail. Sanitizers need more than that. */
+/* Limits the address space, so that allocating the announced size would fail. Sanitizers need more than that. */
 static void memory_limit(void)
 {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -21,10 +21,10 @@ static const struct {
 } MESHES[] = {{UINT64_C(1) << 32, 1}, {UINT64_C(4294967295), 1}, {1431655766, 1}, /* times 3 is 2 mod 2^32 */
               {UINT64_C(1) << 62, 1}, /* times 12 bytes is 0 mod 2^64 */
               {3, UINT64_C(1) << 32}, {3, 1431655766},           {3, UINT64_C(1) << 61},
-              {3, 1100000000}, /* below 2^32, but 16 bytes each do not fit the buffer */
+              {3, 1100000000}, /* below 2^32, but at 16 bytes each more than the buffer holds */
               {800000000, 500000000}};
 
-/* The arrays are shorter than they are said to be: whoever reads or copies them first crashes. */
+/* The arrays are shorter than stated: reading or copying them before the check would crash. */
 START_TEST(meshes_beyond_32_bits)
 {
     static const float POSITIONS[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -48,7 +48,7 @@ START_TEST(meshes_beyond_32_bits)
 }
 END_TEST
 
-/* Full arrays that nobody reads: the count alone decides. */
+/* Stated counts for full arrays that are never read: the count alone decides. */
 START_TEST(arrays_beyond_32_bits)
 {
     static const double IDENTITY[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -70,13 +70,13 @@ START_TEST(arrays_beyond_32_bits)
 }
 END_TEST
 
-/* Headers in front of a body of a few bytes. */
+/* Headers followed by a body of a few bytes. */
 static const struct {
     const char *format;
     uint64_t vertices;
-    const char *index_type; /* of the list: count and value */
+    const char *index_type; /* of the face list: count and value */
     uint64_t faces;
-    const char body[17]; /* of the faces, 12 bytes a vertex before them */
+    const char body[17]; /* of the faces; 12 bytes per vertex precede it */
     const char *message;
 } PLYS[] = {
     {"binary_little_endian", UINT64_C(4000000000), "uchar int", 1, "", "the file ends too early"},
@@ -113,7 +113,7 @@ START_TEST(plys_announce_too_much)
 }
 END_TEST
 
-/* One more would be refused: tests/command/test_hostile.sh. */
+/* One more would be rejected: tests/command/test_hostile.sh. */
 START_TEST(parameters_at_the_limit_pass)
 {
     enum { UNIT = 17 };

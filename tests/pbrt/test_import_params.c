@@ -1,11 +1,11 @@
-/* Parameter lists: which one wins, what is reported. */
+/* Parameter lists: precedence and error messages. */
 #include "pbrt/test_import.h"
 
 #include "pbrt/params.h"
 
 #include <string.h>
 
-/* Reads "type name" and values: a list of strings, each a token. */
+/* Reads "type name" and its values from a list of strings, one token each. */
 static void declare(ParamBuffer *buffer, const char *text)
 {
     Lexer lexer;

@@ -1,4 +1,4 @@
-/* PLY files of every form give the same mesh; damaged ones an error. */
+/* PLY files in all variants yield the same mesh; damaged ones an error. */
 #include "pbrt/test_import.h"
 #include "support/test_files.h"
 
@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* Bytes of a file that is being made. */
+/* Content of a file under construction. */
 typedef struct Bytes {
     char data[4096];
     size_t size;
@@ -156,7 +156,7 @@ START_TEST(gzip)
 }
 END_TEST
 
-/* No length of a truncated file may be accepted or read past its end (the address sanitizer watches). */
+/* A file truncated at any length must be neither accepted nor read past its end (checked by the address sanitizer). */
 START_TEST(truncation_at_every_byte)
 {
     static Bytes bytes;
@@ -259,7 +259,7 @@ START_TEST(quads_become_patches)
     import_text_in(PLY_SCENE, test_folder, false, &scene);
     ck_assert_uint_eq(scene.shapes.count, 2);
     ck_assert_uint_eq(scene.primitives.count, 2);
-    /* Around the face 0 1 2 3; as a patch p00 p10 p01 p11. */
+    /* In order around the face: 0 1 2 3; as a patch: p00 p10 p01 p11. */
     static const uint WANTED[4] = {0, 1, 3, 2};
     ck_assert_mem_eq(ELEMENT(&scene, patches, Patch, 0).v, WANTED, sizeof WANTED);
     scene_destroy(&scene);

@@ -1,4 +1,4 @@
-/* Film, PixelFilter, Camera, Integrator, Sampler: pbrt's defaults and what a file sets. */
+/* Film, PixelFilter, Camera, Integrator, Sampler: pbrt's defaults and explicit settings. */
 #include "pbrt/test_import.h"
 
 #include <string.h>
@@ -40,7 +40,7 @@ START_TEST(film)
     ck_assert_int_eq(s->crop[1], 0);
     ck_assert_int_eq(s->crop[2], 100);
     ck_assert_int_eq(s->crop[3], 100);
-    /* pbrt's imaging ratio: open for 1/2, iso 200. */
+    /* pbrt's imaging ratio: shutter open for 1/2, iso 200. */
     ASSERT_FLOAT(s->film_scale, 1.0f);
     scene_destroy(&scene);
 }

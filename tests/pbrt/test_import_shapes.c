@@ -201,7 +201,7 @@ START_TEST(instances)
                  &scene);
     ck_assert_uint_eq(scene.objects.count, 2);
     ck_assert_uint_eq(scene.instances.count, 2);
-    /* The definition keeps its own transform, the instance's comes before it, as in pbrt. */
+    /* The definition keeps its own transform; the instance's transform is applied after it, as in pbrt. */
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 0, 0, 1, 0.0f);
     ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 0).world_radius, 2.0f);
     const Instance *first = &ELEMENT(&scene, instances, Instance, 0);
@@ -248,7 +248,7 @@ START_TEST(object_of_lights_only_has_no_instance)
                  &scene);
     ck_assert_uint_eq(scene.instances.count, 0);
     ck_assert_uint_eq(scene.lights.count, 1);
-    /* The area light ended with the object's scope. */
+    /* The area light's scope ended with the object. */
     ck_assert_uint_eq(scene.primitives.count, 2);
     scene_destroy(&scene);
 }

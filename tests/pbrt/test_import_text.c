@@ -83,7 +83,7 @@ START_TEST(encodings)
 }
 END_TEST
 
-/* Tokens of a file come through a window: those at its edges are the ones of the same text in memory. */
+/* A file's tokens come through a window: those at its edges equal the tokens of the same text in memory. */
 START_TEST(files_have_the_tokens_of_text)
 {
     enum { SIZE = 5 * TEXT_WINDOW_BYTES };
@@ -109,7 +109,7 @@ START_TEST(files_have_the_tokens_of_text)
         ck_assert(lexer_next(&lexer, &a, &error) == good);
         ck_assert_int_eq(a.place.line, b.place.line);
         ck_assert_int_eq(a.place.column, b.place.column);
-        if (!good) { /* an open string: go on behind its quote */
+        if (!good) { /* an unterminated string: continue after its quote */
             ck_assert_str_eq(error.message, expected.message);
             ++lexer.window.position;
             ++reference.window.position;
@@ -201,7 +201,7 @@ START_TEST(numbers_are_those_of_strtof)
 }
 END_TEST
 
-/* Random digits, among them ties: a double rounding errs in about 1 of 2^29 of uniform numbers, in every tenth of
+/* Random digits, including ties: double rounding is wrong for about 1 in 2^29 uniform numbers, but for every tenth of
  * those built here. */
 START_TEST(numbers_round_once)
 {

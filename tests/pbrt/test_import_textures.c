@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Codes of the program of the last material's colour, as digits; "" when it is constant. */
+/* Operation codes of the last material's colour program, as digits; "" if it is constant. */
 static const char *program_codes(const char *textures, Scene *scene, const TextureOp **ops)
 {
     static char codes[300];
@@ -158,7 +158,7 @@ START_TEST(images)
     const Material *m = &ELEMENT(&scene, materials, Material, 0);
     const TextureOp *op = &ELEMENT(&scene, texture_ops, TextureOp, m->color0.program);
     ck_assert_uint_eq(op[0].code, TEXTURE_IMAGE);
-    /* The factor went into the image's own scale, before the inversion, as in pbrt. */
+    /* The factor is folded into the image's own scale, before the inversion, as in pbrt. */
     ASSERT_FLOAT(op[0].scale, 0.5f);
     ck_assert_uint_eq(op[0].invert, 1);
     ck_assert_uint_eq(op[1].code, TEXTURE_END);
@@ -172,7 +172,7 @@ START_TEST(images)
 }
 END_TEST
 
-/* A float texture that is a colour image counts by its mean, wherever it is used. */
+/* A colour image as a float texture counts as its mean, wherever it is used. */
 START_TEST(float_image_in_a_colour_texture)
 {
     Scene scene;

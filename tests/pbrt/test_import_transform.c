@@ -1,4 +1,4 @@
-/* Transforms: the matrices of each directive, seen through where a sphere's centre or a triangle lands. */
+/* Transforms: the matrix of each directive, observed through the position of a sphere's centre or a triangle. */
 #include "pbrt/test_import.h"
 
 #include "base/matrix.h"
@@ -26,7 +26,7 @@ END_TEST
 START_TEST(rotation_axes)
 {
     static const double AXES[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    /* About x: y goes to z; about y: z to x; about z: x to y. */
+    /* About x, y goes to z; about y, z to x; about z, x to y. */
     for (int k = 0; k < 3; ++k) {
         Matrix r = matrix_rotate(90, AXES[k]);
         double out[3];
@@ -64,7 +64,7 @@ START_TEST(look_at_is_left_handed)
     Matrix m;
     static const double EYE[3] = {0, 0, -5}, LOOK[3] = {0, 0, 0}, UP[3] = {0, 1, 0};
     ck_assert(matrix_look_at(EYE, LOOK, UP, &m));
-    /* From -z looking at the origin: x right, y up, depth along z; no axis changes sign. */
+    /* From -z toward the origin: x right, y up, depth along z; no axis changes sign. */
     assert_matrix(&m, (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 0, 1});
     static const double UP_TILTED[3] = {0, 3, 1};
     ck_assert(matrix_look_at(EYE, LOOK, UP_TILTED, &m));
@@ -72,7 +72,7 @@ START_TEST(look_at_is_left_handed)
 }
 END_TEST
 
-/* Where (0,0,0), (1,0,0) and (0,1,0) land after the directives, in coordinates of the file. */
+/* The positions of (0,0,0), (1,0,0) and (0,1,0) after the directives, in coordinates of the file. */
 static void triangle_positions(const char *directives, Vec3 out[3])
 {
     char text[1024];
@@ -85,7 +85,7 @@ static void triangle_positions(const char *directives, Vec3 out[3])
     scene_destroy(&scene);
 }
 
-/* A world far away is moved before its points are rounded, and nothing is said twice. */
+/* A distant world is moved before its points are rounded, and messages are not repeated by the second reading. */
 START_TEST(far_world_is_moved)
 {
     Scene scene;
@@ -107,7 +107,7 @@ START_TEST(far_world_is_moved)
     assert_vec3(ELEMENT(&scene, positions, Vec3, 2), 0.001f, 1, 0, 1e-9f);
     assert_vec3(ELEMENT(&scene, lights, Light, 0).position, 0.001f, 0.5f, 0.5f, 1e-9f);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 0, 0, 0, 0.0f);
-    ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 1).center.x, 0.0f); /* of the object, which is where it was */
+    ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 1).center.x, 0.0f); /* within the object: not moved */
     ASSERT_NEAR(ELEMENT(&scene, instances, Instance, 0).world_from_object.m[3], 0.001f, 1e-9f);
     ASSERT_FLOAT(ELEMENT(&scene, texture_ops, TextureOp, 2).texture_from_world.m[3], 0.0f);
     ck_assert_double_eq(scene.camera_settings.world_from_camera[3], 0.0);
@@ -161,7 +161,7 @@ START_TEST(camera_transform)
     ck_assert_double_eq_tol(camera->camera_from_world[11], -3.0, 1e-12);
     ck_assert_double_eq_tol(camera->world_from_camera[3], 1.0, 1e-12);
     ck_assert_double_eq_tol(camera->world_from_camera[7], 2.0, 1e-12);
-    /* "camera" is the space of the camera: a sphere there sits around the eye. */
+    /* "camera" is camera space: a sphere there is centred at the eye. */
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 1, 2, 3, 1e-6f);
     scene_destroy(&scene);
 }

@@ -1,4 +1,4 @@
-/* Pictures against numbers that do not come from the renderer; see support/analytic.h. */
+/* Images against numbers that do not come from the renderer; see support/analytic.h. */
 #include "support/analytic.h"
 
 int main(void)

@@ -4,7 +4,7 @@
 #define SAMPLES 4096
 #define RADIANCE "AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] "
 
-/* Of irradiance per radiance: L = 2 and a reflectance of 1/2. */
+/* `irradiance` is for radiance 1; the factors L = 2 and reflectance 1/2 cancel. */
 static void check_light(const char *name, const char *light, double irradiance)
 {
     double got = analytic_mean(SAMPLES, 2, ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE "AttributeBegin\n%s\n%s\n",
@@ -14,7 +14,7 @@ static void check_light(const char *name, const char *light, double irradiance)
 
 /* ---- disks --------------------------------------------------------------------------------------------------------- */
 
-/* A parallel disk off its axis: Howell's catalogue of view factors, B-13. */
+/* A parallel disk off the axis: Howell's catalogue of view factors, B-13. */
 START_TEST(test_parallel_disk)
 {
     double h = 1.2, radius = 0.8, a = 0.9, height = h / a, r = radius / a, z = 1.0 + height * height + r * r;
@@ -32,7 +32,7 @@ typedef struct Disk {
     double inner, outer, phi_max, tilt, center[3];
 } Disk;
 
-/* u: angle, v: radius, turned about y. With dp/du x dp/dv the normal points to -z of the disk. */
+/* u: angle, v: radius, rotated about y. With dp/du x dp/dv, the normal points to the disk's -z. */
 static void disk_point(const void *context, double u, double v, double p[3])
 {
     const Disk *d = context;
@@ -82,7 +82,7 @@ START_TEST(test_rectangles)
 }
 END_TEST
 
-/* An octahedron of one-sided faces: the near ones count. */
+/* An octahedron of one-sided faces: those that face the plane count. */
 START_TEST(test_mesh)
 {
     static const double v[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -129,7 +129,7 @@ END_TEST
 
 typedef struct Ball {
     double z_min, z_max, phi_max; /* of the unit sphere */
-    double axes[3], turn, center[3]; /* radii, turned about y */
+    double axes[3], turn, center[3]; /* radii, rotated about y */
 } Ball;
 
 /* u: azimuth, v: height; dp/du x dp/dv points outwards. */
@@ -168,7 +168,7 @@ START_TEST(test_spheres)
 }
 END_TEST
 
-/* ---- several lights, and through the plane ------------------------------------------------------------------------ */
+/* ---- several lights, and lights behind the plane ----------------------------------------------------------------- */
 
 START_TEST(test_sum_of_lights)
 {

@@ -1,4 +1,4 @@
-/* Normals that are not the surface's: bump maps, normal maps and vertices' normals under a slanting light. */
+/* Shading normals: bump maps, normal maps and vertex normals under an oblique light. */
 #include "support/analytic.h"
 #include "support/test_files.h"
 
@@ -13,7 +13,7 @@ static double height(double u, double v)
     return analytic_map_at(u, v, 0, "repeat");
 }
 
-/* A slanting light L = pi from the direction (0.48, 0.6, 0.64). */
+/* An oblique light, L = pi from the direction (0.48, 0.6, 0.64). */
 #define SLANTING                                                                                                       \
     "LightSource \"distant\" \"rgb L\" [ 3.14159265 3.14159265 3.14159265 ] \"point3 from\" [ 0.48 0.6 0.64 ] "        \
     "\"point3 to\" [ 0 0 0 ]\nMaterial \"diffuse\" \"rgb reflectance\" [ 1 1 1 ] "
@@ -23,7 +23,7 @@ static double lit(double x, double y, double z)
     return fmax(0.0, (0.48 * x + 0.6 * y + 0.64 * z) / sqrt(x * x + y * y + z * z));
 }
 
-/* Differences in double, of the height 0.2 map(u, v); `context`: the sign of the heights. */
+/* Finite differences in double of the height 0.2 map(u, v); `context`: the sign of the heights. */
 static double bump_radiance(const void *context, double u, double v, int channel)
 {
     (void)channel;
@@ -32,8 +32,8 @@ static double bump_radiance(const void *context, double u, double v, int channel
                1.0);
 }
 
-/* The height 0.2 map(u, v) over the square: normal (-dh/dx, -dh/dy, 1). Under ReverseOrientation the heights go down,
- * as in pbrt. */
+/* The height 0.2 map(u, v) over the square: normal (-dh/dx, -dh/dy, 1). ReverseOrientation negates the heights, as in
+ * pbrt. */
 START_TEST(test_bump)
 {
     RenderedImage image;
@@ -48,7 +48,7 @@ START_TEST(test_bump)
 }
 END_TEST
 
-/* Of the normals below, which are made unit first. */
+/* For the vertex normals below, which are normalised first. */
 static double vertex_radiance(const void *context, double u, double v, int channel)
 {
     (void)context;
@@ -57,7 +57,7 @@ static double vertex_radiance(const void *context, double u, double v, int chann
     return lit(0.5 * (1.0 - 2.0 * u) * z, v * 0.4 * high, z);
 }
 
-/* The normal that vertices give, interpolated and normalised, on either side. */
+/* The interpolated and normalised vertex normal, on either side. */
 START_TEST(test_vertex_normals)
 {
     RenderedImage image;
@@ -91,7 +91,7 @@ START_TEST(test_normal_map)
             double local[3];
             for (int c = 0; c < 3; ++c)
                 local[c] = 2.0 * (double)n[c] - 1.0;
-            /* With n = -z the frame is x, -y, -z, and its back is lit. */
+            /* With n = -z the frame is x, -y, -z, and the back side is lit. */
             TEST_NEAR(analytic_pixel(&image, 3 * x + 1, 3 * y + 1, 0),
                       lit(_i ? -local[0] : local[0], local[1], local[2]), 1e-4);
         }

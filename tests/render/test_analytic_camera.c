@@ -1,15 +1,15 @@
-/* Pixel filters, cameras and lenses: how much of every pixel a lamp of known place covers. */
+/* Pixel filters, cameras and lenses: how much of every pixel is covered by a lamp at a known position. */
 #include "support/analytic.h"
 
 enum { WIDTH = 16, HEIGHT = 10 };
 
-/* A black rectangle of radiance 1, and what it covers of pixel x, y is cover_x[x] * cover_y[y]. */
+/* A black rectangle of radiance 1; its coverage of pixel x, y is x[x] * y[y]. */
 typedef struct Coverage {
     double x[WIDTH], y[HEIGHT];
 } Coverage;
 
-/* The factor between picture and prediction, and the root mean square of what is left, which noise alone makes about
- * `noise` / sqrt(samples). */
+/* Checks the factor between image and prediction, and the root mean square residual, for which noise is the only
+ * cause. */
 static void coverage_check(const char *name, const RenderedImage *image, const Coverage *cover, double rest_limit)
 {
     double both = 0.0, square = 0.0, rest = 0.0;
@@ -81,7 +81,7 @@ static double filter_value(const Filter *filter, double radius, double x)
     }
 }
 
-/* Convolution of the indicator of [a, b] with the filter, at every pixel's middle. */
+/* Convolution of the indicator of [a, b] with the filter, at every pixel's centre. */
 static void convolve(const Filter *filter, double radius, double a, double b, int count, double *cover)
 {
     enum { STEPS = 20000 };
@@ -137,7 +137,7 @@ static const View VIEWS[] = {
      0.46630766, 0, 0},
 };
 
-/* A rectangle x from -0.5 to 1.1, y from -0.9 to 0.7 at z = 4, five times as large at z = 20. */
+/* A rectangle, x from -0.5 to 1.1, y from -0.9 to 0.7 at z = 4, and five times as large at z = 20. */
 START_TEST(test_view)
 {
     const View *view = &VIEWS[_i];
@@ -162,7 +162,8 @@ START_TEST(test_view)
 }
 END_TEST
 
-/* An orthographic camera of one unit a side, scaled by 3 and moved: 3 units of the world, wherever in depth. */
+/* An orthographic camera with a window of one unit per side, scaled by 3 and translated: 3 units of the world at any
+ * depth. */
 START_TEST(test_orthographic)
 {
     for (int far = 0; far < 2; ++far) {
@@ -183,7 +184,8 @@ START_TEST(test_orthographic)
 }
 END_TEST
 
-/* LookAt: the axis hits the middle, up is up, and right is up x forward, as in pbrt's left-handed camera space. */
+/* LookAt: the axis hits the film's centre, up is up, and right is up x forward, as in pbrt's left-handed camera
+ * space. */
 START_TEST(test_look_at)
 {
     RenderedImage image;
@@ -193,7 +195,7 @@ START_TEST(test_look_at)
                      "LookAt 3 5 2  3 1 2  0 0 1\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\n"
                      "AreaLightSource \"diffuse\" \"bool twosided\" true\nShape \"bilinearmesh\" "
                      "\"point3 P\" [ 3 1 1  7 1 1  3 1 5  7 1 5 ]");
-    /* up x forward = z x -y = x: the lamp is on the right, 4 wide, from 1 below to 3 above. */
+    /* up x forward = z x -y = x: the lamp is on the right, 4 wide, from 1 below to 3 above the axis. */
     overlap(8.0, 8.0 + 5.0, WIDTH, cover.x);
     overlap(5.0 - 5.0 * 0.75, 5.0 + 5.0 * 0.25, HEIGHT, cover.y);
     coverage_check("LookAt", &image, &cover, 0.01);
@@ -203,7 +205,7 @@ END_TEST
 
 /* ---- lenses -------------------------------------------------------------------------------------------------------- */
 
-/* The middle and the mean squared distance from it of what a small lamp makes of the film, and its sum. */
+/* The sum, centroid and mean squared distance from the centroid of a small lamp's image on the film. */
 static void spot_moments(const RenderedImage *image, double *sum, double middle[2], double *square)
 {
     *sum = middle[0] = middle[1] = *square = 0.0;
@@ -220,10 +222,10 @@ static void spot_moments(const RenderedImage *image, double *sum, double middle[
     *square = *square / *sum - middle[0] * middle[0] - middle[1] * middle[1];
 }
 
-/* A square lamp of half side h at depth z. The lens of radius R in focus at f shows a point as a disk of the radius
- * R |z - f| / z in the plane in focus; squared distances from the middle of a disk have the mean r^2 / 2, of a square
- * 2 h^2 / 3, of a pixel 1/6. Perspective: a pixel spans 2 f tan(fov / 2) / 32 there and the lamp's image shrinks by
- * f / z; orthographic: neither. A camera that is scaled with its world shows the same. */
+/* A square lamp of half side h at depth z. A lens of radius R focused at f images a point as a disk of radius R |z - f|
+ * / z in the plane of focus. The mean squared distance from the centre is r^2 / 2 for a disk, 2 h^2 / 3 for a square,
+ * 1/6 for a pixel. Perspective: a pixel spans 2 f tan(fov / 2) / 32 there and the lamp's image shrinks by f / z;
+ * orthographic: neither. A camera that is scaled with its world has the same image. */
 static void lens_case(const char *name, bool perspective, double radius, double f, double z, double scale)
 {
     const double half = 0.25, fov = 30.0 * M_PI / 180.0;
@@ -263,7 +265,7 @@ END_TEST
 
 /* ---- crop windows ------------------------------------------------------------------------------------------------- */
 
-/* A window of fractions, rounded up as in pbrt: pixels 4 ... 11 of 16 and 3 ... 7 of 10 of the whole picture. */
+/* A window in fractions, rounded up as in pbrt: pixels 4 ... 11 of 16 and 3 ... 7 of 10 of the whole image. */
 START_TEST(test_crop_window)
 {
     RenderedImage images[2];

@@ -1,5 +1,5 @@
-/* Environments made of an image, under transforms that rotate, mirror and stretch: where every texel shines from, and
- * what arrives, by brute force over all directions. */
+/* Image environments under transforms that rotate, mirror and stretch: the direction of every texel, and irradiance, by
+ * brute force over all directions. */
 #include "light/light.h"
 #include "support/analytic.h"
 #include "support/test_files.h"
@@ -34,7 +34,7 @@ static void map_make(void)
     analytic_write_pfm(test_path("map.pfm"), SIDE, SIDE, texels);
 }
 
-/* The directive that places the map, the matrix column by column. */
+/* The directive that places the map, its matrix column by column. */
 static void light_text(const Environment *e, char *text, size_t size)
 {
     const double *m = e->world_from_light;
@@ -46,7 +46,7 @@ static void light_text(const Environment *e, char *text, size_t size)
 
 /* ---- the map, in double -------------------------------------------------------------------------------------------- */
 
-/* Cramer's rule: the direction in the light's space. */
+/* The direction in the light's space, by Cramer's rule. */
 static void light_direction(const double m[9], const double d[3], double out[3])
 {
     double det =
@@ -80,7 +80,7 @@ static void square_of(const double d[3], double *u, double *v)
     *v = 0.5 + 0.5 * copysign(y, d[1]);
 }
 
-/* Beyond an edge the octahedron's square goes on at the same edge, mirrored about the edge's middle. */
+/* Beyond an edge, the octahedron's square continues at the same edge, mirrored about the edge's middle. */
 static double texel(int x, int y)
 {
     if (x < 0 || x >= SIDE) {
@@ -120,7 +120,7 @@ static double irradiance_of(const Environment *e)
 
 /* ---- tests --------------------------------------------------------------------------------------------------------- */
 
-/* The picture of the map in many directions. */
+/* The map as seen in many directions. */
 START_TEST(test_view)
 {
     const Environment *e = &ENVIRONMENTS[_i];
@@ -155,7 +155,7 @@ START_TEST(test_irradiance)
 }
 END_TEST
 
-/* Light samples alone: the mean of radiance times cosine over density. */
+/* Light sampling alone: the mean of radiance times cosine over density. */
 START_TEST(test_light_samples_alone)
 {
     const Environment *e = &ENVIRONMENTS[_i];
@@ -183,7 +183,7 @@ START_TEST(test_light_samples_alone)
 }
 END_TEST
 
-/* As pbrt: twice what was asked for on a plane that faces up under a constant map. */
+/* As in pbrt: a constant map gives an upward-facing plane twice the requested illuminance. */
 START_TEST(test_illuminance)
 {
     enum { FINE = 128 };

@@ -1,16 +1,16 @@
-/* Dielectrics: slabs, the sphere as a lens, radiance inside, and rough interfaces against integrals over the
- * microfacets' normals. */
+/* Dielectrics: slabs, a sphere as a lens, radiance inside, and rough interfaces against integrals over microfacet
+ * normals. */
 #include "support/analytic.h"
 
 #define SAMPLES 4096
-/* A photon is reflected or not: at 262144 samples the standard error is up to 0.001 of the whole. */
+/* A photon is either reflected or not: with 262144 samples the standard error is up to 0.001 of the whole. */
 #define SPLIT_TOLERANCE 0.0025
 #define QUAD "Shape \"bilinearmesh\" \"point3 P\" "
 
 /* ---- slabs --------------------------------------------------------------------------------------------------------- */
 
-/* What a slab about z = 0 that fills the view transmits and reflects of radiance 1: the half space below shines red,
- * the one above green. The camera looks down at `angle`. */
+/* Transmittance and reflectance of a slab at z = 0 that fills the view: the half space below emits red, the one above
+ * green, both with radiance 1. The camera looks down at `angle`. */
 static void slab(const char *material, bool solid, double angle, double *transmitted, double *reflected)
 {
     double s = 20.0 * sin(angle), c = 20.0 * cos(angle), mean[3];
@@ -29,7 +29,7 @@ static void slab(const char *material, bool solid, double angle, double *transmi
     *reflected = mean[1];
 }
 
-/* Sums over all internal reflections: R = 2 F / (1 + F), T = (1 - F) / (1 + F), of unpolarised light at every
+/* Sums over all internal reflections: R = 2 F / (1 + F), T = (1 - F) / (1 + F), for light that is unpolarised at every
  * interface. */
 START_TEST(test_slabs)
 {
@@ -53,9 +53,9 @@ END_TEST
 
 /* ---- the ball as a lens ------------------------------------------------------------------------------------------- */
 
-/* A ray parallel to the axis of a unit ball at height h leaves it deflected by 2 (i - t), sin i = h, sin t = h / eta,
- * where the angle from the far pole is 2 t - i. Where it meets the plane three units behind the centre stands a small
- * light. */
+/* A ray parallel to the axis of a unit ball at height h leaves it deflected by 2 (i - t), with sin i = h, sin t = h /
+ * eta, at an angle of 2 t - i from the far pole. A small light is placed where it intersects the plane three units
+ * behind the centre. */
 START_TEST(test_ball_lens)
 {
     static const double HEIGHTS[] = {0.2, 0.5, 0.8};
@@ -79,8 +79,8 @@ END_TEST
 
 /* ---- inside -------------------------------------------------------------------------------------------------------- */
 
-/* Radiance inside is eta^2 times that outside: the camera in a ball of glass in a furnace, in its middle and where
- * some directions are totally reflected for ever and others not. */
+/* Radiance inside is eta^2 times that outside: the camera is in a glass ball in a furnace, in its centre and at a point
+ * where light in some directions is totally reflected forever. */
 START_TEST(test_furnace_inside)
 {
     double got = analytic_mean(SAMPLES, 100,
@@ -91,7 +91,7 @@ START_TEST(test_furnace_inside)
 }
 END_TEST
 
-/* One interface seen from inside, a light behind it; beyond the critical angle of 41.8 degrees there is none. */
+/* One interface seen from inside, with a light behind it; beyond the critical angle of 41.8 degrees it is invisible. */
 START_TEST(test_total_reflection)
 {
     static const double ANGLES[] = {0.0, 30.0, 40.0, 43.0, 60.0};
@@ -136,8 +136,8 @@ static double smith_lambda(double cosine, double alpha)
     return 0.5 * (sqrt(1.0 + alpha * alpha * tangent2) - 1.0);
 }
 
-/* What a GGX interface reflects (and sends through, as power) of light that arrives at `cosine`: the integral over
- * visible normals m of F G(o, i) / G1(o), with the height-correlated G of Walter et al. 2007 and Heitz 2014; single
+/* Reflectance and transmittance (as power) of a GGX interface for light arriving at `cosine`: the integral over visible
+ * normals m of F G(o, i) / G1(o), with the height-correlated G of Walter et al. 2007 and Heitz 2014; single
  * scattering. */
 static void rough_interface(double cosine, double eta, double alpha, double *reflected, double *transmitted)
 {
@@ -146,8 +146,8 @@ static void rough_interface(double cosine, double eta, double alpha, double *ref
     *reflected = *transmitted = 0.0;
     for (int j = 0; j < COUNT; ++j)
         for (int i = 0; i < COUNT / 2; ++i) {
-            /* tan^2 = alpha^2 w / (1 - w) spreads D cos m evenly over w; q^2 = 1 - w, because the integrand grows like
-             * 1 / cos m. */
+            /* tan^2 = alpha^2 w / (1 - w) distributes D cos m uniformly over w; q^2 = 1 - w, because the integrand
+             * grows like 1 / cos m. */
             double q = (j + 0.5) / COUNT, phi = M_PI * (i + 0.5) / (COUNT / 2);
             double tangent2 = alpha * alpha * (1.0 / (q * q) - 1.0), mz = 1.0 / sqrt(1.0 + tangent2),
                    mx = sqrt(tangent2) * mz;
@@ -166,7 +166,7 @@ static void rough_interface(double cosine, double eta, double alpha, double *ref
         }
 }
 
-/* A single interface between two half spaces of which one shines. */
+/* A single interface between two half spaces, of which one emits. */
 START_TEST(test_rough_interfaces)
 {
     static const double ANGLES[] = {0.0, 60.0}, ALPHAS[] = {0.1, 0.4, 0.8}, ETA = 1.5;

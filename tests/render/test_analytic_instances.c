@@ -1,5 +1,5 @@
-/* Objects and their instances against the same shapes written out, and the side to which shapes shine under
- * transforms that mirror. */
+/* Objects and their instances against the same shapes written out, and the side on which shapes emit under mirroring
+ * transforms. */
 #include "support/analytic.h"
 
 #define STAGE                                                                                                          \
@@ -9,7 +9,8 @@
     "\"point3 from\" [ -3 -4 6 ]\n"                                                                                    \
     "Material \"diffuse\" \"rgb reflectance\" [ .6 .6 .6 ] Shape \"disk\" \"float radius\" 20\n"
 
-/* Every kind of shape, with normals and texture coordinates, a bump, and materials that care for the inside. */
+/* Every kind of shape, with normals and texture coordinates, a bump map, and materials that distinguish inside and
+ * outside. */
 #define THINGS                                                                                                         \
     "Texture \"squares\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ .8 .2 .1 ] \"rgb tex2\" [ .1 .3 .8 ] "           \
     "\"float uscale\" 6 \"float vscale\" 4\n"
@@ -29,7 +30,7 @@
     "Shape \"bilinearmesh\" \"point3 P\" [ -1 .8 0  1 1 0  -.9 .9 2  1.1 .7 1.7 ] AttributeEnd\n"
 #define OBJECT QUADRICS MESHES
 
-/* The same random numbers see the same rays but for rounding. */
+/* The same random numbers make the same rays up to rounding. */
 static void compare(const char *name, const char *placed, const char *flat)
 {
     RenderedImage images[2];
@@ -44,8 +45,8 @@ static void compare(const char *name, const char *placed, const char *flat)
     fixture_destroy(&images[1]);
 }
 
-/* As in pbrt, a transform that mirrors turns a sphere or disk inside out where it is defined, while an instance only
- * carries normals along: the shapes written out need ReverseOrientation to be the same. */
+/* As in pbrt, a mirroring transform turns a sphere or disk inside out if it applies to the definition, while an
+ * instance only transforms normals: the shapes written out need ReverseOrientation to be equal. */
 static const struct {
     const char *name, *place;
     bool mirrors;
@@ -70,7 +71,7 @@ START_TEST(test_instance)
 }
 END_TEST
 
-/* A transform inside the definition and ReverseOrientation around it count too. */
+/* A transform inside the definition and ReverseOrientation around it count as well. */
 START_TEST(test_definition_state)
 {
     char placed[6000], flat[6000];
@@ -88,7 +89,7 @@ END_TEST
 
 /* ---- sides --------------------------------------------------------------------------------------------------------- */
 
-/* Each shape faces +z in its own space (the sphere outwards). */
+/* Each shape faces +z in its own space (the sphere outward). */
 static const struct {
     const char *name, *shape;
 } SHAPES[] = {
@@ -103,9 +104,9 @@ static const struct {
 };
 #define SHAPE_KINDS ((int)(sizeof SHAPES / sizeof *SHAPES))
 
-/* Which side shines, +z being up before and after the transform. pbrt's rules, as its ray intersections have them:
- * ReverseOrientation turns every shape. A transform that mirrors does not turn a mesh; a sphere or disk it turns where
- * the shape is defined, but not by an instance. With N the side is that of N. */
+/* Which side emits; +z is up before and after the transform. Rules of pbrt's ray intersections: ReverseOrientation
+ * flips every shape. A mirroring transform does not flip a mesh; it flips a sphere or disk if it applies to the
+ * definition, but not if it applies to the instance. With N, the side is that of N. */
 START_TEST(test_sides)
 {
     bool against = strstr(SHAPES[_i].name, "against") != NULL;
@@ -133,7 +134,8 @@ START_TEST(test_sides)
 }
 END_TEST
 
-/* What mirrored lamps send is what of them is seen: the plane gets the irradiance of the side that faces it. */
+/* Mirrored lamps illuminate from the side that is seen to emit: the plane receives irradiance from the side facing
+ * it. */
 START_TEST(test_light_of_mirrored)
 {
     static const struct {
@@ -156,7 +158,7 @@ START_TEST(test_light_of_mirrored)
 }
 END_TEST
 
-/* An object's lamp shines from every instance with its radiance, however large. */
+/* An object's lamp emits in every instance with its own radiance, whatever the instance's size. */
 START_TEST(test_lamps_of_instances)
 {
     double got =
@@ -166,7 +168,7 @@ START_TEST(test_lamps_of_instances)
                       "180 1 0 0 Shape \"disk\" \"float radius\" 0.5 AttributeEnd ObjectEnd\n"
                       "AttributeBegin Translate 0 0 1 Scale -1 1 1 ObjectInstance \"lamp\" AttributeEnd\n"
                       "AttributeBegin Translate 0 0 4 Scale 4 4 4 ObjectInstance \"lamp\" AttributeEnd\n");
-    /* The second is 2 wide at 4: its ring about the first, which covers radius 0.5 at 1, has no part outside. */
+    /* The second has radius 2 at height 4: the first, of radius 0.5 at height 1, hides it exactly. */
     analytic_check("instances of a lamp, one behind the other", got, 2.0 * 0.25 / 1.25 * 0.5, ANALYTIC_TOLERANCE);
 }
 END_TEST

@@ -1,4 +1,4 @@
-/* Point, spot and distant lights, and the scales that "power", "illuminance", "scale" and "twosided" mean. */
+/* Point, spot and distant lights, and the meaning of "power", "illuminance", "scale" and "twosided". */
 #include "support/analytic.h"
 
 #define UNIT 0.5 / M_PI /* radiance of the plane per irradiance */
@@ -27,7 +27,7 @@ START_TEST(test_point)
 }
 END_TEST
 
-/* Smooth step between the cosines of coneangle - conedeltaangle and of coneangle. */
+/* Smooth step between the cosines of coneangle and of coneangle - conedeltaangle. */
 static double spot_factor(double angle, double cone, double delta)
 {
     double outer = cos(cone * M_PI / 180.0), inner = cos((cone - delta) * M_PI / 180.0);
@@ -35,7 +35,7 @@ static double spot_factor(double angle, double cone, double delta)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/* The spot stands 2 above the origin and looks down at `angle` beside it. */
+/* Falloff at the origin for a spot 2 above it that points `degrees` to the side. */
 static double spot_at(double degrees, const char *parameters)
 {
     char light[300];
@@ -56,7 +56,7 @@ START_TEST(test_spot)
     analytic_check("spot of 60 and 50 degrees at 40",
                    spot_at(40.0, "\"float coneangle\" 60 \"float conedeltaangle\" 50"),
                    spot_factor(40.0 * M_PI / 180.0, 60.0, 50.0), 1e-3);
-    /* The power of intensity 1, by quadrature. */
+    /* the power at intensity 1, by quadrature */
     double power = 0.0;
     for (int i = 0; i < 100000; ++i) {
         double angle = M_PI * (i + 0.5) / 100000.0;
@@ -88,7 +88,8 @@ END_TEST
 
 /* ---- area lights and environments --------------------------------------------------------------------------------- */
 
-/* Power of a Lambertian surface: pi L area a side. The disk of radius r at height h gives pi L r^2 / (r^2 + h^2). */
+/* Power of a Lambertian surface: pi L area per side. The disk of radius r at height h gives an irradiance of pi L r^2 /
+ * (r^2 + h^2). */
 START_TEST(test_area_scales)
 {
     static const struct {
@@ -112,7 +113,7 @@ START_TEST(test_area_scales)
 }
 END_TEST
 
-/* A sphere of power P sends P / (4 pi d^2) to what faces it at the distance d, whatever its size. */
+/* A sphere of power P gives an irradiance of P / (4 pi d^2) at distance d, whatever its size. */
 START_TEST(test_power_of_scaled_sphere)
 {
     analytic_check("sphere of power 40 scaled by 0.3",
@@ -122,7 +123,7 @@ START_TEST(test_power_of_scaled_sphere)
 }
 END_TEST
 
-/* As in pbrt, every triangle of a mesh has the power, and its own radiance. */
+/* As in pbrt, every triangle of a mesh has the given power, hence its own radiance. */
 START_TEST(test_power_of_mesh)
 {
     const double large[3][3] = {{-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}}, small[3][3] = {{1, -1, 1}, {1, 0, 1}, {0, 0, 1}};
@@ -148,7 +149,7 @@ END_TEST
 
 /* ---- blackbodies --------------------------------------------------------------------------------------------------- */
 
-/* The CIE 1931 observer by the fits of Wyman, Sloan and Shirley 2013, which are good to about 1 % of the largest. */
+/* The CIE 1931 observer by the fits of Wyman, Sloan and Shirley 2013, accurate to about 1 % of the maximum. */
 static double lobe(double wavelength, double mean, double below, double above)
 {
     double t = (wavelength - mean) / (wavelength < mean ? below : above);
@@ -163,7 +164,7 @@ static void observer(double l, double xyz[3])
     xyz[2] = 1.217 * lobe(l, 437.0, 11.8, 36.0) + 0.681 * lobe(l, 459.0, 26.0, 13.8);
 }
 
-/* Planck's law through the observer and the matrix of sRGB, at luminance 1. */
+/* Planck's law through the observer and the sRGB matrix, at luminance 1. */
 static void planck_rgb(double kelvin, double rgb[3])
 {
     static const double MATRIX[9] = {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,

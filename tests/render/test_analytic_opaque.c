@@ -7,7 +7,7 @@
 
 /* ---- conductors ---------------------------------------------------------------------------------------------------- */
 
-/* Reflectance of unpolarised light at a metal of index eta + i k, in complex arithmetic (Born and Wolf 1999, 14.2). */
+/* Reflectance for unpolarised light of a metal of index eta + i k, in complex arithmetic (Born and Wolf 1999, 14.2). */
 static double fresnel_metal(double cosine, double eta, double k)
 {
     double complex n = eta + I * k, t = csqrt(1.0 - (1.0 - cosine * cosine) / (n * n));
@@ -15,7 +15,7 @@ static double fresnel_metal(double cosine, double eta, double k)
     return 0.5 * (s * s + p * p);
 }
 
-/* A mirror at z = 0 seen at `angle`, under an environment of radiance 1. */
+/* A mirror at z = 0 seen at `angle`, in an environment of radiance 1. */
 static void mirror(double mean[3], const char *material, double angle, unsigned samples)
 {
     analytic_color(mean, samples, 2,
@@ -120,7 +120,7 @@ END_TEST
 
 /* ---- mixes and interfaces ------------------------------------------------------------------------------------------ */
 
-/* "amount" is the share of the second material. */
+/* "amount" is the weight of the second material. */
 START_TEST(test_mix)
 {
     double mean[3];
@@ -145,8 +145,8 @@ END_TEST
 
 /* ---- alpha --------------------------------------------------------------------------------------------------------- */
 
-/* Rays are let through by a hash of the ray, as in pbrt: the view must be wide enough for rays to differ by more than
- * rounding. */
+/* Rays pass or not according to a hash of the ray, as in pbrt: the view must be wide enough for rays to differ by more
+ * than rounding. */
 #define VEIL_VIEW ANALYTIC_FILM "LookAt 8 1 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 1\nWorldBegin\n"
 #define VEIL "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] "
 
@@ -176,7 +176,7 @@ END_TEST
 
 /* ---- coated diffuse ------------------------------------------------------------------------------------------------ */
 
-/* cos inside of the direction of cosine c outside. */
+/* The cosine inside for a direction of cosine c outside. */
 static double inside(double c, double eta)
 {
     return sqrt(1.0 - (1.0 - c * c) / (eta * eta));
@@ -188,8 +188,8 @@ static double through(double c, double eta, double thickness)
 }
 
 typedef struct Coat {
-    double entering; /* of a diffuse field outside, what reaches the base */
-    double returned; /* of the base's radiosity, what comes back to it */
+    double entering; /* fraction of a diffuse field outside that reaches the base */
+    double returned; /* fraction of the base's radiosity that returns to it */
 } Coat;
 
 static Coat coat_integrals(double eta, double thickness)
@@ -223,7 +223,7 @@ static void coat_case(double eta, double thickness, double angle)
     }
 }
 
-/* In an environment of 1: the mirror image, and the base's radiosity through the interface and the medium. */
+/* In an environment of radiance 1: the mirror image, and the base's radiosity through the interface and the medium. */
 START_TEST(test_coats_in_environment)
 {
     coat_case(1.5, 0.0, 0.0);
@@ -233,7 +233,7 @@ START_TEST(test_coats_in_environment)
 }
 END_TEST
 
-/* One direction in, another out: T T rho / (pi eta^2 (1 - rho R_i)). */
+/* A single direction in, another out: T T rho / (pi eta^2 (1 - rho R_i)). */
 START_TEST(test_coat_under_distant_light)
 {
     double eta = 1.5, thickness = 0.2, c = 3.0 / sqrt(74.0), light = 0.8, rho = 0.7;

@@ -1,4 +1,4 @@
-/* Textures as they appear in pictures: images, mappings, expressions, encodings and alpha. */
+/* Textures in rendered images: images, mappings, expressions, encodings and alpha. */
 #include "image/png_write.h"
 #include "support/analytic.h"
 #include "support/test_files.h"
@@ -18,7 +18,7 @@ static double texel_at(const void *context, double u, double v, int channel)
     return (double)analytic_map[3 * (y * ANALYTIC_MAP_WIDTH + x) + channel];
 }
 
-/* Texels appear where the file has them, the first row on top (v = 1). */
+/* Texels appear as in the file, the first row on top (v = 1). */
 START_TEST(test_orientation)
 {
     RenderedImage image;
@@ -33,7 +33,7 @@ START_TEST(test_orientation)
 }
 END_TEST
 
-/* `context`: how the image goes on. */
+/* `context`: the wrap mode. */
 static double placed_image(const void *context, double u, double v, int channel)
 {
     return analytic_map_at(2.3 * u - 0.4, -1.7 * v + 1.1, channel, context);
@@ -54,14 +54,14 @@ START_TEST(test_bilinear)
 }
 END_TEST
 
-/* (u, v) are x and y of the world. */
+/* (u, v) are the world's x and y. */
 static double planar_image(const void *context, double u, double v, int channel)
 {
     (void)context;
     return analytic_map_at(0.1 + 3.0 * (v - 0.5) / 4.0, 0.2 + (u - 0.25) / 2.0, channel, "repeat");
 }
 
-/* Planar mapping in the space in which the texture is defined. */
+/* Planar mapping, in the space in which the texture is defined. */
 START_TEST(test_planar)
 {
     RenderedImage image;
@@ -77,7 +77,7 @@ START_TEST(test_planar)
 }
 END_TEST
 
-/* pbrt's checkerboard of 4 x 2 squares: whether the first texture shows at (u, v). */
+/* pbrt's checkerboard of 4 x 2 squares: whether (u, v) shows the first texture. */
 static bool first_square(double u, double v)
 {
     return ((int)floor(4.0 * u) + (int)floor(2.0 * v)) % 2 == 0;
@@ -90,7 +90,7 @@ static double mixed_image(const void *context, double u, double v, int channel)
     return 0.7 * 0.6 * here + 0.3 * (1.0 - here) * (first_square(u, v) ? 0.25 : 1.0);
 }
 
-/* scale, mix, checkerboard, invert, by hand. */
+/* scale, mix, checkerboard and invert, computed by hand. */
 START_TEST(test_expressions)
 {
     RenderedImage image;
@@ -117,7 +117,7 @@ static double srgb_decode(double encoded)
     return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/* A PNG's bytes k are decoded as sRGB, k / 255 as it is, or to a power. */
+/* A PNG's byte k is decoded as sRGB, as k / 255 unchanged, or by a power. */
 START_TEST(test_encodings)
 {
     enum { N = 16 };
@@ -146,7 +146,8 @@ END_TEST
 
 /* ---- parametrisations ---------------------------------------------------------------------------------------------- */
 
-/* pbrt's (u, v) of a point of the plane z = 0 or above it, for the shapes and mappings below; false off the shape. */
+/* pbrt's (u, v) of a point on the plane z = 0 or above it, for the shapes and mappings below; returns false off the
+ * shape. */
 typedef bool Parametrisation(double x, double y, double *u, double *v);
 
 /* phimax 270 degrees, radii 0.1 and 0.5: v is 1 at the inner radius. */
@@ -159,7 +160,7 @@ static bool disk_uv(double x, double y, double *u, double *v)
     return r > 0.1 && r < 0.5 && phi < 1.5 * M_PI;
 }
 
-/* zmin -0.25, zmax 0.4 of radius 0.5, seen from above: the open cap shows the inside. v goes up. */
+/* zmin -0.25, zmax 0.4 of radius 0.5, seen from above: the open cap shows the inside. v increases upward. */
 static bool sphere_uv(double x, double y, double *u, double *v)
 {
     double r = hypot(x, y), phi = atan2(y, x);
@@ -177,7 +178,7 @@ static bool triangle_uv(double x, double y, double *u, double *v)
     return x > y + 1e-3;
 }
 
-/* Polar angle, azimuth of (x, y, 0.3). */
+/* Polar angle and azimuth of (x, y, 0.3). */
 static bool spherical_uv(double x, double y, double *u, double *v)
 {
     double phi = atan2(y, x);
@@ -186,7 +187,7 @@ static bool spherical_uv(double x, double y, double *u, double *v)
     return true;
 }
 
-/* Azimuth from -x, height, of (0.3, x, -y). */
+/* Azimuth from -x, and height, of (0.3, x, -y). */
 static bool cylindrical_uv(double x, double y, double *u, double *v)
 {
     *u = (M_PI + atan2(x, 0.3)) / (2.0 * M_PI);
@@ -202,12 +203,12 @@ static const struct {
     {"sphere", "", "Shape \"sphere\" \"float radius\" 0.5 \"float zmin\" -0.25 \"float zmax\" 0.4", sphere_uv},
     {"triangle", "", "Shape \"trianglemesh\" \"point3 P\" [ -0.5 -0.5 0  0.5 -0.5 0  0.5 0.5 0 ]", triangle_uv},
     {"spherical", "Translate 0 0 -0.3", "Shape \"disk\"", spherical_uv},
-    /* The world's (x, y, 0) is (0.3, x, -y) of the texture. */
+    /* The world's (x, y, 0) is the texture's (0.3, x, -y). */
     {"cylindrical", "Rotate 90 0 1 0 Rotate 90 1 0 0 Translate -0.3 0 0", "Shape \"disk\"", cylindrical_uv},
 };
 
-/* Light from everywhere, so that slopes do not matter: one bounce in a white environment has the radiance of the
- * reflectance, but for noise. */
+/* Uniform illumination, so that slopes do not matter: with one bounce in a white environment, radiance equals
+ * reflectance, up to noise. */
 START_TEST(test_parametrisation)
 {
     enum { N = 12 };

@@ -1,4 +1,4 @@
-/* What an image holds besides the picture: variances, halves, albedo, normal, depth, and the picture without specks. */
+/* Layers of an image: variances, halves, albedo, normal, depth, and the despeckled image. */
 #include "camera/film_sum.h"
 #include "image/despeckle.h"
 #include "render/layers.h"
@@ -10,7 +10,7 @@
 
 /* ---- mean and variance of a sequence ----------------------------------------------------------------------------- */
 
-/* Against the formulas written out, for weights of very different size; the second pixel is not always seen. */
+/* Against the explicit formulas, for weights of very different size; the second pixel has no value in some images. */
 START_TEST(test_series)
 {
     const float values[4][2] = {{1.0f, 10.0f}, {2.0f, -1e6f}, {4.0f, 13.0f}, {-3.0f, 11.5f}};
@@ -61,9 +61,10 @@ START_TEST(test_despeckle)
 }
 END_TEST
 
-/* ---- variables --------------------------------------------------------------------------------------------------- */
+/* ---- albedo, normal, depth --------------------------------------------------------------------------------------- */
 
-/* A wall of albedo 0.2, 0.5, 0.7 that turns its back to +z, at distance 5 along the axis, under half of the picture. */
+/* A wall of albedo 0.2, 0.5, 0.7 that turns its back to +z, at distance 5 along the axis, in the lower half of the
+ * image. */
 static const char WALL[] = "LookAt 0 0 0  0 0 1  0 1 0\n"
                            "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
                            "PixelFilter \"box\"\n"
@@ -93,7 +94,7 @@ START_TEST(test_variables)
             TEST_NEAR(albedo[3 * i + c], met ? wall[c] : 0.0f, 1e-6);
             TEST_NEAR(normal[3 * i + c], met ? toward[c] : 0.0f, 1e-6);
         }
-        /* Within a pixel the distance changes by less than 0.04. */
+        /* Within a pixel the distance varies by less than 0.04. */
         TEST_NEAR(depth[3 * i], met ? 5.0 * sqrt(1.0 + x * x + y * y) : 0.0, 0.04);
     }
     render_layers_destroy(&layers);
@@ -103,7 +104,7 @@ END_TEST
 
 /* ---- halves and variance ----------------------------------------------------------------------------------------- */
 
-/* Two pictures of one film's size are its halves: every sum is the sum of theirs. */
+/* The two halves have the image's film size, and all sums are sums of theirs. */
 START_TEST(test_halves)
 {
     char path[512];
@@ -133,8 +134,8 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Layers by depth add up to indirect light, but for the rounding of single sums; of chains alone, too. The picture is
- * the one without them, but for the rounding of paths that bring light of several depths. */
+/* Layers by depth add up to the indirect layer, up to the rounding of individual sums; also for chains alone. The image
+ * equals the one without such layers, up to rounding of paths that contribute at several depths. */
 START_TEST(test_by_depth)
 {
     char path[512];
@@ -170,7 +171,7 @@ START_TEST(test_by_depth)
 }
 END_TEST
 
-/* The variance that an image states is that of its pixels over seeds, on average over the picture. */
+/* The variance layer equals the variance of pixels over seeds, averaged over the image. */
 START_TEST(test_variance)
 {
     enum { RUNS = 12, WIDTH = 16, HEIGHT = 12, VALUES = 3 * WIDTH * HEIGHT };
@@ -201,7 +202,7 @@ START_TEST(test_variance)
     for (size_t i = 0; i < VALUES; ++i)
         found += (square[i] - sum[i] * sum[i] / RUNS) / (RUNS - 1) / VALUES;
     printf("variance: %.4g stated, %.4g found over %d seeds\n", stated, found, RUNS);
-    /* Twelve seeds and some hundred values know it to about a tenth. */
+    /* From twelve seeds and some hundred values it is known to about a tenth. */
     ck_assert_double_gt(stated, 0.6 * found);
     ck_assert_double_lt(stated, 1.6 * found);
 }

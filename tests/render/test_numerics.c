@@ -1,5 +1,5 @@
-/* Hard cases of arithmetic, each as a picture: docs/NUMERICS.md lists them with the figures that are printed here, and
- * the tests of single functions that belong to them. */
+/* Hard cases of arithmetic, each as a rendering: docs/NUMERICS.md lists them with the figures printed here, and with
+ * related unit tests. */
 #include "support/numerics.h"
 
 int main(void)

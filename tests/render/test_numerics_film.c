@@ -1,5 +1,5 @@
-/* Borders under every filter, lights of any brightness, tangent frames without texture coordinates, shapes of no area,
- * and numbers that are none. */
+/* Borders with every filter, lights of any brightness, tangent frames without texture coordinates, shapes of zero area,
+ * and NaN and infinity. */
 #include "support/numerics.h"
 
 #include "backend_cpu.h"
@@ -9,15 +9,14 @@
 
 /* ---- borders ----------------------------------------------------------------------------------------------------- */
 
-/* Inside a sphere of emission 0.5 and albedo 0.5: every pixel has 0.5 + 0.25 + ... for as many segments as there
- * are. */
+/* Inside a sphere of emission 0.5 and albedo 0.5: every pixel is 0.5 + 0.25 + ... with one term per segment. */
 #define CONSTANT_SCENE                                                                                                 \
     "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 10\nPixelFilter %s\n"                             \
     "LookAt 0.3 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 60\nWorldBegin\n"                              \
     "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\nReverseOrientation\n"                                   \
     "AreaLightSource \"diffuse\" \"rgb L\" [ 0.5 0.5 0.5 ]\nShape \"sphere\" \"float radius\" 2\n"
 
-/* Mean and standard error, over groups, of the pixels at the border or of the others. */
+/* Mean and standard error, over groups, of the border pixels or of the others. */
 static void border_mean(const PictureGroups *picture, bool border, double *mean, double *error)
 {
     double sum = 0.0, squares = 0.0;
@@ -59,7 +58,7 @@ START_TEST(test_borders)
         printf("%s, %s: inner pixels %.5f +- %.5f, border %.5f +- %.5f, expected %.4f\n", BIDIRECTIONAL_FILTERS[_i],
                integrators[i]->name, mean[0], error[0], mean[1], error[1], expected);
         for (int border = 0; border < 2; ++border) {
-            /* 36 values in all: p = 0.01 for any of them, of Student's distribution with 15 degrees of freedom. */
+            /* 36 values in all: p = 0.01 for any of them, by Student's distribution with 15 degrees of freedom. */
             ck_assert_double_le(fabs(mean[border] - expected), 5.1 * error[border]);
             ck_assert_double_le(error[border], 0.02 * expected);
         }
@@ -70,7 +69,7 @@ END_TEST
 
 /* ---- brightness -------------------------------------------------------------------------------------------------- */
 
-/* A point light in smooth glass, which path tracing does not see: of any brightness, and beside a dim environment. */
+/* A point light in smooth glass, which path tracing cannot find: of any brightness, and with a dim environment. */
 #define ENCLOSED_SCENE                                                                                                 \
     BD_BEGIN "%sLightSource \"point\" \"point3 from\" [ 0 -0.4 0 ] \"rgb I\" [ %g %g %g ]\n" BD_GREY BD_FLOOR          \
              "Material \"dielectric\" \"float eta\" 1.5\n" BD_BALL
@@ -88,7 +87,7 @@ static void enclosed_render(const Integrator *integrator, unsigned samples, cons
     groups_render(&setup, picture);
 }
 
-/* The picture is as bright as the light, whatever part of it path tracing sees. */
+/* The image is as bright as the light, whatever part of it path tracing finds. */
 START_TEST(test_brightness)
 {
     static const struct {
@@ -112,14 +111,14 @@ START_TEST(test_brightness)
                LIGHTS[k].more[0] ? " beside 1e-4" : "", mean[1], ratio, deviation);
         ck_assert(got.sound);
         ck_assert_double_le(deviation, 0.02);
-        /* 15 values: p = 0.01 for any of them, of Student's distribution with 7 degrees of freedom. */
+        /* 15 values: p = 0.01 for any of them, by Student's distribution with 7 degrees of freedom. */
         ck_assert_double_le(fabs(ratio - 1.0), 5.8 * deviation);
         groups_destroy(&got);
     }
 }
 END_TEST
 
-/* Where the pilot sees nothing the unit follows the lights' power; a crop has the whole picture's. */
+/* If the pilot is black, the quantum is derived from the lights' power; a crop window uses the whole image's. */
 START_TEST(test_quantum_of_pilot)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
@@ -157,8 +156,8 @@ START_TEST(test_quantum_of_pilot)
 }
 END_TEST
 
-/* A unit so small that sums of chains, pools and path tracing are full: nothing wraps, every pixel says so, and all
- * threads give the same. */
+/* A quantum so small that sums of chains, pools and path tracing are full: none wraps, full pixels are counted, and the
+ * result is the same for any number of threads. */
 START_TEST(test_full_chains)
 {
     const Film fine = {.quantum_exponent = -80};
@@ -186,8 +185,8 @@ END_TEST
 
 #define WAVES 12
 
-/* A rough mirror over a floor, as waves: triangles with normals, and texture coordinates if asked for, which are
- * turned from one triangle to the next. */
+/* A rough mirror over a floor, shaped as waves: triangles with normals and, if requested, texture coordinates that are
+ * rotated from one triangle to the next. */
 static char *waves_text(bool coordinates)
 {
     static char text[65536];
@@ -220,8 +219,8 @@ static char *waves_text(bool coordinates)
     return text;
 }
 
-/* Frames come from the normal alone, so wild texture coordinates change no bit of what chains do; and chains over a
- * surface without any agree with bidirectional paths. */
+/* Frames depend on the normal alone, so erratic texture coordinates change no bit of the chains' result; and chains on
+ * a surface without any agree with bidirectional path tracing. */
 START_TEST(test_frames)
 {
     RenderedImage without, with;
@@ -249,7 +248,7 @@ START_TEST(test_frames)
 }
 END_TEST
 
-/* ---- what has no area -------------------------------------------------------------------------------------------- */
+/* ---- zero area --------------------------------------------------------------------------------------------------- */
 
 #define NOTHING                                                                                                        \
     "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 9 9 9 ]\n"                                                 \
@@ -257,8 +256,8 @@ END_TEST
     "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  0 0 0  0 0 0  0 0 0 ] AttributeEnd\n"                                \
     "Shape \"sphere\" \"float radius\" 1e-30\n"
 
-/* Triangles, patches and lamps of no area change no bit; normals of no length and those that cancel between vertices
- * are replaced by the geometry's. */
+/* Triangles, patches and lamps of zero area change no bit; normals of zero length, and vertex normals that cancel, are
+ * replaced by the geometric normal. */
 START_TEST(test_no_area)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
@@ -281,10 +280,10 @@ START_TEST(test_no_area)
 }
 END_TEST
 
-/* ---- what is not a number ---------------------------------------------------------------------------------------- */
+/* ---- NaN and infinity -------------------------------------------------------------------------------------------- */
 
-/* Plants a value that a file cannot hold into the packed scene: the ball's index of refraction, or the radiance of the
- * second lamp. */
+/* Plants a value that a file cannot contain into the packed scene: the ball's index of refraction, or the radiance of
+ * the second lamp. */
 static void scene_spoil(Scene *scene, bool lamp, float value)
 {
     uint *words = scene->tables_words.data;
@@ -302,12 +301,12 @@ static void scene_spoil(Scene *scene, bool lamp, float value)
             "AttributeBegin Scale 0.5 0.5 0.5 " BD_BALL "AttributeEnd\n"                                               \
             "AreaLightSource \"diffuse\" \"rgb L\" [ 3 3 3 ] Translate 1.5 0 0 Shape \"disk\" \"float radius\" 0.1\n"
 
-/* What a bad number reaches counts as nothing, is counted, and no more: the picture has no bad pixel, and the rest of
- * it is there. */
+/* A contribution that is not finite counts as zero and is counted; no pixel is bad, and the rest of the image is
+ * unaffected. */
 START_TEST(test_not_finite)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
-    /* An index that is NaN does no harm: no comparison with it lets light through. */
+    /* A NaN index does no harm: all comparisons with it block the light. */
     static const struct {
         bool lamp;
         float value;

@@ -1,12 +1,12 @@
-/* Lights that are tiny or points, paths that nothing can make, and paths that are hardly ever made. */
+/* Tiny lights, point lights, paths that no strategy can make, and paths that are very rarely found. */
 #include "support/numerics.h"
 
 #include <string.h>
 
 /* ---- tiny lights ------------------------------------------------------------------------------------------------- */
 
-/* A sphere of radius r and radiance 1 / r^2 lights the floor below it with pi (r / d)^2 cos, whatever r: by drawn
- * points, by the light's own rays and by all strategies together. */
+/* A sphere of radius r and radiance 1 / r^2 gives the floor below it an irradiance of pi (r / d)^2 cos, whatever r: by
+ * light sampling, by light tracing and by all strategies together. */
 START_TEST(test_tiny_lights)
 {
     static const double RADII[] = {1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
@@ -51,7 +51,7 @@ START_TEST(test_tiny_lights)
 }
 END_TEST
 
-/* ---- what nothing can make --------------------------------------------------------------------------------------- */
+/* ---- paths that cannot be made ----------------------------------------------------------------------------------- */
 
 #define POOL_UNDER_SUN                                                                                                 \
     BD_FILM "LookAt 0 4 -3  0 -1 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"                      \
@@ -59,9 +59,8 @@ END_TEST
                 BD_FLOOR "Material \"dielectric\" \"float eta\" 1.33\n"                                                \
             "Shape \"bilinearmesh\" \"point3 P\" [ -40 0 -40  40 0 -40  -40 0 40  40 0 40 ]\n"
 
-/* The floor of a pool under a sun that is a point: through the water to the floor and out again, no strategy can
- * connect anything and nothing can meet the sun. The picture is black to the last bit, and not a NaN. That the log says
- * so is command/test_cli.sh's to check. */
+/* The floor of a pool under a point-like sun: no strategy can connect through the water, and no path can hit the sun.
+ * The image is exactly black, without NaN. The warning in the log is tested by command/test_cli.sh. */
 START_TEST(test_nothing_can_make)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt(), integrator_mmlt()};
@@ -77,13 +76,13 @@ START_TEST(test_nothing_can_make)
 }
 END_TEST
 
-/* ---- what is hardly ever made ------------------------------------------------------------------------------------ */
+/* ---- paths that are rarely found --------------------------------------------------------------------------------- */
 
-/* All that a lamp shines goes away from a wall; one part in `1 / probability` meets a small mirror, which throws a spot
- * onto the wall, as bright as the sky's light there. Lamp 3.5 from the mirror, wall 4.77, of which 2.6 down. */
+/* A lamp faces away from a wall; a part `probability` of its light hits a small mirror, which reflects a spot onto the
+ * wall as bright as the sky's light there. The lamp is 3.5 from the mirror, the wall 4.77, of which 2.6 downward. */
 static void rare_text(char *text, size_t size, double probability)
 {
-    const double across = 0.5446, along = 1.8387, length = hypot(across, along); /* the mirror's normal, down and on */
+    const double across = 0.5446, along = 1.8387, length = hypot(across, along); /* normal: down and forward */
     double h = 0.5 * sqrt(probability * M_PI * 12.25 / 0.959), l = M_PI / (1.4 * probability);
     double up = h * along / length, back = h * across / length;
     snprintf(text, size,
@@ -101,9 +100,9 @@ static void rare_text(char *text, size_t size, double probability)
              l, l, l);
 }
 
-/* Chains that have found the mirror can hardly leave it again, for almost every step misses it. They end with their
- * generation, so the mean is right, and no pixel keeps what a chain that stands still has piled up. What a pool has not
- * found chains do not show, so there must be enough of it for Student's test: the rarer mirror is for the long test. */
+/* A chain that has found the mirror can hardly leave it, since almost every step misses it. Generations limit its life,
+ * so that the mean is right and no pixel keeps what a stuck chain has accumulated. Chains do not show what pools do not
+ * find, so there must be enough of it for Student's test: the rarer mirror is only in the long test. */
 START_TEST(test_rare)
 {
     char text[2048], name[48];

@@ -1,4 +1,4 @@
-/* Scale and place of the scene, surfaces in the same place, suns over scenes of every size. */
+/* Scale and position of the scene, coincident surfaces, suns over scenes of any size. */
 #include "support/numerics.h"
 
 #include "compare/metrics.h"
@@ -8,13 +8,12 @@
 /* ---- scale and place --------------------------------------------------------------------------------------------- */
 
 typedef struct Placement {
-    double scale, shift; /* of the world, then along x and z */
-    double rel_mse; /* against the picture of scale 1 at (0,0,0), of the same seed */
-    double block; /* the same, of the worst of 4 x 4 block means */
+    double scale, shift; /* of the world; then translated along x and z */
+    double rel_mse; /* relative to the image at scale 1 and (0,0,0) with the same seed */
+    double block; /* the same for the worst of the means of 4 x 4 blocks */
 } Placement;
 
-/* The seed is the same, so only paths whose rounding decides something, a hit or a lobe, differ at all: nothing for a
- * power of two. */
+/* With the same seed, paths differ only where rounding decides a hit or a lobe: not at all for a power of two. */
 static const Placement PLACEMENTS[] = {{1.0, 0.0, 0.0, 0.0},    {1.0 / 1024.0, 0.0, 0.0, 0.0}, {1e-3, 0.0, 1e-6, 1e-3},
                                        {37.0, 0.0, 1e-6, 1e-3}, {1e4, 0.0, 1e-6, 1e-3},        {1.0, 100.0, 1e-6, 1e-3},
                                        {1.0, 1e4, 1e-6, 1e-3}};
@@ -71,7 +70,7 @@ START_TEST(test_placements)
 }
 END_TEST
 
-/* 10^4 away, against the picture at (0,0,0), both of many seeds. */
+/* 10^4 away, against the image at (0,0,0), both over many seeds. */
 START_TEST(test_far)
 {
     const Integrator *const integrators[] = {integrator_pt(), integrator_bdpt(), integrator_mmlt()};
@@ -93,8 +92,8 @@ START_TEST(test_far)
 }
 END_TEST
 
-/* A scene whose coordinates floats hold, all of them a multiple of 1/64 and none of the camera's 0, with the origin in
- * the middle of its box: everything that has a place. */
+/* A scene with every kind of object that has a position. Its coordinates are exactly representable, all multiples of
+ * 1/64, none of the camera's is 0, and the origin is in the middle of its bounding box. */
 static const char *moved_text(const double offset[3])
 {
     static const double EYE[3] = {0.25, 0.5, -5.0};
@@ -125,7 +124,7 @@ static const char *moved_text(const double offset[3])
     return text;
 }
 
-/* What is far away is moved to the origin (scene/center.h), and nothing is lost: the same sums. */
+/* A distant scene is moved to the origin (scene/center.h) without loss: the same sums. */
 START_TEST(test_moved)
 {
     static const double OFFSETS[4][3] = {{0, 0, 0}, {4096, -8192, 16384}, {-1000, 0, 0}, {0, 0, 1e5}};
@@ -146,8 +145,8 @@ START_TEST(test_moved)
 }
 END_TEST
 
-/* A lamp that hangs 0.005 under a ceiling, less than floats resolve 10^5 away: points are moved before they are
- * rounded. What the file has are the numbers of a room at the origin, and a transform. */
+/* A lamp 0.005 under a ceiling, less than the resolution of floats at a distance of 10^5: points are moved before they
+ * are rounded. The file has the coordinates of a room at the origin, and a transform. */
 static const char *ceiling_text(double shift)
 {
     static char text[2048];
@@ -198,8 +197,8 @@ END_TEST
 
 /* ---- two surfaces in one place ----------------------------------------------------------------------------------- */
 
-/* Everywhere the first of the two is met, for any number of threads: the same sums, and no trace of the other's colour.
- * test_opencl does the same on a device. */
+/* The first of two coincident surfaces is hit everywhere, for any number of threads: the same sums, and nothing of the
+ * other's colour. test_opencl does the same on a device. */
 START_TEST(test_coincident)
 {
     static const int THREADS[] = {1, 2, 3, 8};
@@ -224,8 +223,8 @@ END_TEST
 
 /* ---- suns -------------------------------------------------------------------------------------------------------- */
 
-/* A ball of glass in the sun over a floor: only paths from the light make the bright spot under it. `radius`: of the
- * floor, which makes the scene's bounding sphere; `scale`: of all. */
+/* A glass ball in the sun over a floor: only paths from the light make the caustic under it. `radius`: of the floor,
+ * which determines the scene's bounding sphere; `scale`: of everything. */
 static void caustic_text(char *text, size_t size, double scale, double radius)
 {
     double r = radius * scale;
@@ -243,7 +242,7 @@ static void caustic_text(char *text, size_t size, double scale, double radius)
         -r, -1.1 * scale, r, r, -1.1 * scale, r, scale, scale, scale);
 }
 
-/* The whole scene scaled up to a radius of 10^5: the same seed, nearly the same picture. */
+/* The whole scene scaled up to a radius of 10^5: with the same seed, nearly the same image. */
 START_TEST(test_sun_scaled)
 {
     static const double SCALES[] = {1.0, 10.0, 100.0, 1e3, 1e4, 2.5e4};
@@ -276,7 +275,8 @@ START_TEST(test_sun_scaled)
 }
 END_TEST
 
-/* The floor alone grows: one ray in (radius)^2 meets the ball, so the noise grows with the radius, but nothing else. */
+/* The floor alone is enlarged: one ray in (radius)^2 hits the ball, so the noise grows with the radius, but nothing
+ * else changes. */
 START_TEST(test_sun_wide)
 {
     static const double RADII[] = {4.0, 10.0, 20.0};

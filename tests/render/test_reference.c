@@ -1,6 +1,6 @@
-/* Pictures of the public scenes against other renderers': gray.pbrt holds each scene without colour, so that a spectral
- * renderer and this one must agree, and gray_pbrt-v4.exr is pbrt-v4's converged picture of it. TungstenRender.exr is
- * Tungsten's picture of the scene in colour, in RGB as ours. */
+/* Public scenes against other renderers' images: gray.pbrt is each scene without colour, so that a spectral renderer
+ * and this one must agree, and gray_pbrt-v4.exr is pbrt-v4's converged image of it. TungstenRender.exr is Tungsten's
+ * image of the coloured scene, in RGB as ours. */
 #include "support/render_fixture.h"
 #include "support/test_util.h"
 
@@ -8,7 +8,7 @@ typedef struct ReferenceCase {
     const Integrator *(*integrator)(void);
     const char *scene, *reference;
     int max_depth, side; /* segments; pixels of a square film. 0: the scene's */
-    unsigned samples; /* times the effort */
+    unsigned samples; /* at effort 1; multiplied by the effort */
     double block_limit; /* mean relative difference of the means of 16 x 16 blocks; 0: not tested */
     double mean_limit; /* relative difference of the means */
     bool long_only; /* not at effort 1 */
@@ -17,14 +17,14 @@ typedef struct ReferenceCase {
 #define GRAY(folder) folder "/gray.pbrt", folder "/gray_pbrt-v4.exr"
 #define CORNELL_COLOR "cornell-box/scene-v4.pbrt", "cornell-box/TungstenRender.exr"
 
-/* The noise of our own side is part of the difference, and every figure is the mean over 256 blocks, so it hardly
- * changes from seed to seed. At these samples and effort 1, two seeds differ in the same measure, which is sqrt(2)
- * times the noise, by about
- *   pt    0.8 % (cornell-box), 1.6 % (veach-mis), 1.1 % (coffee)
- *   ibpt  0.7 % (cornell-box), 1.5 % (veach-mis), 2.1 % (veach-bidir), 1.4 % (cornell-box in colour)
- *   bdpt  0.75 %, 2.0 %, 1.7 %, 1.7 %
- * veach-bidir's caustics are too noisy in path tracing for its blocks to say anything; its mean is tested. In veach-mis
- * the means of single pictures scatter by 1 % (ibpt and bdpt at effort 1): lamps smaller than a pixel. */
+/* Our own noise is part of the difference, and every figure is the mean over 256 blocks, so it hardly changes from seed
+ * to seed. With these samples and effort 1, two seeds differ by the following in the same measure, which is sqrt(2)
+ * times the noise:
+ * pt 0.8 % (cornell-box), 1.6 % (veach-mis), 1.1 % (coffee)
+ * ibpt 0.7 % (cornell-box), 1.5 % (veach-mis), 2.1 % (veach-bidir), 1.4 % (cornell-box in colour)
+ * bdpt 0.75 %, 2.0 %, 1.7 %, 1.7 %
+ * In path tracing, veach-bidir's caustics are too noisy for its blocks to be meaningful; its mean is tested. In
+ * veach-mis the means of single images vary by 1 % (ibpt and bdpt at effort 1): lamps smaller than a pixel. */
 static const ReferenceCase CASES[] = {
     {integrator_pt, GRAY("cornell-box"), 0, 0, 512, 0.01, 0.01, false},
     {integrator_pt, GRAY("veach-mis"), 0, 0, 512, 0.02, 0.01, false},

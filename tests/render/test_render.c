@@ -1,4 +1,4 @@
-/* Whole pictures: analytic scenes, furnaces, determinism, references. */
+/* Whole images: analytic scenes, furnaces, determinism, references. */
 #include "film/pixel_order.h"
 #include "layout/item.h"
 #include "support/render_fixture.h"
@@ -13,7 +13,8 @@
 
 /* ---- the order of pixels ----------------------------------------------------------------------------------------- */
 
-/* All pixels in turn, and of large pictures neighbours far apart: in which tenth of the order they are says nothing. */
+/* Every pixel occurs once, and in large images neighbours are far apart in the order: a range of a tenth of the order
+ * prefers no region. */
 START_TEST(test_pixel_order)
 {
     static const uint SIZES[][2] = {{1, 1},   {1, 7},     {5, 1},       {2, 2},       {6, 35},       {16, 16},
@@ -48,9 +49,9 @@ START_TEST(test_pixel_order)
 }
 END_TEST
 
-/* A pool that visits cells differently often: in one round each of a pixel's visits is another sample, there are as
- * many as its density_ratio says, and the next round has other samples. Pictures with more and with fewer pixels than
- * cells, and crops. */
+/* Pools whose visits differ between cells: each visit of a pixel within a round is a different sample, also across the
+ * start of the next round, and the number of visits matches the density ratio. For images with more and with fewer
+ * pixels than cells, and for crop windows. */
 START_TEST(test_visits)
 {
     static const uint CROPS[][4] = {{0, 0, 1, 1}, {0, 0, 5, 90}, {3, 2, 36, 40}, {10, 0, 74, 64}, {1, 7, 200, 101}};
@@ -97,7 +98,7 @@ END_TEST
 
 /* ---- analytic scenes, to 0.5 % --------------------------------------------------------------------------------- */
 
-/* Inside a sphere of emission L and albedo a, light bounces for ever: the radiance is L / (1 - a) everywhere. */
+/* Inside a sphere of emission L and albedo a, light bounces forever: the radiance is L / (1 - a) everywhere. */
 START_TEST(test_emitting_sphere_inside)
 {
     RenderedImage image;
@@ -113,7 +114,7 @@ START_TEST(test_emitting_sphere_inside)
 }
 END_TEST
 
-/* The same, cut after d segments: L (1 + a + ... + a^(d-1)), which pins down what a segment is. */
+/* The same, truncated after d segments: L (1 + a + ... + a^(d-1)), which pins down what a segment is. */
 START_TEST(test_emitting_sphere_depths)
 {
     double expected = 0.0;
@@ -133,8 +134,8 @@ START_TEST(test_emitting_sphere_depths)
 }
 END_TEST
 
-/* A Lambertian sphere of albedo 0.5 with emission 0.5 seen from outside in black space, alone: radiance 0.5 (it does
- * not see itself); under a constant environment of radiance 1: 0.5 + 0.5 = 1. */
+/* A Lambertian sphere of albedo 0.5 and emission 0.5, seen from outside. In black space the radiance is 0.5 (it does
+ * not see itself); in a constant environment of radiance 1 it is 0.5 + 0.5 = 1. */
 START_TEST(test_lambert_sphere)
 {
     RenderedImage image;
@@ -154,7 +155,7 @@ START_TEST(test_lambert_sphere)
 }
 END_TEST
 
-/* A point light of intensity I at height h over a Lambertian plane: radiance a / pi * I / h^2 straight below. */
+/* A point light of intensity I at height h over a Lambertian plane: the radiance straight below is a / pi * I / h^2. */
 START_TEST(test_point_light_plane)
 {
     RenderedImage image;
@@ -177,13 +178,13 @@ END_TEST
 
 typedef struct FurnaceCase {
     const char *material;
-    double low, high; /* bounds of the mean, where 1 is all the energy */
+    double low, high; /* bounds of the mean; 1 is all of the energy */
 } FurnaceCase;
 
-/* A sphere of a material that absorbs nothing in an environment of radiance 1. Single-scattering microfacet models
- * lose what would bounce between facets; nothing may gain. The rough conductors' figures are those of an independent
- * Monte Carlo estimate of E[G2 / G1] over the same view (0.9267 and 0.5273); the rough dielectrics' are this program's
- * own and guard against change. */
+/* A sphere of a non-absorbing material in an environment of radiance 1. Single-scattering microfacet models lose what
+ * would bounce between facets; none may gain. The figures of the rough conductors are from an independent Monte Carlo
+ * estimate of E[G2 / G1] over the same view (0.9267 and 0.5273); those of the rough dielectrics are this program's own
+ * and guard against change. */
 static const FurnaceCase FURNACES[] = {
     {"Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]", 0.995, 1.005},
     {"Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 0", 0.995, 1.005},
@@ -289,7 +290,7 @@ START_TEST(test_same_bits_in_two_parts)
 }
 END_TEST
 
-/* Pixels of a crop have the bits that they have in the whole picture, although most of its light is elsewhere. */
+/* Pixels of a crop window have the same bits as in the whole image, although most of its light is elsewhere. */
 START_TEST(test_crop_has_the_bits_of_the_whole)
 {
     static const int CROP[4] = {1, 2, 6, 9};

@@ -1,4 +1,4 @@
-/* Every scene of scenes/ by every integrator, against the pictures in scenes/reference/, which are path traced or
+/* Every scene of scenes/ by every integrator, against the images in scenes/reference/, which are path traced or
  * bidirectionally path traced (scenes/make_references.sh). */
 #include "base/sample_statistics.h"
 #include "support/render_fixture.h"
@@ -8,13 +8,13 @@
 
 enum { INTEGRATORS = 4, SIDE = 32, GRID = 4 };
 
-/* Median relative difference of the means of GRID x GRID blocks that noise explains, of pt, ibpt, bdpt and mmlt with
- * SAMPLES: the largest of eight seeds (1 to 8) and half as much again, but less than what a black picture has. The
- * median, because single paths that are found once in a million samples make a block or two many times too bright. */
+/* Median relative difference of the means of GRID x GRID blocks that noise explains, for pt, ibpt, bdpt and mmlt with
+ * SAMPLES: 1.5 times the largest of eight seeds (1 to 8), but less than for a black image. The median is used because
+ * paths that are found once in a million samples make a block or two many times too bright. */
 static const struct {
     const char *name;
     double reference; /* mean error of the reference's blocks (docs/SCENES.md); for cornell's pixel filter, 0.01 */
-    bool pt_misses; /* some light is hardly ever met by path tracing, and more samples do not help soon */
+    bool pt_misses; /* path tracing hardly ever finds some of the light, and a few times more samples do not help */
     double noise[INTEGRATORS];
 } SCENES[] = {
     {"cornell", 0.010, false, {0.027, 0.029, 0.026, 0.018}}, {"door", 0.014, false, {0.65, 0.49, 0.52, 0.30}},

@@ -1,4 +1,5 @@
-/* Comparing two backends word by word: what is equal passes, and a planted difference is found where it was planted. */
+/* Word-by-word comparison of two backends: equal states pass, and a planted difference is found where it was
+ * planted. */
 #include "support/test_util.h"
 #include "support/verify_fixture.h"
 
@@ -24,7 +25,7 @@ static const char *const SCENE = "LookAt 0 1 4  0 1 0  0 1 0\n"
 
 static const atomic_int NEVER = 0;
 
-/* Verifies paths of up to `depth` segments on CPU backends of one and three threads, the second with `interface`. */
+/* Verifies paths of up to `depth` segments on CPU backends with one and three threads, the second with `interface`. */
 static bool scene_verify(const BackendInterface *interface, int depth, uint64_t items, const atomic_int *stop,
                          VerifyReport *report, Error *error)
 {
@@ -47,7 +48,7 @@ START_TEST(test_equal)
 }
 END_TEST
 
-/* In the first block, in a later one, at its last item, in every buffer. */
+/* Planted in the first block, in a later one, at its last item, in every buffer. */
 START_TEST(test_difference_named)
 {
     static const struct {
@@ -84,7 +85,7 @@ START_TEST(test_difference_named)
 }
 END_TEST
 
-/* Every word of a path has one name. */
+/* Every word of a path has exactly one name. */
 START_TEST(test_field_names)
 {
     FrameParams frame = {.max_depth = 1};
@@ -101,7 +102,7 @@ START_TEST(test_field_names)
 }
 END_TEST
 
-/* A list far longer than any path is compared as far as paths go. */
+/* A list far longer than any path is compared only as far as paths go. */
 START_TEST(test_long_list)
 {
     Error error = {0};

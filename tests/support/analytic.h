@@ -1,18 +1,19 @@
-/* Whole pictures against numbers that do not come from the renderer: closed forms, and integrals computed here in
- * double by the midpoint rule. */
+/* Whole images against numbers that do not come from the renderer: closed forms, and integrals computed here in double
+ * by the midpoint rule. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_ANALYTIC_H
 #define TWINLIGHT_TESTS_SUPPORT_ANALYTIC_H
 
 #include "support/render_fixture.h"
 #include "support/test_util.h"
 
-/* Largest relative error of a rendered number. Samples are chosen such that the standard error is a fifth or less. */
+/* Largest relative error of a rendered number. Numbers of samples are chosen so that the standard error is at most a
+ * fifth of it. */
 #define ANALYTIC_TOLERANCE 0.005
 
 /* An 8 x 8 film, box filter, no lens: every pixel shows nearly the same point. */
 #define ANALYTIC_FILM "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\n"
 
-/* The origin seen from one side, over 0.002 units across the view. */
+/* The origin seen from one side; the view spans 0.002 units. */
 #define ANALYTIC_LOOK_AT_ORIGIN                                                                                        \
     ANALYTIC_FILM "LookAt 8 1 3  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 0.01\nWorldBegin\n"
 
@@ -22,7 +23,7 @@
     "Shape \"bilinearmesh\" \"point3 P\" [ -50 -50 0  50 -50 0  -50 50 0  50 50 0 ]\nAttributeEnd\n"
 
 /* The square [0,1]^2 of the plane z = 0 seen from above on a film of %d x %d, x to the right and y up, by rays through
- * the middles of the pixels. Under the light from overhead the radiance is the reflectance. */
+ * the pixels' centres. With a light straight above of irradiance pi, radiance equals reflectance. */
 #define ANALYTIC_FROM_ABOVE                                                                                            \
     "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\n"                                             \
     "PixelFilter \"box\" \"float xradius\" 1e-4 \"float yradius\" 1e-4\n"                                              \
@@ -33,7 +34,7 @@
 #define ANALYTIC_SQUARE                                                                                                \
     "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 0 ] \"point2 uv\" [ 0 0 1 0 0 1 1 1 ]\n"
 
-/* Renders the text that `format` makes, with paths of up to `depth` segments. */
+/* Renders the scene text given by `format`, with paths of up to `depth` segments. */
 void analytic_picture(RenderedImage *image, unsigned samples, int depth, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -44,27 +45,27 @@ void analytic_color(double mean[3], unsigned samples, int depth, const char *for
 /* The mean over pixels and channels. */
 double analytic_mean(unsigned samples, int depth, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/* Prints a line of the table of cases and fails unless |got - expected| <= tolerance * |expected|, or tolerance where
- * nothing is expected. */
+/* Prints a line of the table of cases and fails unless |got - expected| <= tolerance * |expected|, or <= tolerance if
+ * expected is 0. */
 void analytic_check(const char *name, double got, double expected, double tolerance);
 
-/* A surface (u, v) in [0,1]^2 -> p, and what it sends to the origin: irradiance on the plane z = 0 of radiance 1 that
- * leaves it to the side of dp/du x dp/dv (side = 1), the other (-1) or both (0). Nothing may be between. */
+/* A surface (u, v) in [0,1]^2 -> p, and the irradiance that it gives the plane z = 0 at the origin, for radiance 1
+ * emitted on the side of dp/du x dp/dv (side = 1), the other (-1) or both (0). Without occlusion. */
 typedef void AnalyticSurface(const void *context, double u, double v, double p[3]);
 double analytic_irradiance(AnalyticSurface *surface, const void *context, int side);
 
-/* Irradiance of a flat polygon of radiance 1 on z = 0 at the origin, by Lambert's formula; what is below the horizon is
- * clipped. Both sides count. */
+/* Irradiance from a flat polygon of radiance 1 on z = 0 at the origin, by Lambert's formula; parts below the horizon
+ * are clipped. Both sides emit. */
 double analytic_polygon(const double (*vertices)[3], int count);
 
-/* Dielectric interface, eta = index beyond / index here: reflectance of unpolarised light. */
+/* Reflectance of a dielectric interface for unpolarised light; eta = index beyond / index here. */
 double analytic_fresnel(double cosine, double eta);
 
-/* RGB floats as a PFM file; row 0 on top. */
+/* Writes RGB floats as a PFM file; row 0 is the top. */
 void analytic_write_pfm(const char *path, int width, int height, const float *rgb);
 
-/* A small image of random colours below 0.9 (greys where `grey`), row 0 at v = 1, which is also written to a file, and
- * what it has at (u, v), interpolated; wrap is pbrt's "repeat", "clamp" or "black". */
+/* A small image of random colours below 0.9 (greys if `grey`), row 0 at v = 1, which is also written to a file, and its
+ * bilinear value at (u, v); wrap is pbrt's "repeat", "clamp" or "black". */
 enum {
     ANALYTIC_MAP_WIDTH = 4,
     ANALYTIC_MAP_HEIGHT = 3,
@@ -76,7 +77,7 @@ double analytic_map_at(double u, double v, int channel, const char *wrap);
 
 double analytic_pixel(const RenderedImage *image, int x, int y, int channel);
 
-/* Fails unless every pixel is what is expected where its middle is, (u, v) with v upwards, or but for `tolerance`. */
+/* Fails unless every pixel has the expected value at its centre, (u, v) with v upward, within `tolerance`. */
 typedef double AnalyticValue(const void *context, double u, double v, int channel);
 void analytic_compare(const RenderedImage *image, AnalyticValue *expected, const void *context, double tolerance);
 

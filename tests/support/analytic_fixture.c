@@ -98,7 +98,7 @@ double analytic_irradiance(AnalyticSurface *surface, const void *context, int si
     return sum / ((double)COUNT * COUNT);
 }
 
-/* Sutherland and Hodgman's clipping against z = 0. */
+/* Clipping against z = 0 by Sutherland and Hodgman. */
 static int polygon_clip(const double (*in)[3], int count, double (*out)[3])
 {
     int kept = 0;

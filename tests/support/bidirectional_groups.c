@@ -1,4 +1,4 @@
-/* Pictures in independent groups and what can be said of their means. */
+/* Images in independent groups, and statistics of their means. */
 #include "support/bidirectional.h"
 
 #include "backend_cpu.h"
@@ -10,7 +10,7 @@
 
 typedef struct Renderer {
     const RenderSetup *setup;
-    unsigned layer_depth; /* GroupSetup */
+    unsigned layer_depth; /* as in GroupSetup */
     Scene scene;
     Backend *backend;
     int quantum_exponent;
@@ -74,7 +74,7 @@ void groups_render(const GroupSetup *setup, PictureGroups *picture)
     for (int g = 0; g < setup->groups; ++g) {
         uint64_t seed = setup->render.seed + (uint64_t)g;
         render_once(&renderer, seed, depth, rgb, &picture->sound);
-        if (setup->at_depth && depth > 1) /* the same random numbers: all shorter paths are the same */
+        if (setup->at_depth && depth > 1) /* the same random numbers make the same shorter paths */
             render_once(&renderer, seed, depth - 1, less, &picture->sound);
         for (size_t i = 0; i < 3 * pixels; ++i)
             picture->values[(size_t)g * pixels + i / 3] += ((double)rgb[i] - (double)less[i]) / 3.0;

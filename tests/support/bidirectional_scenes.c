@@ -42,7 +42,8 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.6 0.5 ] \"texture displacement\" \"bumps\"\n" BD_BALL,
      SUPPORT_ALL, 4, 3},
     {"shading normals", BD_ROOM "$ICOSPHERE", SUPPORT_ALL, 5, 3},
-    /* Both normals far apart all over the floor: without the adjoint's factor (2,1) is a few times too bright. */
+    /* Shading and geometric normals differ everywhere on the floor: without the adjoint's correction factor, (2,1) is a
+     * few times too bright. */
     {"tilted normals",
      BD_BEGIN BD_LAMP BD_GREY "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ] \"normal N\" "
                               "[ 0 0.8 -0.6  0 0.8 -0.6  0 0.8 -0.6  0 0.8 -0.6 ]\n" BD_BALL,
@@ -136,7 +137,7 @@ const char *const BIDIRECTIONAL_FILTERS[BIDIRECTIONAL_FILTER_COUNT] = {
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* Red, green and blue of an image of n x n; the values are in low ... high. */
+/* Writes the red, green and blue of an n x n image; values are in low ... high. */
 static void image_write(const char *name, int n, double low, double high, int sun)
 {
     unsigned state = 5;
@@ -176,8 +177,8 @@ void bidirectional_files_remove(void)
     test_folder_remove();
 }
 
-/* An icosahedron of radius 0.9 with the normals of the sphere around it: 20 faces, so that both normals differ by up to
- * 37 degrees. */
+/* An icosahedron of radius 0.9 with the normals of the sphere around it: 20 faces, so that shading and geometric
+ * normals differ by up to 37 degrees. */
 static const char *const ICOSPHERE =
     "Shape \"trianglemesh\" \"integer indices\" [ 0 11 5 0 5 1 0 1 7 0 7 10 0 10 11 1 5 9 5 11 4 11 10 2 10 7 6 7 1 8 "
     "3 9 4 3 4 2 3 2 6 3 6 8 3 8 9 4 9 5 2 4 11 6 2 10 8 6 7 9 8 1 ]\n"

@@ -1,4 +1,4 @@
-/* What the BSDF tests share: a scene that has every feature, BSDFs in it, directions, random numbers. */
+/* Shared by the BSDF tests: a scene that has every feature, BSDFs in it, directions, random numbers. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_BSDF_CASES_H
 #define TWINLIGHT_TESTS_SUPPORT_BSDF_CASES_H
 
@@ -7,7 +7,7 @@
 
 #include "bsdf/bsdf.h"
 
-/* ck_assert for loops of millions: Check writes a record for every assertion that holds. */
+/* ck_assert for loops of millions: Check records every assertion that holds. */
 #define REQUIRE(condition) REQUIRE_MSG(condition, "%s", #condition)
 #define REQUIRE_MSG(condition, ...)                                                                                    \
     do {                                                                                                               \
@@ -43,7 +43,7 @@ static inline double random_double(TestRandom *random)
     return ((double)(random_next(random) >> 11) + 0.5) * 0x1p-53;
 }
 
-/* In [0,1), the 24 bits that a float in [0.5,1) holds. */
+/* In [0,1), on the grid of floats in [0.5,1), of 24 bits. */
 static inline float random_float24(TestRandom *random)
 {
     return (float)(random_next(random) >> 40) * 0x1p-24f;
@@ -73,7 +73,7 @@ static inline void test_scene_destroy(TestScene *scene)
     array_destroy(&scene->lookup);
 }
 
-/* A finished Bsdf with grey colours; a rough coat gets its table. */
+/* A complete Bsdf with grey colours; a rough coat gets its table. */
 static inline Bsdf test_bsdf(TestScene *scene, uint kind, float alpha_x, float alpha_y, float eta, float color0,
                              float color1)
 {
@@ -113,8 +113,8 @@ static const struct TestAlpha {
                    {0.3f, 0.3f},   {1.0f, 1.0f},   {0.05f, 0.4f}};
 #define TEST_ALPHA_COUNT 7
 
-/* Normal, 45, 80, 89.9 degrees, and below the surface. The one at 89.9 degrees lies in the xz plane, where float32
- * directions resolve lobes of 1e-6 radians. */
+/* Along the normal, at 45, 80 and 89.9 degrees, and below the surface. The one at 89.9 degrees lies in the xz plane,
+ * where float32 directions resolve lobes of 1e-6 radians. */
 static inline Vec3 test_wo(int index)
 {
     static const double DEGREES[] = {0.0, 45.0, 80.0, 89.9, 180.0 - 35.0, 180.0 - 70.0};
@@ -123,12 +123,12 @@ static inline Vec3 test_wo(int index)
 }
 #define TEST_WO_COUNT 6
 
-/* Every material with a lobe that is no delta. */
+/* Every material with a non-delta lobe. */
 static const struct TestMaterial {
     const char *name;
     uint kind;
     float eta, color0, color1;
-    int alphas; /* how many of TEST_ALPHAS, from the second on; 1: no roughness, or the delta one */
+    int alphas; /* how many of TEST_ALPHAS, starting at the second; 1: no roughness, or the delta one */
 } TEST_MATERIALS[] = {{"diffuse", MATERIAL_DIFFUSE, 1.0f, 0.5f, 0.0f, 1},
                       {"diffuse transmission", MATERIAL_DIFFUSE_TRANSMISSION, 1.0f, 0.3f, 0.6f, 1},
                       {"smooth coat", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, 1},
@@ -136,6 +136,6 @@ static const struct TestMaterial {
                       {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
                       {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
                       {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
-#define TEST_MATERIAL_COUNT 7
+#define TEST_MATERIAL_COUNT ((int)(sizeof TEST_MATERIALS / sizeof TEST_MATERIALS[0]))
 
 #endif

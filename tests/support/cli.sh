@@ -1,6 +1,6 @@
 # shellcheck shell=sh
-# What the tests of the program from outside share: a folder of their own, counted checks, small renderings. Sourced in
-# the build folder; srcdir is the source folder.
+# Shared by the end-to-end tests: a scratch folder, counted checks, small renderings. Sourced in the build folder;
+# srcdir is the source folder.
 
 build=$(pwd)
 program=$build/twinlight
@@ -22,7 +22,8 @@ result() {
     fi
 }
 
-# expect STATUS TEXT ARGUMENT...: runs the program; it must exit so and say TEXT (on either stream; "" for anything).
+# expect STATUS TEXT ARGUMENT...: runs the program, which must exit with STATUS and print TEXT (on either stream; "":
+# anything).
 expect() {
     expected=$1
     text=$2
@@ -41,12 +42,12 @@ expect() {
     fi
 }
 
-# Puts a program in the background of a script: shells have SIGINT ignored there, which the program respects.
+# Prefix for programs run in the background: shells start those with SIGINT ignored, which the program would respect.
 # shellcheck disable=SC2034 # for who sources this
 with_signals='env --default-signal=INT,HUP,PIPE'
 $with_signals true 2>/dev/null || with_signals=
 
-# A small rendering, by path tracing unless an argument says otherwise.
+# A small rendering, by path tracing unless an argument overrides it.
 render() {
     "$program" render --integrator=pt --resolution=16x12 --samples=1 --threads=2 "$@" >out 2>err
 }
@@ -61,7 +62,7 @@ file_missing() {
     result "file $1 should not be there" $?
 }
 
-# wait_for FILE: until it is there, a minute at most.
+# wait_for FILE: waits until the file exists, at most a minute.
 wait_for() {
     tries=0
     while [ ! -s "$1" ] && [ "$tries" -lt 600 ]; do
@@ -71,7 +72,7 @@ wait_for() {
     file_exists "$1"
 }
 
-# checks_end: says how it went; its status is the script's.
+# checks_end: prints the summary; its status is the script's.
 checks_end() {
     echo "100% of $checks checks run, failures: $failures"
     [ "$failures" -eq 0 ]

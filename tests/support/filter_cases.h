@@ -1,4 +1,4 @@
-/* Pixel filters that tests go through, and a fixture of one. */
+/* The pixel filters under test, and a fixture with one. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_FILTER_CASES_H
 #define TWINLIGHT_TESTS_SUPPORT_FILTER_CASES_H
 
@@ -26,7 +26,7 @@ static const FilterCase FILTER_CASES[FILTER_CASE_COUNT] = {
     [FILTER_SINC] = {"sinc", {.kind = PIXEL_FILTER_SINC, .radius_x = 4.0f, .radius_y = 4.0f, .tau = 3.0f}},
 };
 
-/* To be destroyed by fixture_destroy. */
+/* The caller destroys it by fixture_destroy. */
 static inline void fixture_init_filter(LightFixture *f, const FilterSettings *settings)
 {
     Error error = {0};

@@ -10,7 +10,7 @@
 #include "support/test_matrix.h"
 #include "support/test_util.h"
 
-/* A sequence of numbers from the program's own generator: (seed, n) names a number for ever. */
+/* A sequence from the program's own generator: (seed, next) determines each number. */
 typedef struct TestRandom {
     uint seed, next;
 } TestRandom;
@@ -20,7 +20,7 @@ float random_between(TestRandom *random, float low, float high);
 Vec3 random_direction(TestRandom *random); /* uniform on the sphere */
 uint random_below(TestRandom *random, uint n);
 
-/* A triangle mesh under construction; capacity is fixed. */
+/* A triangle mesh under construction, of fixed capacity. */
 typedef struct TestMesh {
     Vec3 *positions;
     uint *indices;
@@ -35,13 +35,13 @@ void mesh_triangle(TestMesh *mesh, uint a, uint b, uint c);
 /* A closed, star-shaped mesh around (0,0,0): rings x sectors quads of a unit sphere whose radius is scaled by a random
  * factor in [1 - rough, 1 + rough] per vertex. */
 TestMesh mesh_star(uint rings, uint sectors, float rough, uint seed);
-/* Triangles of random place in the unit cube; every edge but the shortest is `length`, the shortest `width`. */
+/* Triangles at random positions in the unit cube; the shortest edge has length `width`, the others `length`. */
 TestMesh mesh_slivers(size_t count, float length, float width, uint seed);
-/* `layers` coincident grids of side x side quads in the plane z = 0, each in its own order, in a closed box. */
+/* `layers` coincident grids of side x side quads in the plane z = 0, each in a different order, in a closed box. */
 TestMesh mesh_coplanar(uint side, uint layers, uint seed);
 void mesh_map(TestMesh *mesh, float scale, Vec3 shift);
 
-/* A finished scene and what a kernel sees of it. */
+/* A finished scene and its view in kernels. */
 typedef struct TestScene {
     Scene scene;
     BackendScene backend;
@@ -51,24 +51,24 @@ typedef struct TestScene {
 void test_scene_init(TestScene *test);
 void test_scene_mesh(TestScene *test, const TestMesh *mesh, uint flags);
 void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const double world_from_object[16]);
-/* Whole and cut spheres and disks, `count` at random places in the unit ball; instances of an object in a larger one,
- * their scales below `size`. Some are mirrored, all stretched. */
+/* Full and clipped spheres and disks, `count` at random positions in the unit ball; instances of an object in a larger
+ * one, with scales below `size`: some mirrored, all stretched. */
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count);
 void test_scene_instances(TestScene *test, TestRandom *random, uint object, uint count, float size);
 void test_scene_finish(TestScene *test);
 void test_scene_destroy(TestScene *test);
 
-/* 4x4, row-major. Rotation about a random axis times scales in [low, high] (negative with even odds when `mirror`),
- * then a shift. */
+/* 4x4, row-major. Rotation about a random axis times scales in [low, high] (negative with probability 1/2 if `mirror`),
+ * then a translation. */
 void matrix_random(TestRandom *random, float low, float high, bool mirror, Vec3 shift, double out[16]);
 
-/* The closest hit by asking every primitive of the world and of every instance. */
+/* The closest hit by testing every primitive of the world and of every instance. */
 Hit brute_force(const TestScene *test, const Ray *ray);
 
-/* triangle_query for a ray that is asked about one triangle only. */
+/* triangle_query for a ray that is tested against a single triangle. */
 bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v);
 
-/* All members have the same bits. */
+/* Whether all members are bitwise equal. */
 bool hit_same(const Hit *a, const Hit *b);
 
 #endif

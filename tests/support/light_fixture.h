@@ -26,7 +26,7 @@ static inline void fixture_destroy(LightFixture *f)
     scene_destroy(&f->scene);
 }
 
-/* After all that the test adds: sets up the lights, and makes the view that kernels would see. */
+/* To be called after everything is added: sets up the lights, and makes the view that kernels would have. */
 static inline void fixture_finish(LightFixture *f)
 {
     Error error = {0};
@@ -36,7 +36,7 @@ static inline void fixture_finish(LightFixture *f)
     s->frame.infinite_light_count = (uint)s->infinite_lights.count;
     f->view = (SceneView){.frame = &s->frame,
                           .guide = &s->guide,
-                          .features = ~0u & ~FEATURE_ALPHA,
+                          .features = ~(uint)FEATURE_ALPHA,
                           .positions = s->positions.data,
                           .normals = s->normals.data,
                           .uvs = s->uvs.data,
@@ -59,7 +59,7 @@ static inline Shape fixture_shape(uint flags)
     return (Shape){.alpha = NONE, .first_light = NONE, .flags = flags};
 }
 
-/* A polygon of 3 (triangle) or 4 vertices (bilinear patch: p00 p10 p01 p11) that emits 1. */
+/* A polygon with 3 (triangle) or 4 vertices (bilinear patch: p00 p10 p01 p11) and radiance 1. */
 static inline void fixture_add_polygon(LightFixture *f, const float *positions, int vertices, const float *normals,
                                        uint shape_flags, uint light_flags)
 {
@@ -77,7 +77,7 @@ static inline void fixture_add_polygon(LightFixture *f, const float *positions, 
     ck_assert_msg(ok, "%s", error.message);
 }
 
-/* A sphere or disk that emits `radiance`. */
+/* A sphere or disk with the given radiance. */
 static inline void fixture_add_quadric(LightFixture *f, uint kind, Quadric quadric, const double matrix[16],
                                        float radiance, uint shape_flags, uint light_flags)
 {
@@ -140,7 +140,7 @@ static inline Vec2 fixture_random(uint stream, uint i)
     return vec2(random_float(r.x[0]), random_float(r.x[1]));
 }
 
-/* Point i of n x n, one in each cell of a grid. */
+/* Point i of n x n, one per cell of a grid. */
 static inline Vec2 fixture_stratified(uint stream, uint i, uint n)
 {
     Vec2 r = fixture_random(stream, i);
@@ -148,7 +148,7 @@ static inline Vec2 fixture_stratified(uint stream, uint i, uint n)
 }
 
 /* Irradiance at `ref` with normal n from one light, by n_samples x n_samples stratified samples of light_sample;
- * *error: one standard error as if they were independent, an upper bound. */
+ * *error: one standard error, computed as if they were independent, which is an upper bound. */
 static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 ref, Vec3 n, uint stream,
                                         uint n_samples, double *error)
 {
@@ -165,7 +165,7 @@ static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 
     return sum / count;
 }
 
-/* Within 3 standard errors and 0.5 %. */
+/* Within 3 standard errors plus 0.5 %. */
 #define ASSERT_IRRADIANCE(f, light, ref, n, expected)                                                                  \
     do {                                                                                                               \
         double error_, e_ = (expected);                                                                                \

@@ -1,10 +1,10 @@
-/* The parts of test_numerics: what floats, rare paths and bad numbers do to pictures (docs/NUMERICS.md). */
+/* The parts of test_numerics: effects of floats, of rare paths and of bad numbers on images (docs/NUMERICS.md). */
 #ifndef TWINLIGHT_TESTS_SUPPORT_NUMERICS_H
 #define TWINLIGHT_TESTS_SUPPORT_NUMERICS_H
 
 #include "support/bidirectional.h"
 
-/* A lit quad of red and one of blue in the same place, the red first, once of triangles and once of patches. */
+/* A lit red quad and a coincident blue one, the red first, once made of triangles and once of patches. */
 #define COINCIDENT_SCENE                                                                                               \
     "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\nPixelFilter \"box\"\n"                        \
     "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 20\nWorldBegin\n"                               \

@@ -15,7 +15,7 @@ struct OpenclProbe {
     char name[256];
 };
 
-/* Same bits need this of a device. */
+/* What a device must have for the same bits. */
 static bool device_suits(cl_device_id device)
 {
     cl_device_fp_config config = 0;
@@ -130,7 +130,7 @@ bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, 
     return ok;
 }
 
-/* ---- buffers that stay ------------------------------------------------------------------------------------------- */
+/* ---- persistent buffers ------------------------------------------------------------------------------------------ */
 
 OpenclBuffer *opencl_buffer_create(OpenclProbe *probe, const uint32_t *words, size_t count)
 {

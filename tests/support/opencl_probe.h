@@ -1,4 +1,4 @@
-/* The smallest OpenCL host that tests need: one CPU device, one program, kernels that take buffers alone. */
+/* The smallest OpenCL host that tests need: one CPU device, one program, kernels whose arguments are all buffers. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_OPENCL_PROBE_H
 #define TWINLIGHT_TESTS_SUPPORT_OPENCL_PROBE_H
 
@@ -9,24 +9,24 @@
 typedef struct OpenclProbe OpenclProbe;
 
 /* Opens the first CPU device that promises correctly rounded division and denormals, and builds `source` with
- * `options`. Returns NULL and says why in `message`; *absent tells whether that is because there is no such device. */
+ * `options`. Returns NULL with the reason in `message`; *absent tells whether there is no such device. */
 OpenclProbe *opencl_probe_open(const char *source, const char *options, char *message, size_t message_size,
                                bool *absent);
 void opencl_probe_close(OpenclProbe *probe);
 const char *opencl_probe_device(const OpenclProbe *probe);
 
-/* Runs kernel `name` (in, table, out) over `items`. Counts are of 32-bit words; `out` is zeroed on the device first. */
+/* Runs kernel `name` (in, table, out) over `items`. Counts are in 32-bit words; `out` is zeroed on the device first. */
 bool opencl_probe_run(OpenclProbe *probe, const char *name, const uint32_t *in, size_t in_words, const uint32_t *table,
                       size_t table_words, uint32_t *out, size_t out_words, size_t items);
 
-/* A buffer on the device, with a copy of `words` (never empty). NULL on failure. */
+/* A buffer on the device, initialised with `words` (never empty). Returns NULL on failure. */
 typedef struct OpenclBuffer OpenclBuffer;
 OpenclBuffer *opencl_buffer_create(OpenclProbe *probe, const uint32_t *words, size_t count);
 void opencl_buffer_destroy(OpenclBuffer *buffer);
 bool opencl_buffer_write(OpenclProbe *probe, OpenclBuffer *buffer, const uint32_t *words, size_t count);
 bool opencl_buffer_read(OpenclProbe *probe, OpenclBuffer *buffer, uint32_t *words, size_t count);
 
-/* Runs kernel `name` over `items` with these arguments; waits for its end and says how long it took. */
+/* Runs kernel `name` over `items` with these arguments, waits for it to finish, and returns the time it took. */
 bool opencl_probe_launch(OpenclProbe *probe, const char *name, OpenclBuffer *const *buffers, size_t count, size_t items,
                          double *seconds);
 

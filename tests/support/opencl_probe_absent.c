@@ -1,4 +1,4 @@
-/* Stands in for support/opencl_probe.c in a build without OpenCL. */
+/* Replaces support/opencl_probe.c in a build without OpenCL. */
 #include "support/opencl_probe.h"
 
 #include <stdio.h>

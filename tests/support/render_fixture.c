@@ -110,7 +110,7 @@ float *fixture_picture_read(const char *path, PictureView *view)
     return rgb;
 }
 
-/* The mean of block (i, j) of grid x grid. */
+/* The mean of block (i, j) of a grid x grid division. */
 static double grid_mean(PictureView picture, int i, int j, int grid)
 {
     int x0 = (int)lrint((double)picture.width * i / grid), x1 = (int)lrint((double)picture.width * (i + 1) / grid);

@@ -36,7 +36,7 @@ static inline void test_folder_remove(void)
     rmdir(test_folder);
 }
 
-/* "FOLDER/NAME", in one of a few buffers that take turns. */
+/* "FOLDER/NAME", in one of a few buffers used in rotation. */
 static inline const char *test_path(const char *name)
 {
     static char paths[8][512];
@@ -48,14 +48,14 @@ static inline const char *test_path(const char *name)
 
 static inline void test_file_write(const char *path, const void *bytes, size_t size)
 {
-    unlink(path); /* file systems flush a file that is emptied and written again, a new one they do not */
+    unlink(path); /* file systems flush a file that is emptied and rewritten, but not a new one */
     FILE *file = fopen(path, "wb");
     ck_assert_ptr_nonnull(file);
     ck_assert_uint_eq(fwrite(bytes, 1, size, file), size);
     fclose(file);
 }
 
-/* All bytes of a file; the caller frees. */
+/* The content of a file; the caller frees it. */
 static inline unsigned char *test_file_read(const char *path, size_t *size)
 {
     FILE *file = fopen(path, "rb");

@@ -1,4 +1,4 @@
-/* The inverse of a matrix that a test writes down. */
+/* Matrix inverse for tests. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_TEST_MATRIX_H
 #define TWINLIGHT_TESTS_SUPPORT_TEST_MATRIX_H
 

@@ -1,4 +1,4 @@
-/* What every Check program needs: its main function, cheap assertions, where files are, and statistics for tests of
+/* Shared by all Check programs: the main function, cheap assertions, file locations, and statistics for tests of
  * sampling. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_TEST_UTIL_H
 #define TWINLIGHT_TESTS_SUPPORT_TEST_UTIL_H
@@ -13,7 +13,7 @@
 /* Check's macros print floats as doubles. */
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 
-/* Runs the suite; the program's exit status is the result. */
+/* Runs the suite; returns the program's exit status. */
 static inline int test_run(Suite *suite)
 {
     SRunner *runner = srunner_create(suite);
@@ -23,7 +23,7 @@ static inline int test_run(Suite *suite)
     return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/* For loops: Check's own assertions record every success in a file, which takes a microsecond each. */
+/* For loops: Check's own assertions write every success to a file, which takes a microsecond each. */
 #define TEST_NEAR(got, expected, tolerance)                                                                            \
     do {                                                                                                               \
         double test_got = (double)(got), test_expected = (double)(expected);                                           \
@@ -36,14 +36,14 @@ static inline int test_run(Suite *suite)
             ck_abort_msg("%s is false", #condition);                                                                   \
     } while (0)
 
-/* The top folder of the sources: make check sets srcdir; by hand, tests run in the build folder below it. */
+/* The top folder of the sources: make check sets srcdir; run by hand, tests are in the build folder below it. */
 static inline const char *test_source_folder(void)
 {
     const char *folder = getenv("srcdir");
     return folder ? folder : "..";
 }
 
-/* $TWINLIGHT_TEST_EFFORT, 1 when it is not set: by how much long tests look longer (make check-long). */
+/* $TWINLIGHT_TEST_EFFORT, or 1: factor for the effort of long tests (make check-long). */
 static inline unsigned test_effort(void)
 {
     const char *text = getenv("TWINLIGHT_TEST_EFFORT");
@@ -51,8 +51,8 @@ static inline unsigned test_effort(void)
     return effort > 0 ? (unsigned)effort : 1;
 }
 
-/* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. False, and a line
- * on standard error, when it is not there. */
+/* path = NAME in the folder of the public scenes, $SCENES or else shared/scenes beside the sources. Returns false, with
+ * a line on standard error, if it does not exist. */
 static inline bool test_public_scene(const char *name, char *path, size_t size)
 {
     const char *folder = getenv("SCENES");
@@ -100,7 +100,7 @@ static inline double test_gamma_q(double a, double x)
 }
 
 /* p-value of Pearson's chi-square test of `observed` counts against `expected` ones. Cells are pooled in order until
- * each pool expects at least 5. Total counts must agree. */
+ * each pool expects at least 5. The totals must agree. */
 static inline double test_chi_square(const double *observed, const double *expected, int cells)
 {
     double statistic = 0.0, pooled_observed = 0.0, pooled_expected = 0.0;

@@ -1,4 +1,4 @@
-/* A scene opened on two backends to be compared word by word, and a backend with a fault. */
+/* A scene opened on two backends for word-by-word comparison, and a backend with a planted fault. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_VERIFY_FIXTURE_H
 #define TWINLIGHT_TESTS_SUPPORT_VERIFY_FIXTURE_H
 
@@ -12,19 +12,19 @@ typedef struct VerifyPair {
     FrameParams frame;
 } VerifyPair;
 
-/* The first setup's scene, depth, seed and integrator on the backends of both. */
+/* Opens the first setup's scene, with its depth, seed and integrator, on the backends of both. */
 void verify_pair_open(const RenderSetup setups[2], VerifyPair *pair);
 void verify_pair_close(VerifyPair *pair);
 
-/* One bit of one word is wrong from the first step of its kind on. */
+/* One bit of one word is wrong from the first step of that kind on. */
 typedef struct Fault {
     StepKind kind;
-    unsigned kernel; /* of STEP_KERNEL */
+    unsigned kernel; /* for STEP_KERNEL */
     BufferId buffer;
     uint field, item;
 } Fault;
 
-/* `of`, but what `inspect` hands over has the fault. One at a time. */
+/* `of`, except that the result of `inspect` has the fault. Only one at a time. */
 BackendInterface fault_backend(const BackendInterface *of, const Fault *fault);
 
 #endif
