@@ -1,9 +1,9 @@
-/* Rays per second of processor time, on path tracing's own rays:
+/* Rays per second of CPU time, on path tracing's own rays:
  *   embree   the query path of the CPU backend,
- *   c        the hierarchy for devices, walked by the shared traversal compiled as C,
+ *   c        the hierarchy for devices, traversed by the shared kernels compiled as C,
  *   opencl   the same on an OpenCL CPU device (one that computes in this process, as PoCL does).
- * Output: one line a scene, kind and path, tab-separated. Every path answers the same rays, step by step of the
- * integrator; answers that differ are counted. Usage: bench_bvh SHARED_FOLDER SCENE.pbrt ... */
+ * Output: one line per scene, kind of ray and path, tab-separated. Every path traces the same rays, step by step of the
+ * integrator; differing results are counted. Usage: bench_bvh SHARED_FOLDER SCENE.pbrt ... */
 #include "backend/bvh.h"
 #include "bench_util.h"
 #include "kernels.h"
@@ -136,7 +136,7 @@ static double trace_device(Bench *bench, bool shadow)
     return seconds;
 }
 
-/* Seconds for all rays of the step by one path. */
+/* CPU seconds for all rays of the step by one path. */
 static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
 {
     if (path == PATH_OPENCL)

@@ -1,11 +1,12 @@
 #!/bin/sh
-# Float against double: the same scenes, seeds and samples by a program of the usual build and by one of --enable-double.
+# Float against double: the same scenes, seeds and samples rendered by the usual build and by one with --enable-double.
 #
-# Of 8 x 8 blocks of pixels, relative: the largest difference of their means, its standard error over the seeds, what is
-# left of the largest when as much as noise explains (p = 0.01 for all blocks together) is taken off, the difference of the
-# whole picture and its standard error, and beside it how far two seeds are apart in their blocks, most of which the same
-# seed takes away: paths are the same but where rounding decides something.
-# SEEDS, SAMPLES, RESOLUTION, DEPTH, INTEGRATORS shorten it. usage: bench_double.sh FLOAT DOUBLE BLOCK_DIFFERENCE SCENE...
+# Columns, from block_difference on 8 x 8 blocks, all relative: the largest difference of block means; its standard
+# error over the seeds; the largest difference less what noise explains (p = 0.01 for all blocks together); the
+# difference of the whole picture and its standard error; and, for comparison, how much block means differ between two
+# seeds. Equal seeds cancel most of that last figure, because paths are the same except where rounding decides.
+# SEEDS, SAMPLES, RESOLUTION, DEPTH and INTEGRATORS shorten it.
+# usage: bench_double.sh FLOAT DOUBLE BLOCK_DIFFERENCE SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -20,7 +21,7 @@ double=$2
 difference=$3
 shift 3
 
-# image PROGRAM INTEGRATOR SEED SCENE FILE
+# image PROGRAM INTEGRATOR SEED SCENE FILE: renders SCENE to FILE
 image() {
     "$1" render --quiet --backend=cpu --integrator="$2" --max-depth="$DEPTH" --resolution="$RESOLUTION" \
         --samples="$SAMPLES" --seed="$3" --no-png --layers=none -o "$5" "$4" 2>/dev/null

@@ -1,16 +1,19 @@
 #!/bin/sh
-# Speed against error of all integrators: one table on standard output (tab separated).
+# Error against time of all integrators: one table on standard output (tab-separated).
 #
-# The error is the variance of a pixel: half the mean square difference of two images with different seeds, which needs
-# no reference and has no floor; relative variance is half of relMSE between the two without its worst thousandth, so that
-# a single bright dot does not decide. Efficiency is 1 / (relative variance x seconds), the median over the budgets; the
-# time to equal error of two integrators has the inverse ratio. `twinlight bench` measures against a reference, which takes
-# longer, and sees what all seeds miss; it draws, too. The next column is the same with the worst thousandth. Both divide by
-# the square of one of the two images: where they are noisy, that exaggerates. So the last two are relMSE, without and with the
-# worst thousandth, mean of the two images, to reference/NAME.exr beside the scene, where there is one of this size (else a
-# minus sign); they have the reference's own error in them.
-# Each integrator renders twice for the last of BUDGETS (ascending); the others are what it had saved by then. A scene takes
-# 8 times the last budget: 64 s. INTEGRATORS: which. usage: bench_error.sh TWINLIGHT SCENE...
+# variance, relative variance: per pixel, from two images with different seeds, which needs no reference and has no
+#   floor. Variance is half their mean squared difference. Relative variance is half the relMSE of one against the other
+#   without the worst thousandth of the pixels, so that a single firefly does not decide; with the worst is the same
+#   with all pixels. relMSE divides by the square of one of the images, which exaggerates where they are noisy.
+# to the reference, with the worst: relMSE against reference/NAME.exr beside the scene, mean of the two images,
+#   without and with the worst thousandth; a minus sign if there is no reference of this size. Includes the reference's
+#   own error.
+# Efficiency is 1 / (relative variance x seconds), median over the budgets; the times to equal error of two integrators
+# have the inverse ratio. `twinlight bench` always measures against a reference: it takes longer, draws charts, and sees
+# light that all seeds miss.
+# Each integrator renders twice for the last of BUDGETS (ascending); the other budgets use what it had saved by then. A
+# scene takes 8 times the last budget: 64 s. INTEGRATORS selects integrators.
+# usage: bench_error.sh TWINLIGHT SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -22,7 +25,7 @@ INTEGRATORS=${INTEGRATORS:-pt ibpt bdpt mmlt}
 twinlight=$1
 shift
 
-# saved_at FILE: when it was written, seconds and their parts.
+# saved_at FILE: when it was written, in seconds with decimals.
 saved_at() {
     date -r "$1" +%s.%N
 }
@@ -32,7 +35,7 @@ render_failed() {
     exit 1
 }
 
-# images INTEGRATOR SEED SCENE: SEED.BUDGET.exr and when it was saved, SEED.BUDGET.time, for all budgets.
+# images INTEGRATOR SEED SCENE: for all budgets SEED.BUDGET.exr and SEED.BUDGET.time, the seconds until it was saved.
 images() {
     last=${BUDGETS##* }
     out=$folder/$2.exr
@@ -49,12 +52,12 @@ images() {
             kill -0 "$process" 2>/dev/null || wait "$process" || render_failed
             sleep 0.1
         done
-        cp -p "$out" "$folder/$2.$budget.exr" # its time is asked of the copy: the next image takes the name any moment
+        cp -p "$out" "$folder/$2.$budget.exr" # take the time of the copy: the next image may replace $out at any moment
         awk "BEGIN { print $(saved_at "$folder/$2.$budget.exr") - $begin }" >"$folder/$2.$budget.time"
     done
 }
 
-# to_reference BUDGET SCENE: "relMSE-without-the-worst relMSE" of both images, their mean.
+# to_reference BUDGET SCENE: "relMSE-without-the-worst relMSE", mean of both images.
 to_reference() {
     reference=$(dirname "$2")/reference/$(basename "$2" .pbrt).exr
     for seed in 1 2; do
@@ -69,8 +72,8 @@ to_reference() {
         ($(number rel_mse "$folder/reference.1.json") + $(number rel_mse "$folder/reference.2.json")) / 2 }"
 }
 
-# variances INTEGRATOR SCENE: a line "seconds samples/s variance relative-variance with-the-worst" and to_reference for each
-# budget.
+# variances INTEGRATOR SCENE: per budget a line "seconds samples/s variance relative-variance with-the-worst", continued
+# by to_reference.
 variances() {
     images "$1" 1 "$2"
     images "$1" 2 "$2"

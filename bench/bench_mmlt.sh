@@ -1,9 +1,12 @@
 #!/bin/sh
-# What sorting chains and grouping their mutations bring (Frolov 2018, tables 1 to 3): mutations per second without
-# either, with one, with both, and with both where chains are sorted by depth alone, of the published scheme and of
-# generations, on the CPU and on the first OpenCL device; then how often proposals of each kind are taken, by depth. Tab
-# separated, on standard output. Figures are medians of RUNS rounds; in a round the ways take turns, so that what else the
-# machine does meets all of them. A gain is the median of the rounds' own, with their quartiles. Only chains count: neither pools nor direct light. usage: bench_mmlt.sh TWINLIGHT SCENE...
+# The effect of sorting chains and of grouping their mutations (Frolov 2018, tables 1 to 3): mutations per second with
+# neither, one or both, and with both when chains are sorted by depth alone; for the published scheme and for
+# generations, on the CPU and on the first OpenCL device. Then acceptance rates by kind of mutation and depth.
+# Tab-separated, on standard output.
+# Rates are medians of RUNS rounds. Variants take turns within a round, so that other load on the machine affects all of
+# them. A gain is the median of the gains of single rounds, with quartiles. Only the chains' time counts, not that of
+# pools or direct light.
+# usage: bench_mmlt.sh TWINLIGHT SCENE...
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -21,7 +24,7 @@ if ! "$twinlight" devices --json | grep -q '"opencl": *\[\]'; then
     backends='cpu opencl'
 fi
 
-# run NAME SCENE OPTION...: renders once, statistics in $folder/NAME.$run.json
+# run NAME SCENE OPTION...: renders once, with statistics in $folder/NAME.$run.json
 run() {
     run_name=$1
     run_scene=$2
@@ -31,7 +34,7 @@ run() {
         --stats="$folder/$run_name.$run.json" "$@" "$run_scene" 2>/dev/null
 }
 
-# rates NAME: mutations per second of chains, a line a round.
+# rates NAME: the chains' mutations per second, a line per round.
 rates() {
     for rates_run in $(seq "$RUNS"); do
         rates_file=$folder/$1.$rates_run.json
@@ -39,7 +42,7 @@ rates() {
     done | awk '{ print $1 / $2 }'
 }
 
-# row: the medians of the five ways, and what each of the last four gains over the first.
+# row: medians of the five variants, and the gains of the last four over the first.
 row() {
     for row_name in neither sorted grouped both depth; do
         rates "$row_name" >"$folder/$row_name.rates"
@@ -63,7 +66,7 @@ printf 'gain of sorting\tgain of grouping\tgain of both\tgain of both, by depth\
 for scene in "$@"; do
     name=$(scene_name "$scene")
     for backend in $backends; do
-        # Kernels are built before anything is timed.
+        # Build the kernels before timing.
         "$twinlight" render --quiet --samples=1 --resolution=16x16 --layers=none --no-png --backend="$backend" \
             -o "$folder/out.exr" "$scene" 2>/dev/null
         for scheme in paper generations; do
@@ -81,7 +84,7 @@ for scene in "$@"; do
             done
             printf '%s\t%s\t%s' "$name" "$backend" "$scheme"
             row
-            # The acceptance of the last run, as the statistics have it: kind, depth, part.
+            # Acceptance rates of the first run with both, from its statistics: kind, depth, fraction.
             [ "$backend" = opencl ] || awk -v head="$name	$scheme" '
                 /"acceptance"/ { found = 1; next }
                 found && /\{/ { gsub(/[":{ ]/, ""); kind = $0; next }

@@ -1,10 +1,9 @@
 #!/bin/sh
-# The OpenCL backend against the CPU's, one table on standard output (tab separated): samples/s with and without overlap
-# of computing, copying and adding to the film, samples/s when the device adds to the film itself (--film=device),
-# samples/s of the CPU, and rays per second inside ray queries of both, where the CPU's time is that of all threads
-# divided by their number. Every figure is the median of RUNS runs; the ways take turns, so that what else the machine
-# does meets all of them.
-# usage: bench_opencl.sh TWINLIGHT [SCENE...]; DEVICE: the device (default 0)
+# The OpenCL backend against the CPU backend, one table on standard output (tab-separated): samples/s with and without
+# overlap of computing, copying and adding to the film; samples/s if the device adds to the film itself (--film=device);
+# samples/s of the CPU; and rays per second within ray queries of both, where the CPU's time is that of all threads
+# divided by their number. Figures are medians of RUNS runs; variants take turns, so that other load on the machine
+# affects all of them. usage: bench_opencl.sh TWINLIGHT [SCENE...]; DEVICE: the device (default 0)
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -16,7 +15,7 @@ DEVICE=${DEVICE:-0}
 twinlight=$1
 shift
 
-# run NAME SCENE OPTION...: renders once, statistics in $folder/NAME.$run.json
+# run NAME SCENE OPTION...: renders once, with statistics in $folder/NAME.$run.json
 run() {
     run_name=$1
     run_scene=$2
@@ -32,7 +31,7 @@ figure() {
     done | median
 }
 
-# rays NAME THREADS: the median of rays per second inside ray queries
+# rays NAME THREADS: the median of rays per second within ray queries
 rays() {
     for file in "$folder/$1".*.json; do
         echo "$(number closest "$file") $(number shadow "$file") $(number seconds_all_threads "$file") $2"
@@ -41,7 +40,7 @@ rays() {
 
 threads=$(nproc)
 head_print
-# All that the driver says of itself; of several devices, that of the one which is measured.
+# The driver's version string, of the device that is measured.
 driver=$("$twinlight" devices --json | awk -F'": ' -v device="$DEVICE" '
     /^  "/ { opencl = /"opencl"/ }
     /"index"/ { found = $2 + 0 "" == device }
@@ -52,7 +51,7 @@ printf 'scene\tdevice\topencl samples/s\twithout overlap\tfilm on device\tcpu sa
 printf 'cpu rays/s\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
-    # The kernels are built before anything is timed.
+    # Build the kernels before timing.
     "$twinlight" render --quiet --integrator=pt --samples=1 --no-png --backend=opencl --device="$DEVICE" -o "$folder/out.exr" "$scene"
     for run in $(seq "$RUNS"); do
         run opencl "$scene" --backend=opencl --device="$DEVICE"
@@ -60,7 +59,7 @@ for scene in "$@"; do
         export TWINLIGHT_OVERLAP
         run turns "$scene" --backend=opencl --device="$DEVICE"
         unset TWINLIGHT_OVERLAP
-        # A device without 64-bit atomics cannot.
+        # Fails on a device without 64-bit atomics.
         run film "$scene" --backend=opencl --device="$DEVICE" --film=device || rm -f "$folder"/film.*.json
         run cpu "$scene" --backend=cpu
     done

@@ -1,9 +1,9 @@
-/* Rays per second, on the same rays by one thread, of
- *   shared   the query path of the CPU backend (clusters of triangles, the shared test),
- *   user     bare Embree user geometry: one primitive a triangle and the least callback (Moeller and Trumbore),
+/* Rays per second of one thread, on the same rays, of
+ *   shared   the query path of the CPU backend (clusters of triangles, the shared intersection test),
+ *   user     bare Embree user geometry: one primitive per triangle and a minimal callback (Moeller and Trumbore),
  *   native   Embree's own triangles.
- * Output: one line a scene, kind and path, tab-separated. `ratio` is time relative to `user`.
- * Usage: bench_rays [RAYS] */
+ * Output: one line per scene, kind of ray and path, tab-separated. `ratio` is time relative to `user`. Usage:
+ * bench_rays [RAYS] */
 #include "backend/backend.h"
 #include "bench_util.h"
 #include "geometry/ray.h"
@@ -37,7 +37,7 @@ static float unit(uint seed, uint n)
     return random_float(random_four(n, seed, 0u, 0u, 1u, 2u).x[0]);
 }
 
-/* A closed bumpy sphere seen from inside. */
+/* A closed bumpy sphere, seen from inside. */
 static void scene_star(BenchScene *bench, uint rings, uint sectors, float rough)
 {
     bench->positions = calloc((size_t)(rings + 1) * sectors, sizeof *bench->positions);
@@ -78,7 +78,7 @@ static void add_box(BenchScene *bench, Vec3 low, Vec3 high)
     }
 }
 
-/* A closed room with two boxes in it: 36 triangles, as many as the Cornell box has. */
+/* A closed room with two boxes: 36 triangles, as many as the Cornell box. */
 static void scene_room(BenchScene *bench)
 {
     bench->positions = calloc(24, sizeof *bench->positions);
@@ -214,7 +214,7 @@ typedef struct RaySet {
     uint *hits;
 } RaySet;
 
-/* Walks of eight diffuse bounces from the middle, and the segment from each vertex to a point under the ceiling. */
+/* Diffuse walks of eight segments from the middle, and a shadow ray from each vertex to a point under the ceiling. */
 static RaySet rays_make(const BenchScene *bench, const RaysEmbree *rays, uint count)
 {
     RaySet set = {.count = (count + STRIDE - 1) / STRIDE * STRIDE};
@@ -286,7 +286,7 @@ static void trace_shadow_bare(RTCScene scene, uint *words)
     }
 }
 
-/* Seconds for the whole set by one path: rays (the shared one) or scene (a bare one). */
+/* Thread CPU seconds for the whole set: by the shared path if `rays` is not NULL, otherwise by the bare `scene`. */
 static double set_trace(const RaySet *set, const RaysEmbree *rays, RTCScene scene, bool shadow)
 {
     double begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);

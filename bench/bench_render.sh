@@ -1,7 +1,7 @@
 #!/bin/sh
-# Path tracing speed, one table on standard output (tab separated): samples/s, rays/s and the share of time inside ray
-# queries for each scene, scaling from one thread to all, and the loading time of a million triangles. Every figure is
-# the median of RUNS runs. usage: bench_render.sh TWINLIGHT MAKE_PLY [SCENE...]
+# Path tracing speed, one table on standard output (tab-separated): samples/s, rays/s and the fraction of time within
+# ray queries for each scene, scaling from one thread to all, and the loading time of a million triangles. Figures are
+# medians of RUNS runs. usage: bench_render.sh TWINLIGHT MAKE_PLY [SCENE...]
 set -eu
 # shellcheck source=bench/bench.sh
 . "$(dirname "$0")/bench.sh"
@@ -14,7 +14,7 @@ make_ply=$2
 shift 2
 cores=$(nproc)
 
-# runs SCENE THREADS: renders RUNS times, statistics in $folder/run.N.json
+# runs SCENE THREADS: renders RUNS times, with statistics in $folder/run.N.json
 runs() {
     run=1
     while [ "$run" -le "$RUNS" ]; do

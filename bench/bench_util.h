@@ -1,4 +1,4 @@
-/* What the programs of `make bench` share. */
+/* Helpers for the programs of `make bench`. */
 #ifndef TWINLIGHT_BENCH_UTIL_H
 #define TWINLIGHT_BENCH_UTIL_H
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* CLOCK_THREAD_CPUTIME_ID, CLOCK_PROCESS_CPUTIME_ID. */
+/* clock: CLOCK_THREAD_CPUTIME_ID or CLOCK_PROCESS_CPUTIME_ID. */
 static inline double bench_seconds(clockid_t clock)
 {
     struct timespec now;

@@ -1,11 +1,13 @@
-/* How far two programs' pictures of the same seeds are apart, in block means, and how much of that is noise.
+/* How far the pictures of two programs, A and B, with the same seeds differ in block means, and how much of that is
+ * noise.
  *
- * usage: block_difference BLOCKS A1.exr B1.exr A2.exr B2.exr ...: pairs of the same seed. With d the difference of a
- * block's mean in one pair, over the mean that all B have there plus 0.01 of the picture's, m the mean of d over the
- * pairs and e its standard error, prints one line:
- *   largest |m| of all blocks, its e, and the largest |m| - T e above zero, T Student's value for p = 0.01 of all blocks
- *   together; the same difference and standard error of the whole picture; the root mean square of d that two seeds of
- *   one program differ by, which the same seed takes away. */
+ * usage: block_difference BLOCKS A1.exr B1.exr A2.exr B2.exr ...: pairs with the same seed. For a block, let d be the
+ * difference of its mean in one pair, relative to its mean over all B plus 0.01 of the picture's mean; m the mean of d
+ * over the pairs; and e the standard error of m. Prints one line:
+ *   the largest |m| of all blocks, and its e;
+ *   the largest |m| - T e, or 0, where T is Student's value for p = 0.01 of all blocks together;
+ *   |m| and e of the whole picture, relative to its mean;
+ *   the root mean square of d between two seeds of B, most of which equal seeds cancel. */
 #include "bench_util.h"
 
 #include "base/student.h"
@@ -17,7 +19,7 @@
 
 #define BLOCKS_MAX 16
 #define PAIRS_MAX 64
-#define PROBABILITY 0.01 /* of all blocks together */
+#define PROBABILITY 0.01 /* of all blocks together (Bonferroni) */
 
 typedef struct Means {
     double value[BLOCKS_MAX * BLOCKS_MAX];
@@ -34,7 +36,7 @@ static void means_read(const char *path, int blocks, Means *means)
     free(rgb);
 }
 
-/* The difference of one block over all pairs, and its standard error; scale: what it is relative to. */
+/* Mean difference of a block over all pairs, relative to `scale`, and its standard error. */
 typedef struct Difference {
     double mean, error;
 } Difference;
@@ -51,7 +53,7 @@ static Difference difference_of(const double *a, const double *b, int pairs, dou
     return d;
 }
 
-/* Mean square difference of two of the values, over scale^2. */
+/* Mean squared difference between two seeds' values, relative to scale^2. */
 static double spread_of(const double *b, int pairs, double mean, double scale)
 {
     double spread = 0.0;

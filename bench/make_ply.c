@@ -1,4 +1,4 @@
-/* Writes a wavy height field of 1,000,000 triangles as a binary PLY: what bench_render.sh times the loading of. */
+/* Writes a wavy height field of 1,000,000 triangles as binary PLY, whose loading bench_render.sh times. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
-# `make bench`: figures of speed, tables on standard output. Not part of `make check`. In order of appearance:
-#   bench_rays       rays/s of the CPU backend against bare Embree, one thread, random meshes
-#   bench_bvh        rays/s of Embree, of the devices' hierarchy walked in C, and of it on OpenCL, on BENCH_SCENES
+# `make bench`: benchmarks, as tables on standard output. Not part of `make check`. In this order:
+#   bench_rays       rays/s of the CPU backend against bare Embree, one thread, generated meshes
+#   bench_bvh        rays/s of Embree, and of the devices' hierarchy traversed in C and in OpenCL, on BENCH_SCENES
 #   bench_render.sh  samples/s and rays/s of the CPU backend on BENCH_SCENES, scaling over threads, loading a big mesh
-#   bench_opencl.sh  samples/s of a device with overlap, without, with its own film, and of the CPU; rays/s of both
-#   bench_mmlt.sh    what sorting and grouping of chains bring, acceptance by depth, on the CPU and the first device
+#   bench_opencl.sh  samples/s of a device with and without overlap, with its own film, and of the CPU; rays/s of both
+#   bench_mmlt.sh    gains of sorting and grouping chains, acceptance rates by depth, on the CPU and the first device
 #   bench_error.sh   variance against time of all integrators on BENCH_SCENES
-# By hand, with a second program from a build with --enable-double:
-#   bench_double.sh  how far pictures of both are apart
-# Each says at its head what its columns are. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE chooses a device.
+# By hand, with a second program built with --enable-double:
+#   bench_double.sh  differences between pictures of both
+# Each explains its columns at its top. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE selects a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
 EXTRA_PROGRAMS += bench/make_ply

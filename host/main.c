@@ -1,5 +1,5 @@
-/* The program `twinlight`: picks the command, prints its error, sets the exit status. The only file that names a
- * backend. */
+/* The program `twinlight`: runs a command, prints its error, and sets the exit status. The only file that names
+ * backends. */
 #include "config.h"
 
 #include "base/build_info.h"
@@ -43,7 +43,7 @@ static const Command COMMANDS[] = {
 
 #define COMMAND_COUNT (int)(sizeof COMMANDS / sizeof COMMANDS[0])
 
-/* Backends that a build may lack, and why this one does. */
+/* Backends missing from this build, and why. */
 static const BackendLeftOut LEFT_OUT[] = {
 #ifndef HAVE_OPENCL
     {"opencl", "it was configured without OpenCL",
@@ -121,7 +121,7 @@ static int command_run(const BackendTable *backends, int argc, char **argv, Erro
     return usage_fail(error, word);
 }
 
-/* Output that did not reach its file (a full disk, a closed pipe) is a failure too. */
+/* Output that did not reach its file (a full disk, a closed pipe) is a failure, too. */
 static int output_close(int status, Error *error)
 {
     bool failed = ferror(stdout) != 0;

@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCKS 16 /* compare/metrics.h wants a number; the report has none of their figures */
+#define BLOCKS 16 /* required by metrics_compute; the report does not use block figures */
 
 typedef struct Analysis {
     const BenchOptions *options;
     BenchScene *scene;
     Rendering reference;
-    float *patch[2]; /* room for a part of an image and of the reference */
+    float *patch[2]; /* a patch of an image and of the reference */
 } Analysis;
 
 /* ---- one image -------------------------------------------------------------------------------------------------- */
@@ -68,7 +68,7 @@ static bool run_belongs(const BenchRun *run, int series, int time)
     return run->finished && run->series == series && run->time == time;
 }
 
-/* Variance of the pixels over the runs, and how far their mean is from the reference. */
+/* Sets the variance of the pixels over the runs, and the error of their mean. */
 static bool group_spread(const Analysis *analysis, const PixelSeries *pixels, BenchGroup *group, Error *error)
 {
     const Rendering *reference = &analysis->reference;
@@ -87,7 +87,7 @@ static bool group_spread(const Analysis *analysis, const PixelSeries *pixels, Be
     return true;
 }
 
-/* Measures every run of the group and gathers its pixels. */
+/* Measures every run of the group and accumulates its pixels. */
 static bool group_measure(Analysis *analysis, int series, int time, PixelSeries *pixels, BenchGroup *group,
                           Error *error)
 {
@@ -108,7 +108,7 @@ static bool group_measure(Analysis *analysis, int series, int time, PixelSeries 
     return group_spread(analysis, pixels, group, error);
 }
 
-/* What is summarised over runs. */
+/* Quantities that are summarised over runs. */
 enum {
     SECONDS,
     SAMPLES,
@@ -139,7 +139,7 @@ static double run_value(const BenchRun *run, int what)
     return what >= FIRST_PATCH ? run->figures.patches[what - FIRST_PATCH] : values[what];
 }
 
-/* A value of every run of a group; returns their number. */
+/* Gathers a quantity of all runs of a group; returns their number. */
 static int values_gather(const BenchScene *scene, int series, int time, int what, double *values)
 {
     int count = 0;
@@ -242,8 +242,8 @@ static bool lines_fit(const BenchOptions *options, BenchScene *scene, Error *err
     return true;
 }
 
-/* When a series has the error `target`, between its medians by a power law; beyond them by the slope of independent
- * samples, -1. */
+/* Time at which a series reaches the error `target`: interpolated between its medians by a power law, extrapolated
+ * beyond them with the slope of independent samples, -1. */
 static double equal_time(const BenchOptions *options, const BenchSeries *series, double target, bool *extrapolated)
 {
     const BenchGroup *before = NULL;
@@ -294,7 +294,8 @@ int bench_common_time(const BenchOptions *options, const BenchScene *scene)
 
 /* ---- the scene -------------------------------------------------------------------------------------------------- */
 
-/* The mean of two independent halves has a quarter of the mean square of their difference as its variance. */
+/* relMSE of the reference itself, from its independent halves: their mean has as variance a quarter of their mean
+ * squared difference. NaN without halves. */
 static double own_error(const Rendering *reference)
 {
     size_t values = 3 * (size_t)reference->width * (size_t)reference->height;

@@ -1,7 +1,7 @@
-/* `twinlight bench`: integrators against time on scenes, as a report.
+/* `twinlight bench`: compares integrators by error against time, in a report.
  *
- * Renderings are made first (bench/renderings.c), each kept as an EXR with a record beside it (bench/record.c), so that
- * what is finished is not done again. Then they are compared with the scene's reference (bench/analysis.c), and the
+ * Renderings are made first (bench/renderings.c). Each is kept as an EXR with a record beside it (bench/record.c), so
+ * that a second call does not repeat it. They are then compared with the scene's reference (bench/analysis.c), and the
  * report is written from the results (bench/report.c, bench/pictures.c, bench/tables.c). */
 #ifndef TWINLIGHT_BENCH_BENCH_H
 #define TWINLIGHT_BENCH_BENCH_H
@@ -28,14 +28,14 @@ typedef struct BenchPatch {
 } BenchPatch;
 
 typedef struct BenchOptions {
-    const Integrator *integrators[BENCH_INTEGRATORS_MAX]; /* the first is what others are measured against */
+    const Integrator *integrators[BENCH_INTEGRATORS_MAX]; /* others are compared with the first */
     int integrator_count;
     double times[BENCH_TIMES_MAX]; /* seconds, ascending */
     int time_count;
-    int runs; /* of every integrator, backend and time */
+    int runs; /* per integrator, backend and time */
     BackendChoices backends[BENCH_BACKENDS_MAX];
     int backend_count;
-    const char *references[BENCH_SCENES_MAX]; /* of the scenes in order; fewer: the others' are made */
+    const char *references[BENCH_SCENES_MAX]; /* in the order of the scenes; missing ones are rendered */
     int reference_count;
     const Integrator *reference_integrator;
     double reference_seconds; /* of both halves together; 0: 8 times the longest of `times` */
@@ -52,78 +52,78 @@ typedef struct BenchOptions {
     int scene_count;
 } BenchOptions;
 
-/* What one rendering did; kept in a file (bench/record.h). */
+/* Statistics of a rendering, kept in a file (bench/record.h). */
 typedef struct BenchRecord {
-    double seconds; /* of rendering */
-    double load, build,
-        write; /* seconds: the scene's, once for all its renderings; its acceleration structure's; the image's */
+    double seconds; /* rendering alone */
+    /* seconds: loading the scene and building its acceleration structure, once for all renderings; writing the image */
+    double load, build, write;
     double samples_per_pixel, ray_seconds;
     uint64_t samples, closest_rays, shadow_rays, threads;
-    uint64_t saturated, not_finite, diagnostics; /* what should be 0 */
+    uint64_t saturated, not_finite, diagnostics; /* should all be 0 */
     char device[256];
     ChainStatistics chains;
 } BenchRecord;
 
-/* How far one rendering is from the reference. */
+/* Error of a rendering against the reference. */
 typedef struct BenchFigures {
     double rel_mse, rel_mse_trimmed, mape, flip, ssim;
     double mean_ratio; /* mean of the image over that of the reference */
-    double patches[BENCH_PATCHES_MAX]; /* relMSE within each */
+    double patches[BENCH_PATCHES_MAX]; /* relMSE of each patch */
 } BenchFigures;
 
 typedef struct BenchRun {
-    int series, time, number; /* of integrator and backend; of BenchOptions.times; which of `runs` */
+    int series, time, number; /* indices: of the series; into BenchOptions.times; among `runs` */
     uint64_t seed;
-    bool finished; /* what follows is there */
+    bool finished; /* the members below are set */
     char image[PATH_MAX]; /* EXR */
     BenchRecord record;
     BenchFigures figures;
 } BenchRun;
 
-/* Of several runs. */
+/* Quantiles over several runs. */
 typedef struct BenchBand {
     double low, median, high; /* 10 %, 50 %, 90 % */
 } BenchBand;
 
-/* The runs of a series with one time. */
+/* All runs of a series with one time. */
 typedef struct BenchGroup {
-    int runs; /* finished */
+    int runs; /* finished ones */
     BenchBand seconds, samples_per_pixel, rel_mse, rel_mse_trimmed, mape, flip, ssim;
     double samples_per_second, rays_per_second; /* medians */
     double mean_ratio, mean_ratio_error; /* mean over the runs, and its standard error (NaN for one run) */
-    double variance; /* relative, of one run: mean over pixels of s^2 / (R^2 + 0.01); NaN for one run */
+    double variance; /* relative, per run: mean over pixels of s^2 / (R^2 + 0.01); NaN for a single run */
     double efficiency; /* 1 / (variance x seconds) */
-    double
-        bias; /* relMSE of the mean of all runs less variance / runs: bias^2 and the reference's error; NaN for one run */
+    /* relMSE of the mean of all runs less variance / runs: bias^2 plus the reference's error; NaN for a single run */
+    double bias;
     double patches[BENCH_PATCHES_MAX]; /* medians of relMSE */
-    const BenchRun *typical; /* the run of median relMSE */
+    const BenchRun *typical; /* the run with the relMSE closest to the median */
 } BenchGroup;
 
-/* An integrator on a backend. */
+/* One integrator on one backend. */
 typedef struct BenchSeries {
     const Integrator *integrator;
     const BackendChoices *backend;
     char name[BENCH_NAME_MAX];
     BenchGroup groups[BENCH_TIMES_MAX];
     SampleLine by_time, by_samples; /* log10 of relMSE against log10 of seconds and of samples, over all runs */
-    double equal_seconds; /* to the first series' error at the longest time; NaN: not known */
-    bool extrapolated; /* beyond what was measured */
+    double equal_seconds; /* to reach the first series' error at the longest common time; NaN: unknown */
+    bool extrapolated; /* equal_seconds is outside the measured times */
     double speedup; /* the first series' seconds over equal_seconds */
 } BenchSeries;
 
-/* What a scene is measured against. */
+/* The reference of a scene. */
 typedef struct BenchReference {
-    char path[PATH_MAX]; /* "": there is none yet */
-    char origin[256]; /* in words */
-    double own_error; /* relMSE that its noise alone makes; NaN: not known */
+    char path[PATH_MAX]; /* "": none yet */
+    char origin[256]; /* description for the report */
+    double own_error; /* relMSE caused by its own noise; NaN: unknown */
 } BenchReference;
 
 typedef struct BenchScene {
     const char *path;
-    char name[BENCH_NAME_MAX]; /* folder and file without its ending, unlike all others' */
+    char name[BENCH_NAME_MAX]; /* folder and file name without its ending; unique */
     int width, height, max_depth;
     size_t primitives, lights;
-    uint64_t key; /* of all that makes its picture */
+    uint64_t key; /* hash of everything its picture depends on */
     BenchReference reference;
     BenchSeries series[BENCH_SERIES_MAX];
     int series_count;
@@ -133,11 +133,11 @@ typedef struct BenchScene {
 
 typedef struct Bench {
     BenchOptions options;
-    char folder[PATH_MAX]; /* of renderings, beside the report */
+    char folder[PATH_MAX]; /* for the renderings, beside the report */
     char command[1024]; /* the command line */
     BenchScene scenes[BENCH_SCENES_MAX];
-    double planned, done; /* seconds that renderings of this call are to take, in all and so far */
-    double spent; /* seconds that those so far have taken */
+    double planned, done; /* nominal seconds of this call's renderings: all, and those done */
+    double spent; /* actual seconds of those done */
     int renderings_planned, renderings_done;
 } Bench;
 

@@ -1,11 +1,11 @@
-/* What Markov chains did, in the report. */
+/* Statistics of Markov chains in the report. */
 #include "bench/html.h"
 #include "bench/report.h"
 #include "render/stats.h"
 
 #include <math.h>
 
-/* What the chains of all runs with one time did together; returns the number of runs that have chains. */
+/* Adds up the statistics of the chains of all runs with one time; returns the number of runs with chains. */
 static int chains_sum(const BenchScene *scene, int series, int time, ChainStatistics *sum)
 {
     int runs = 0;
@@ -38,7 +38,7 @@ static void share_cell(FILE *stream, uint64_t part, uint64_t whole)
                 (unsigned long long)part, (unsigned long long)whole, share);
 }
 
-/* The depths that have chains: [*first, *last]. */
+/* The range of depths that have chains: [*first, *last]. */
 static void depths_find(const ChainStatistics *chains, int *first, int *last)
 {
     *first = CHAIN_DEPTHS;
@@ -102,10 +102,10 @@ static void starts_row(FILE *stream, const ChainStatistics *chains, int first, i
     fputs("</tr>\n", stream);
 }
 
-/* From here on groups of chains do not show the same light: the bound of Gelman and Rubin (1992). */
+/* Above this, groups of chains have not converged to the same light (Gelman and Rubin 1992). */
 #define R_HAT_DOUBTFUL 1.1
 
-/* HTML's number of a figure that is 0 where it is not known. */
+/* r_hat as a cell; 0: unknown. */
 static void r_hat_cell(FILE *stream, double r_hat)
 {
     fputs(r_hat > R_HAT_DOUBTFUL ? "<td class=\"warn\">" : "<td>", stream);

@@ -1,4 +1,4 @@
-/* A scene's tables in the report. */
+/* Tables of a scene in the report. */
 #include "bench/analysis.h"
 #include "bench/html.h"
 #include "bench/report.h"
@@ -9,7 +9,7 @@
 typedef struct Tables {
     const BenchOptions *options;
     const BenchScene *scene;
-    int time; /* of the tables that show one */
+    int time; /* index of the time that tables show */
     FILE *stream;
 } Tables;
 
@@ -42,7 +42,7 @@ static void number_cell(FILE *stream, double value, int digits, bool best)
     fputs("</td>", stream);
 }
 
-/* The median, and below it 10 and 90 % where there are runs that differ. */
+/* The median, and the 10 % and 90 % quantiles below it if there are several runs. */
 static void band_cell(FILE *stream, const BenchBand *band, int runs, bool best)
 {
     fputs(best ? "<td class=\"best\">" : "<td>", stream);
@@ -59,7 +59,7 @@ static void band_cell(FILE *stream, const BenchBand *band, int runs, bool best)
 
 /* ---- error ------------------------------------------------------------------------------------------------------ */
 
-/* The columns that have a best value: an offset into a group, and whether more is better. */
+/* Columns in which the best value is marked: offset in BenchGroup, and whether larger is better. */
 typedef struct Column {
     size_t offset;
     bool more;
@@ -177,7 +177,7 @@ static void variance_table(const Tables *tables)
 
 /* ---- work ------------------------------------------------------------------------------------------------------- */
 
-/* Means over the runs of one time. */
+/* Means over the runs with one time, in seconds. */
 typedef struct Work {
     int runs;
     double load, build, seconds, write, rays, pool, chains, direct;
@@ -208,7 +208,7 @@ static Work work_mean(const Tables *tables, int series)
     return work;
 }
 
-/* What the time of rendering went into. */
+/* How rendering time divides into stages. */
 static void stack_cell(FILE *stream, const Work *work)
 {
     const double chain_parts[] = {work->pool, work->chains, work->direct};

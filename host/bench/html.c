@@ -29,7 +29,7 @@ void html_text(FILE *stream, const char *text)
     }
 }
 
-/* RFC 4648. */
+/* Base64 as in RFC 4648. */
 void html_png(FILE *stream, const unsigned char *bytes, size_t size)
 {
     static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -45,7 +45,7 @@ void html_png(FILE *stream, const unsigned char *bytes, size_t size)
     }
 }
 
-/* The digits of an exponent, raised. */
+/* An exponent in superscript digits. */
 static void superscript(char *text, size_t size, int number)
 {
     static const char *const DIGITS[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",

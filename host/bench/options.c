@@ -77,7 +77,7 @@ typedef struct Parse {
 
 typedef bool (*ItemSetter)(Parse *parse, const char *item, Error *error);
 
-/* Calls `set` for everything between commas. */
+/* Calls `set` for every item between commas. */
 static bool list_set(Parse *parse, const char *option, const char *value, ItemSetter set, Error *error)
 {
     for (const char *at = value;; ++at) {
@@ -265,7 +265,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
-/* One that is not judged by its own picture, where there is one. */
+/* The default reference integrator: one that is not compared itself, if possible. */
 static const Integrator *reference_choose(const BenchOptions *options)
 {
     const Integrator *const candidates[] = {integrator_bdpt(), integrator_mmlt(), integrator_ibpt(), integrator_pt()};
@@ -275,7 +275,7 @@ static const Integrator *reference_choose(const BenchOptions *options)
     return candidates[0];
 }
 
-/* What is meant where nothing is said. */
+/* Fills in defaults. */
 static bool defaults_set(Parse *parse, Error *error)
 {
     BenchOptions *options = parse->options;

@@ -6,7 +6,7 @@
 #include "base/options.h"
 #include "bench/bench.h"
 
-/* Strings are borrowed from argv. */
+/* Parses the command line, with defaults filled in. Strings point into argv. */
 OptionsEnd bench_options_parse(BenchOptions *options, const BackendTable *backends, int argc, char **argv,
                                Error *error);
 

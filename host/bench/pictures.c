@@ -1,5 +1,5 @@
-/* A scene's pictures. Every picture is in the page once, as an image in a store; what is shown are windows on it, so
- * that patches and the full-window viewer cost nothing. */
+/* Pictures of a scene. Each is embedded in the page once, as an image in a store. Everything shown is a window on the
+ * store, so patches and the full-window viewer add no data. */
 #include "bench/analysis.h"
 #include "bench/html.h"
 #include "bench/report.h"
@@ -10,19 +10,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* In the store: number 0 is the reference; of series s, 1 + 3 s is the picture, 2 + 3 s its error and 3 + 3 s FLIP. */
+/* Numbers in the store: 0 is the reference; series s has 1 + 3 s, its picture, 2 + 3 s, its relative error, and 3 + 3
+ * s, its FLIP map. */
 #define PICTURE(series) (1 + 3 * (series))
 #define ERROR(series) (2 + 3 * (series))
 #define FLIP(series) (3 + 3 * (series))
 
 #define LEGEND_WIDTH 512
-#define ROW_MOST 5 /* pictures */
+#define ROW_MOST 5 /* pictures per row */
 
 typedef struct Pictures {
     const Bench *bench;
     const BenchScene *scene;
-    int number; /* of the scene */
-    int time; /* whose runs are shown */
+    int number; /* number of the scene */
+    int time; /* index of the time whose runs are shown */
     FILE *stream;
 } Pictures;
 
@@ -43,7 +44,7 @@ static bool image_store(const Pictures *pictures, int id, const float *rgb, doub
     return true;
 }
 
-/* Where the pictures look different. */
+/* The FLIP map: where the pictures look different. */
 static bool flip_store(const Pictures *pictures, int id, const Rendering *image, const Rendering *reference, float *rgb,
                        Error *error)
 {
@@ -110,7 +111,7 @@ static void patches_mark(const Pictures *pictures)
                     options->patches[i].height);
 }
 
-/* A picture that leads to the viewer. */
+/* A picture that links to its viewer. */
 static void window_write(const Pictures *pictures, int id, const char *kind, bool marked)
 {
     const BenchScene *scene = pictures->scene;
@@ -172,7 +173,7 @@ static bool legends_write(const Pictures *pictures, Error *error)
 
 static bool pictures_write(const Pictures *pictures, Error *error)
 {
-    /* All in a row up to ROW_MOST, else in two rows: none is left alone in its row. */
+    /* One row of up to ROW_MOST pictures, otherwise two rows of about equal length. */
     int count = pictures->scene->series_count + 1, columns = count <= ROW_MOST ? count : (count + 1) / 2;
     fprintf(pictures->stream, "<div class=\"pictures\" style=\"--n:%d\">\n<figure>",
             columns < ROW_MOST ? columns : ROW_MOST);
@@ -245,7 +246,7 @@ static void viewer_link(const Pictures *pictures, int id, int here, const char *
     fprintf(pictures->stream, "%s</a>", suffix);
 }
 
-/* One a picture, all alike: going from one to the next shows what changes. */
+/* One viewer per picture, all with the same layout: switching shows only what differs. */
 static void viewers_write(const Pictures *pictures)
 {
     const BenchScene *scene = pictures->scene;

@@ -17,7 +17,7 @@
 typedef struct Field {
     const char *name;
     size_t offset;
-    bool whole; /* uint64_t, else double */
+    bool whole; /* uint64_t, otherwise double */
 } Field;
 
 #define NUMBER(member)                                                                                                 \
@@ -149,7 +149,7 @@ static void depth_read(ChainStatistics *chains, const char *value)
     chains->r_hat[depth] = strtod(end, &end);
 }
 
-/* One line; returns whether it is the last. */
+/* Reads a line; returns whether it is the end mark. */
 static bool line_read(BenchRecord *record, char *line)
 {
     char *value = strchr(line, ' ');

@@ -16,7 +16,7 @@
 
 /* ---- the scene -------------------------------------------------------------------------------------------------- */
 
-/* The same limit for all, so that all make the same picture. */
+/* The depth that all integrators support, so that all render the same picture. */
 static int depth_common(const BenchOptions *options, int wanted)
 {
     int depth = wanted;
@@ -28,7 +28,7 @@ static int depth_common(const BenchOptions *options, int wanted)
     return depth;
 }
 
-/* Everything that the picture depends on: what the kernels read, and how the film is made of it. */
+/* A hash of everything the picture depends on: the kernels' data, and how the film becomes an image. */
 static uint64_t scene_key(const Scene *scene, int max_depth)
 {
     const BackendScene view = scene_backend_view(scene);
@@ -82,7 +82,7 @@ static bool scene_prepare(BenchWorkshop *shop, Error *error)
 
 /* ---- the reference ---------------------------------------------------------------------------------------------- */
 
-/* The reference is the mean of both, and keeps them as its halves. */
+/* Writes the reference: the mean of two renderings, which it keeps as its halves. */
 static bool halves_join(const BenchScene *scene, const char paths[2][PATH_MAX], Error *error)
 {
     Rendering halves[2] = {{0}, {0}};
@@ -155,8 +155,8 @@ static void series_fill(const BenchOptions *options, BenchScene *scene)
     }
 }
 
-/* One run of everything, then the next: what a signal leaves is a whole picture with fewer runs. Backends one after the
- * other, for each has to be opened. */
+/* Makes one run of everything, then the next, so that a signal leaves a complete comparison with fewer runs. Backends
+ * come one after the other, since each must be opened. */
 static bool runs_make(BenchWorkshop *shop, Error *error)
 {
     const BenchOptions *options = &shop->bench->options;
@@ -181,7 +181,8 @@ static bool runs_make(BenchWorkshop *shop, Error *error)
     return true;
 }
 
-/* "veach-bidir/scene": many files are called scene. With a number behind it when another scene has that. */
+/* Names the scene after folder and file, for example "veach-bidir/scene" (many files are called scene), with a number
+ * appended if another scene has that name. */
 static void scene_name(Bench *bench, BenchScene *scene)
 {
     const char *name = path_file_name(scene->path);
@@ -209,7 +210,7 @@ double bench_scene_seconds(const BenchOptions *options, bool has_reference, int 
     return seconds;
 }
 
-/* A reference that is given: of the film's size, said before hours of rendering. */
+/* Uses a given reference; its size is checked now, before hours of rendering. */
 static bool reference_take(BenchScene *scene, const char *path, Error *error)
 {
     BenchReference *reference = &scene->reference;

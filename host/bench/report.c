@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <time.h>
 
-#define LATE 1.5 /* times the time wanted, from which on the report says so */
+#define LATE 1.5 /* the report warns if a rendering took this many times its time */
 
 /* ---- the head --------------------------------------------------------------------------------------------------- */
 
@@ -36,7 +36,7 @@ static int runs_wanted(const BenchOptions *options)
            options->runs;
 }
 
-/* What the first run of every backend says of its device. */
+/* The device of each backend, as reported by its first run. */
 static void devices_write(const Bench *bench, FILE *stream)
 {
     const BenchScene *scene = &bench->scenes[0];
@@ -111,7 +111,7 @@ static void summary_row(const Bench *bench, int number, FILE *stream)
     fputs("</tr>\n", stream);
 }
 
-/* Geometric means over the scenes that have them. */
+/* Geometric means over the scenes with known speed-ups. */
 static void summary_mean(const Bench *bench, FILE *stream)
 {
     fputs("<tr><td><b>geometric mean</b></td>", stream);
@@ -159,11 +159,11 @@ static void summary_write(const Bench *bench, FILE *stream)
 
 /* ---- charts ----------------------------------------------------------------------------------------------------- */
 
-/* One chart: what is across and up, as offsets of BenchBands in a group, and which fit its names have behind them. */
+/* A chart: the offsets in BenchGroup of the BenchBands on its axes, and the fit to note beside each name. */
 typedef struct ChartKind {
     const char *title, *x_label, *y_label;
     size_t x, y;
-    size_t fit; /* offset of a SampleLine in a series; 0: none */
+    size_t fit; /* offset in BenchSeries of a SampleLine; 0: none */
 } ChartKind;
 
 static const ChartKind CHARTS[] = {
@@ -248,7 +248,7 @@ static void scene_facts(const Bench *bench, const BenchScene *scene, FILE *strea
     fputs("</dd>\n</dl>\n", stream);
 }
 
-/* Fewer words about what should not have happened when it has not. */
+/* Warns of problems counted in the runs, if there are any. */
 static void scene_warnings(const BenchScene *scene, FILE *stream)
 {
     unsigned long long saturated = 0, not_finite = 0, diagnostics = 0;
@@ -264,7 +264,7 @@ static void scene_warnings(const BenchScene *scene, FILE *stream)
                 saturated, not_finite, diagnostics);
 }
 
-/* Integrators that took much longer than they were told to. */
+/* Warns of integrators that took much longer than asked. */
 static void scene_late(const BenchOptions *options, const BenchScene *scene, FILE *stream)
 {
     int time = bench_common_time(options, scene);

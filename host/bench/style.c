@@ -37,7 +37,7 @@ const char BENCH_STYLE[] =
     ".chart .name{font-weight:600;fill:currentColor}.chart .note{font-weight:400;fill:var(--soft)}\n"
     ".s0{color:var(--s0)}.s1{color:var(--s1)}.s2{color:var(--s2)}.s3{color:var(--s3)}"
     ".s4{color:var(--s4)}.s5{color:var(--s5)}.s6{color:var(--s6)}.s7{color:var(--s7)}\n"
-    /* Shadows at the sides where there is more to scroll to. */
+    /* shadows at the sides show that there is more to scroll to */
     ".wide{overflow-x:auto;background:linear-gradient(to right,var(--panel) 30%,transparent) left/40px 100% no-repeat "
     "local,"
     "linear-gradient(to left,var(--panel) 30%,transparent) right/40px 100% no-repeat local,"

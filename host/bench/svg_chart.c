@@ -10,14 +10,14 @@
 #define HEIGHT 380.0
 #define LEFT 64.0
 #define RIGHT_MIN 60.0
-#define CHARACTER 7.4 /* width of one in a name, about */
+#define CHARACTER 7.4 /* approximate width of a character in a name */
 #define TOP 34.0
 #define BOTTOM 48.0
 #define LABEL_STEP 16.0
 #define LABELS_MAX 64
-#define NUMBERS_LEAST 3 /* on an axis */
+#define NUMBERS_LEAST 3 /* fewer on an axis: evenly spaced lines instead */
 
-/* An axis in log10 and where it lies on the paper. */
+/* An axis: its range in log10, and its ends on the page. */
 typedef struct Axis {
     double low, high;
     double from, to;
@@ -36,7 +36,7 @@ static void axis_include(Axis *axis, double value)
     axis->high = fmax(axis->high, log10(value));
 }
 
-/* A little room on both sides; half a decade when there is but one value. */
+/* Adds a margin on both sides, at least a quarter of a decade each if the range is less than a tenth of one. */
 static void axis_finish(Axis *axis)
 {
     if (!(axis->low <= axis->high))
@@ -46,7 +46,7 @@ static void axis_finish(Axis *axis)
     axis->high += margin;
 }
 
-/* Whether a line at `step` times a power of ten has a number, on an axis of so many decades. */
+/* Whether the grid line at `step` times a power of ten has a number, on an axis of this many decades. */
 static bool step_has_number(int step, double decades)
 {
     if (step == 1)
@@ -56,7 +56,7 @@ static bool step_has_number(int step, double decades)
     return step == 2 || step == 5 || (decades < 0.9 && (step == 3 || step == 4 || step == 7));
 }
 
-/* digits: of the number beside it; 0: none. */
+/* digits: of its number; 0: no number. */
 static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical, bool fine, double value, int digits)
 {
     double at = place(vertical ? y : x, value);
@@ -70,8 +70,8 @@ static void grid_line(FILE *stream, const Axis *x, const Axis *y, bool vertical,
             vertical ? x->from - 7.0 : at, vertical ? at + 4.0 : y->from + 17.0, vertical ? "end" : "middle", text);
 }
 
-/* Lines at powers of ten and between them, fewer where there are many decades. Returns how many have numbers; draws
- * none where `stream` is NULL. */
+/* Draws grid lines at and between powers of ten, fewer on axes of many decades; draws nothing if `stream` is NULL.
+ * Returns how many have numbers. */
 static int grid_decades(FILE *stream, const Axis *x, const Axis *y, bool vertical)
 {
     const Axis *axis = vertical ? y : x;
@@ -91,7 +91,7 @@ static int grid_decades(FILE *stream, const Axis *x, const Axis *y, bool vertica
     return numbers;
 }
 
-/* About four lines at round values, evenly apart: for an axis of a small part of a decade. */
+/* Draws about four evenly spaced lines at round values, for an axis of a fraction of a decade. */
 static void grid_even(FILE *stream, const Axis *x, const Axis *y, bool vertical)
 {
     const Axis *axis = vertical ? y : x;
@@ -113,7 +113,7 @@ static void grid_write(FILE *stream, const Axis *x, const Axis *y)
             grid_decades(stream, x, y, vertical == 1);
 }
 
-/* Shapes differ as well as colours. */
+/* Marks differ in shape as well as colour. */
 static void mark_write(FILE *stream, int style, double x, double y)
 {
     switch (style % 4) {
@@ -183,7 +183,7 @@ static int label_compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Names beside the ends of their lines, pushed apart. */
+/* Names beside the ends of their lines, moved apart so as not to overlap. */
 static void labels_write(FILE *stream, const Chart *chart, const Axis *x, const Axis *y)
 {
     Label labels[LABELS_MAX] = {{NULL, 0.0}};
@@ -209,7 +209,7 @@ static void labels_write(FILE *stream, const Chart *chart, const Axis *x, const 
     }
 }
 
-/* Room for the longest name and its note. */
+/* Space for the longest name and its note. */
 static double right_margin(const Chart *chart)
 {
     size_t longest = 0;

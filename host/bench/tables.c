@@ -7,11 +7,11 @@
 #include <inttypes.h>
 #include <math.h>
 
-#define FORMAT 1 /* of the JSON: raised when a key changes its meaning */
+#define FORMAT 1 /* of the JSON; raised when a key changes its meaning */
 
 /* ---- a line a run ----------------------------------------------------------------------------------------------- */
 
-/* Tabs and line ends would break the table. */
+/* Replaces tabs and newlines, which would break the table. */
 static void tsv_text(FILE *stream, const char *text)
 {
     for (; *text; ++text)

@@ -69,7 +69,7 @@ static bool backend_open(BenchWorkshop *shop, const BackendChoices *choices, Err
     return true;
 }
 
-/* Counters of a backend go on from one rendering to the next. */
+/* Counters of a backend, which accumulate over renderings. */
 typedef struct Counters {
     BackendStatistics statistics;
     uint64_t diagnostics;
@@ -138,7 +138,7 @@ static void task_progress(void *context, const RenderProgress *progress)
     progress_update(context, progress);
 }
 
-/* Renders; *finished becomes false when a signal has cut it short, and nothing is written then. */
+/* Renders. If a signal cuts it short, *finished is set to false and nothing is written. */
 static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *path, BenchRecord *record,
                         bool *finished, Error *error)
 {
@@ -150,7 +150,7 @@ static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *
     RenderResult result;
     Film film = {0};
     progress_init(&progress, stderr, shop->bench->options.quiet);
-    progress.last_shown = HUGE_VAL; /* without a terminal, a line a rendering is enough */
+    progress.last_shown = HUGE_VAL; /* without a terminal, one line per rendering is enough */
     const Counters before = counters_read(shop);
     bool good = film_init(&film, settings->width, settings->height, settings->crop, error) &&
                 render_film(task->integrator, &shop->data, shop->backend.interface, shop->backend.backend, &options,
@@ -176,7 +176,7 @@ bool bench_task_run(BenchWorkshop *shop, const BenchTask *task, const char *path
         bench->planned -= task->seconds;
     if (*finished || *interrupt_flag())
         return true;
-    /* What was made so far may have taken longer than it was told to: a first sample is finished. */
+    /* Renderings may take longer than asked, since each finishes its first sample: scale the estimate. */
     double stretch = bench->done > 0.0 ? bench->spent / bench->done : 1.0, start = timing_now();
     progress_time(fmax(bench->planned - bench->done, 0.0) * stretch, left, sizeof left);
     log_message(LOG_INFO, "%d of %d, %s left: %s, %s on %s for %g s, %s", bench->renderings_done,

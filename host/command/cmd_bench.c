@@ -1,4 +1,4 @@
-/* `twinlight bench`: renderings, then figures, then the report. */
+/* `twinlight bench`: renderings, figures, report. */
 #include "command/command.h"
 
 #include "base/interrupt.h"
@@ -18,14 +18,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The report's name with another ending. */
+/* The report's path with another ending. */
 static void sibling(const Bench *bench, const char *ending, char path[PATH_MAX])
 {
     const char *output = bench->options.output;
     snprintf(path, PATH_MAX, "%.*s%s", (int)(strlen(output) - strlen(".html")), output, ending);
 }
 
-/* Page and tables can be written, and are neither scenes nor references. */
+/* Checks that page and tables can be written and are neither scenes nor references. */
 static bool outputs_check(const Bench *bench, Error *error)
 {
     const BenchOptions *options = &bench->options;
@@ -52,7 +52,7 @@ static bool folder_make(Bench *bench, Error *error)
     return mkdir(bench->folder, 0777) == 0 || errno == EEXIST || error_errno(error, "make the folder", bench->folder);
 }
 
-/* What the last scene needs is looked for before the first is rendered. */
+/* Checks that all input files are readable before the first scene is rendered. */
 static bool inputs_check(const BenchOptions *options, Error *error)
 {
     for (int i = 0; i < options->scene_count; ++i)
@@ -74,7 +74,7 @@ static void plan(Bench *bench)
     }
 }
 
-/* Every scene's renderings and figures, until a signal or a failure. */
+/* Renders and analyses the scenes, until a signal or a failure. */
 static bool scenes_run(Bench *bench, Error *error)
 {
     const BenchOptions *options = &bench->options;
@@ -84,7 +84,7 @@ static bool scenes_run(Bench *bench, Error *error)
         bool rendered = bench_scene_render(bench, scene, options->scenes[i], reference, error);
         Error unread = {0};
         if (!bench_scene_analyse(options, scene, &unread)) {
-            scene->run_count = 0; /* nothing can be said of it */
+            scene->run_count = 0; /* it has no figures: leave it out of the report */
             if (rendered)
                 *error = unread;
             return false;
@@ -157,7 +157,7 @@ static int bench_run(Bench *bench, Error *error)
     plan(bench);
     Error late = {0};
     bool done = scenes_run(bench, error);
-    /* A failure leaves a report of what was finished before it. */
+    /* Even after a failure, report what was finished. */
     bool any = false;
     for (int i = 0; i < bench->options.scene_count; ++i)
         any = any || bench->scenes[i].run_count > 0;
@@ -174,7 +174,7 @@ int cmd_bench(const BackendTable *backends, int argc, char **argv, Error *error)
         error_memory(error, sizeof *bench, "the report");
         return EXIT_FAILED;
     }
-    command_line(bench, argc, argv); /* parsing moves the operands to the end */
+    command_line(bench, argc, argv); /* before parsing, which moves the operands to the end */
     OptionsEnd end = bench_options_parse(&bench->options, backends, argc, argv, error);
     int status = options_status(end);
     if (end == OPTIONS_READ) {

@@ -15,8 +15,8 @@
 typedef struct CompareCommand {
     bool json;
     int blocks;
-    const char *output; /* error image, NULL: none */
-    const char *side_by_side; /* PNG, NULL: none */
+    const char *output; /* error image; NULL: none */
+    const char *side_by_side; /* PNG; NULL: none */
     DisplaySettings display;
 } CompareCommand;
 

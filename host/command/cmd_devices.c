@@ -1,4 +1,4 @@
-/* `twinlight devices`: what can be rendered on. */
+/* `twinlight devices`: the backends and their devices. */
 #include "command/command.h"
 
 #include "base/json.h"

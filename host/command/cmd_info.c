@@ -1,4 +1,4 @@
-/* `twinlight info`: what a scene holds. */
+/* `twinlight info`: a summary of a scene. */
 #include "command/command.h"
 
 #include "base/json.h"

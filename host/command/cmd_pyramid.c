@@ -1,5 +1,5 @@
-/* `twinlight pyramid`: what every bidirectional strategy brings to the picture, on one sheet (Veach 1997, figure 10.4).
- * Row d holds the paths of d segments, column s those with s vertices from the light. */
+/* `twinlight pyramid`: the contribution of every bidirectional strategy, on one sheet (Veach 1997, figure 10.4). Row d
+ * has the paths of d segments, column s those with s vertices from the light. */
 #include "command/command.h"
 
 #include "base/interrupt.h"
@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* More rows would not be seen on a screen. */
+/* more rows would be too small on a screen */
 #define PYRAMID_DEPTH_MAX 12
 #define PYRAMID_DEPTH 5
 #define PYRAMID_SAMPLES 16
@@ -64,7 +64,7 @@ static bool scene_load(const RenderCommand *command, Scene *scene, Error *error)
     return scene_film_set(scene, width, height, crop, error);
 }
 
-/* The strategy (s, t) alone, into rgb. */
+/* Renders strategy (s, t) alone into rgb. */
 static bool strategy_render(const RenderCommand *command, const Scene *scene, const BackendMember *backend, unsigned s,
                             unsigned t, float *rgb, Error *error)
 {
@@ -102,7 +102,7 @@ static bool sheet_fill(const RenderCommand *command, const Scene *scene, const B
             int brighter = 1 << (depth - 2);
             done = strategy_render(command, scene, backend, s, depth + 1 - s, rgb, error);
             snprintf(text, sizeof text, s == 0 ? "s=%u,t=%u x%d" : "s=%u,t=%u", s, depth + 1 - s, brighter);
-            if (done && !*interrupt_flag()) /* else it may be a part of a picture */
+            if (done && !*interrupt_flag()) /* otherwise it may be unfinished */
                 contact_sheet_put(sheet, (int)s, (int)depth - 2, rgb, (float)brighter, text);
         }
         log_message(LOG_INFO, "paths of %u segments are done", depth);

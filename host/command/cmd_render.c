@@ -1,4 +1,4 @@
-/* `twinlight render`: scene in, picture out. */
+/* `twinlight render`: from a scene to an image. */
 #include "command/command.h"
 
 #include "backend/trace_output.h"
@@ -40,7 +40,7 @@ static const RenderOptionSet OPTIONS = {
 /* One rendering from command line to files. */
 typedef struct RenderJob {
     RenderCommand *command;
-    Arena names; /* of files, with the frame's number */
+    Arena names; /* file names with the frame number filled in */
     const Integrator *integrator;
     Scene scene;
     Film film;
@@ -49,8 +49,8 @@ typedef struct RenderJob {
     BackendMember backend;
     RenderOutput output;
     Progress progress;
-    uint64_t samples_done; /* paths, at the latest progress */
-    bool left; /* the files are as they were: nothing was rendered */
+    uint64_t samples_done; /* at the latest progress report (RenderProgress.samples) */
+    bool left; /* no sample was rendered, and existing files were left alone */
     bool frame_used; /* a file name has the frame's number */
     RenderResult result;
     double load, build, rendering, write; /* seconds */
@@ -68,7 +68,7 @@ static bool frame_check(const RenderJob *job, Error *error)
     return error_fix(error, "write it as %%04d, as in -o frame.%%04d.exr");
 }
 
-/* Puts the frame's number into the names of the command line. */
+/* Fills the frame number into file names from the command line. */
 static bool names_fill(RenderJob *job, Error *error)
 {
     RenderCommand *command = job->command;
@@ -88,7 +88,8 @@ static bool names_fill(RenderJob *job, Error *error)
     return !command->output || frame_check(job, error);
 }
 
-/* The image's name: the command line's, or the scene's Film's, which may have a place for the frame too. */
+/* The image's name: from the command line or the scene's Film, whose name may also have a place for the frame number,
+ * or else after the scene file. */
 static const char *image_name(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -272,7 +273,7 @@ static bool trace_output(const RenderJob *job, Error *error)
 
 /* ---- the whole job ---------------------------------------------------------------------------------------------- */
 
-/* Runs one stage and adds its wall-clock time to *seconds. */
+/* Runs a stage and adds its wall-clock time to *seconds. */
 static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, double *seconds, Error *error)
 {
     double start = timing_now();
@@ -281,7 +282,7 @@ static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, doubl
     return done;
 }
 
-/* Nothing replaces a picture that is there by an empty one. */
+/* Writes the image, but does not replace an existing one if there is no sample. */
 static bool film_write(RenderJob *job, Error *error)
 {
     job->left = job->result.samples == 0 && access(job->output.exr, F_OK) == 0;
@@ -292,7 +293,7 @@ static bool film_write(RenderJob *job, Error *error)
     return written;
 }
 
-/* A rendering that failed on its way has an image all the same, of the samples that were finished. */
+/* After a failed rendering: writes an image of the samples that were finished, and says so in the error. */
 static void film_rescue(RenderJob *job, Error *error)
 {
     Error failed = {0}, first = *error;
@@ -336,7 +337,7 @@ static int job_run(RenderJob *job, Error *error)
     if (!names_fill(job, error))
         return EXIT_USAGE;
     if (command->output && !output_check(command->output, error))
-        return EXIT_FAILED; /* before a scene that may take long to load */
+        return EXIT_FAILED; /* checked before loading the scene, which may take long */
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;
     if (!render_settings_apply(command, job->integrator, &job->scene, error))

@@ -1,4 +1,4 @@
-/* The commands of the program: what main hands them and how they end. */
+/* The program's commands: what main passes to them and how they end. */
 #ifndef TWINLIGHT_COMMAND_COMMAND_H
 #define TWINLIGHT_COMMAND_COMMAND_H
 
@@ -6,14 +6,14 @@
 #include "base/exit_status.h"
 #include "base/options.h"
 
-/* The status of a command whose options did not come to OPTIONS_READ. */
+/* The exit status of a command whose options ended in anything but OPTIONS_READ. */
 static inline int options_status(OptionsEnd end)
 {
     return end == OPTIONS_HELPED ? EXIT_OK : EXIT_USAGE;
 }
 
-/* A command gets argv[0] = its own name. It returns an exit status; when that is EXIT_FAILED or EXIT_USAGE, `error`
- * says why, or is empty when the command's own output has. */
+/* A command gets its own name as argv[0] and returns an exit status. On EXIT_FAILED and EXIT_USAGE `error` says why,
+ * unless the command's own output has already. */
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_bench(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);

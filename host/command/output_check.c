@@ -27,7 +27,7 @@ static bool overwrites(Error *error, const CommandFile *file, const char *what, 
     return error_fix(error, "%s", fix);
 }
 
-/* Against files without a name of their own on the command line. Names in /dev lead to standard streams on purpose. */
+/* Checks `file` against files not named on the command line. Paths in /dev may lead to standard streams on purpose. */
 static bool streams_check(const CommandFile *file, const char *fix, Error *error)
 {
     static const char *const STREAMS[] = {"standard input", "standard output", "standard error"};

@@ -67,11 +67,11 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
 typedef struct Parse {
     RenderCommand *command;
     const RenderOptionSet *set;
-    OptionSpec specs[RENDER_OPTION_COUNT]; /* of the set */
+    OptionSpec specs[RENDER_OPTION_COUNT]; /* the set's options, from specs_fill */
     const char *backend; /* --backend; NULL: not given */
 } Parse;
 
-/* The options whose value is a number. */
+/* Options with a numeric value. */
 static bool number_set(const Parse *parse, int option, const char *value, Error *error)
 {
     RenderCommand *command = parse->command;
@@ -143,7 +143,8 @@ static bool scheme_set(ChainOptions *chains, const char *value, Error *error)
     return error_fix(error, "use generations or paper");
 }
 
-/* Names with commas between as bits: name i of `names` as bit i. False when `value` has another, which is *other. */
+/* Parses names separated by commas: name i of `names` sets bit i. Returns false on any other name, with *other pointing
+ * to it. */
 static bool names_set(const char *value, const char *const *names, unsigned count, unsigned *bits, const char **other)
 {
     *bits = 0;
@@ -329,7 +330,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     }
 }
 
-/* --verify makes no picture and takes no time of its own choosing. */
+/* Rejects options that contradict --verify, which renders no picture and has no time limit. */
 static bool verify_alone(const RenderCommand *command, Error *error)
 {
     const char *option = command->output             ? "output"
@@ -349,7 +350,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
     return error_fix(error, "leave --%s out; --samples=N says how much is compared", option);
 }
 
-/* Which backends, once all options are known. */
+/* Chooses the backends, once all options are known. */
 static bool backends_set(RenderCommand *command, const BackendTable *table, const char *backend, Error *error)
 {
     command->reference = table->backends[0];
@@ -372,7 +373,7 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
     return error_fix(error, "add --backend=opencl, or leave --%s out", option);
 }
 
-/* The set's options as a table; returns their number. */
+/* Copies the set's options to `specs`; returns their number. */
 static int specs_fill(const RenderOptionSet *set, OptionSpec *specs)
 {
     if (!set->uses) {

@@ -1,4 +1,4 @@
-/* The command line of `twinlight render`, and of commands that take a part of its options. */
+/* The command line of `twinlight render`, and of commands that take some of its options. */
 #ifndef TWINLIGHT_COMMAND_RENDER_OPTIONS_H
 #define TWINLIGHT_COMMAND_RENDER_OPTIONS_H
 
@@ -7,7 +7,7 @@
 #include "render/layers.h"
 #include "render/render.h"
 
-/* Strings are borrowed from argv. */
+/* Parsed options. Strings point into argv. */
 typedef struct RenderCommand {
     const char *scene;
     const char *output; /* ends in .exr */
@@ -22,13 +22,13 @@ typedef struct RenderCommand {
     unsigned layers; /* LAYER_BIT (render/layers.h) */
     bool has_layers; /* --layers was given */
     double despeckle; /* threshold; 0: no such layer */
-    const char *dump_bad; /* file of chains that met something not finite; NULL: none */
-    bool memory; /* print what chains take, instead of rendering */
-    const char *chain_option; /* the last one given; NULL: none */
-    BackendChoices backends; /* at least one */
-    bool verify; /* compare them with `reference` instead of rendering */
+    const char *dump_bad; /* file for chains that met non-finite contributions; NULL: none */
+    bool memory; /* print the chains' memory instead of rendering */
+    const char *chain_option; /* the last option of Markov chains that was given; NULL: none */
+    BackendChoices backends; /* one or more */
+    bool verify; /* compare them bit by bit with `reference`, instead of rendering */
     const BackendInterface *reference;
-    const char *device; /* as given: items of `backends` have their own */
+    const char *device; /* as given; parsed into `backends` */
     unsigned batch;
     const char *film; /* "host" or "device" */
     uint64_t samples;
@@ -41,7 +41,7 @@ typedef struct RenderCommand {
     int crop[4];
     double save_every;
     const char *stats; /* "-": standard output */
-    int frame; /* for names with a place for it (base/frame_name.h); -1: not given */
+    int frame; /* number for file names (base/frame_name.h); -1: not given */
     const char *trace;
     bool lenient;
     bool quiet;
@@ -93,21 +93,21 @@ typedef enum RenderOption {
     RENDER_OPTION_COUNT
 } RenderOption;
 
-/* An option as a command has it. */
+/* An option of a command other than render. */
 typedef struct RenderOptionUse {
     RenderOption option;
-    const char *argument, *help; /* of OptionSpec; NULL: render's */
+    const char *argument, *help; /* replace those of OptionSpec; NULL: render's */
 } RenderOptionUse;
 
 typedef struct RenderOptionSet {
-    const char *command, *usage, *summary, *footer; /* of OptionTable */
-    const RenderOptionUse *uses; /* NULL: all options are taken as render has them */
+    const char *command, *usage, *summary, *footer; /* as in OptionTable */
+    const RenderOptionUse *uses; /* NULL: all of render's options */
     int use_count;
-    const char *output_ending; /* of --output's value */
-    uint64_t depth_low, depth_high; /* of --max-depth */
+    const char *output_ending; /* required of --output */
+    uint64_t depth_low, depth_high; /* allowed range of --max-depth */
 } RenderOptionSet;
 
-/* Fills in what is given; `command` holds what is meant where nothing is. */
+/* Parses the command line into `command`, which must hold the defaults. `error` says what is wrong on OPTIONS_WRONG. */
 OptionsEnd render_options_parse(RenderCommand *command, const RenderOptionSet *set, const BackendTable *backends,
                                 int argc, char **argv, Error *error);
 

@@ -10,8 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* target = `path` with its ending (if it has one) replaced by `ending`; as it is when it ends so already, in any
- * case. */
+/* target = `path`, its ending (if any) replaced by `ending`; unchanged if it already ends so, in any case. */
 static bool path_with_ending(char target[PATH_MAX], const char *path, const char *ending, Error *error)
 {
     const char *name = path_file_name(path);
@@ -47,14 +46,14 @@ void render_output_release(RenderOutput *output)
     picture_memory_destroy(&output->memory);
 }
 
-/* A picture on its way to one file. */
+/* A picture while it is written to a file. */
 typedef struct Writing {
     const RenderOutput *output;
     const char *path;
     Picture picture;
 } Writing;
 
-/* Row y is about to be made. */
+/* Reports progress before row y is resolved. */
 static void writing_report(const Writing *writing, int y)
 {
     const RenderOutput *output = writing->output;
@@ -80,7 +79,7 @@ static bool exr_output_write(Writing *writing, const Film *film, double samples_
 {
     const RenderOutput *output = writing->output;
     const RenderLayers *layers = output->picture.layers;
-    /* Nothing of time, machine or threads: the same picture is the same file. */
+    /* No time, machine or thread count: equal pictures make equal files. */
     const ExrAttribute attributes[] = {
         exr_text("integrator", output->integrator),
         exr_whole("maxDepth", (uint64_t)output->max_depth),
@@ -92,7 +91,7 @@ static bool exr_output_write(Writing *writing, const Film *film, double samples_
         exr_matrix("worldToNDC", output->world_to_ndc),
         exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world"),
     };
-    /* The last one is for a layer that may not be there. */
+    /* The last attribute only goes with the layer "depth". */
     bool depth = layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
     ExrPicture picture = {.channels = writing->picture.channels,
                           .channel_count = writing->picture.channel_count,

@@ -1,5 +1,5 @@
-/* Where a rendering goes: an OpenEXR image and a PNG beside it, each written to a temporary file that then takes the
- * name, so that a reader never sees half an image. */
+/* The output of a rendering: an OpenEXR image and a PNG. Each is written to a temporary file that is then renamed, so a
+ * reader never sees half an image. */
 #ifndef TWINLIGHT_COMMAND_RENDER_OUTPUT_H
 #define TWINLIGHT_COMMAND_RENDER_OUTPUT_H
 
@@ -14,10 +14,10 @@ typedef struct RenderOutput {
     PictureSettings picture;
     float exposure; /* stops, PNG only */
     PictureMemory memory;
-    /* Called while a file is written, which part of it is: often, the first time with 0. May be NULL. */
+    /* Called often while a file is written, with the fraction written so far, first with 0. May be NULL. */
     void (*writing)(void *context, const char *path, double part);
     void *writing_context;
-    /* What the EXR header says besides the picture. */
+    /* For the EXR header. */
     const char *scene_file;
     const char *integrator;
     uint64_t seed;
@@ -25,16 +25,16 @@ typedef struct RenderOutput {
     float world_to_camera[16], world_to_ndc[16]; /* camera_matrices */
 } RenderOutput;
 
-/* Sets the names: the EXR's is `image` with the ending .exr; the PNG's is `png`, or beside the EXR when that is NULL,
- * none when !want_png. */
+/* Sets the names. The EXR's is `image` with the ending .exr. The PNG's is `png`, or if that is NULL the EXR's with the
+ * ending .png; empty if !want_png. */
 bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
-/* Makes room for writing pictures of this crop, before the first sample: so that what is rendered can be written
- * whatever memory is left then. */
+/* Reserves the memory for writing pictures of this crop. Call it before the first sample: what is rendered can then be
+ * written even if no memory is left. */
 bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error);
 void render_output_release(RenderOutput *output);
 
-/* Writes both files. `samples_per_pixel` goes to the header. */
+/* Writes both files from the current film. `samples_per_pixel` goes to the EXR header. After render_output_reserve. */
 bool render_output_write(RenderOutput *output, const Film *film, double samples_per_pixel, Error *error);
 
 #endif

@@ -52,7 +52,7 @@ bool render_settings_layers(const RenderCommand *command, const Integrator *inte
     return true;
 }
 
-/* The scene's crop window on a film of another size: the same part of the picture (pbrt rounds both ends up). */
+/* Scales the scene's crop window to a film of another size (pbrt rounds both ends up). */
 static void crop_scale(const SceneSettings *settings, const int size[2], int crop[4])
 {
     const int old[2] = {settings->width, settings->height};
@@ -65,7 +65,7 @@ static void crop_scale(const SceneSettings *settings, const int size[2], int cro
             crop[i] = crop[i + 2] - 1;
 }
 
-/* Size, crop and depth: the command line's where it says so, else the scene's. */
+/* Applies size, crop and depth from the command line, where given. */
 static bool settings_override(const RenderCommand *command, Scene *scene, Error *error)
 {
     SceneSettings *settings = &scene->settings;
@@ -83,7 +83,7 @@ static bool settings_override(const RenderCommand *command, Scene *scene, Error 
     return scene_film_set(scene, size[0], size[1], crop, error);
 }
 
-/* What is longer than the integrator can make or the user wants is said, not dropped. */
+/* Limits the depth to the integrator's, with a warning, and checks that --strategy fits in. */
 static bool depth_check(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error)
 {
     int *depth = &scene->settings.max_depth, limit = integrator->depth_limit;

@@ -8,11 +8,11 @@
 
 #include <limits.h>
 
-/* Chains of mmlt that are compared, and their steps: each kind of mutation comes soon. */
+/* Chains that are compared, and steps of each: enough for every kind of mutation. */
 #define CHAINS_COMPARED 8192u
 #define STEPS_COMPARED 4u
 
-/* One list of steps; `what` goes before the figures. */
+/* Compares one list of steps; `what` precedes the figures in the message. */
 static bool list_verify(const BackendMember sides[2], const char *what, const FrameParams *frame, const StepList *list,
                         uint64_t items, const atomic_int *stop, Error *error)
 {
@@ -33,7 +33,7 @@ static bool list_verify(const BackendMember sides[2], const char *what, const Fr
     return true;
 }
 
-/* Path tracing, a pool, and chains that begin in the CPU's pool. */
+/* Compares path tracing, a pool, and chains that start from the CPU's pool. */
 static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t items, const atomic_int *stop,
                         Error *error)
 {
@@ -53,7 +53,7 @@ static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t i
     return same;
 }
 
-/* A run of the first side for what integrators prepare by themselves. */
+/* Compares one device, sides[1], with the CPU, sides[0]. MMLT prepares its passes on the CPU. */
 static bool member_verify(const Integrator *integrator, const Scene *scene, const RenderOptions *options,
                           const BackendMember sides[2], uint64_t items, Error *error)
 {
@@ -82,7 +82,7 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
     return same;
 }
 
-/* Items are counted in 32 bits between the sample that the frame begins with and the last. */
+/* Items to compare: those of all samples, but only as many whole samples as 32-bit item numbers allow. */
 static uint64_t items_limit(const SceneSettings *settings, unsigned samples)
 {
     uint64_t pixels =

@@ -1,10 +1,11 @@
-/* Chains that met something not finite, as lines of JSON (--dump-bad). */
+/* --dump-bad: writes chains that met a non-finite contribution, one JSON object per line. */
 #include "mmlt/mmlt.h"
 
 #include "chain/chain.h"
 
-/* What makes their states again: a chain is a function of the seed, where it began and its number (chain/chain.h). It
- * began with a sample of the pool or, when it came from the generation before, with `numbers`. */
+/* Writes what is needed to reproduce a chain: it is a function of the seed, its starting state and its number
+ * (chain/chain.h). It started either from a sample of the pool or, if carried over from the previous generation, from
+ * the coordinates in "numbers". */
 static void bad_chain_write(const Mmlt *mmlt, FILE *out, uint count, uint i, uint step)
 {
     const uint *words = mmlt->chains.pass_words;

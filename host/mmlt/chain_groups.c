@@ -15,7 +15,7 @@ static void chain_add(SampleMoments moments[CHAIN_QUANTITIES][CHAIN_GROUPS], con
     uint key = words[(size_t)CHAIN_PASS_KEY * count + i];
     double luminance = (double)bits_float(words[(size_t)CHAIN_PASS_LUMINANCE * count + i]);
     if (!(luminance > 0.0))
-        return; /* it never began */
+        return; /* the chain never started */
     sample_moments_add(&moments[0][group], log(luminance));
     for (uint k = 0; k < 2 && chain_key_s(key) < chain_key_depth(key); ++k)
         sample_moments_add(&moments[1 + k][group],

@@ -38,7 +38,8 @@ uint chain_pass_fields(const FrameParams *frame)
     return CHAIN_PASS_NUMBERS + (frame->keep_chains ? number_count(frame) : 0);
 }
 
-/* One proposal. The light's walk has up to max_depth - 1 segments (s = d), the camera's one more (s = 0). */
+/* Records one proposal. The light subpath has up to max_depth - 1 segments (s = d), the camera subpath up to max_depth
+ * (s = 0). */
 static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
 {
     recorder_kernel(recorder, KERNEL_mlt_propose, false);

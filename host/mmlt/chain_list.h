@@ -1,28 +1,30 @@
-/* The list of steps of a pass of chains. */
+/* The list of steps for a pass of Markov chains. */
 #ifndef TWINLIGHT_MMLT_CHAIN_LIST_H
 #define TWINLIGHT_MMLT_CHAIN_LIST_H
 
 #include "backend/backend.h"
 
-/* `steps` proposals for every chain, after the current path itself. To be freed by step_list_destroy. The words of the
- * pass are the caller's to set: CHAIN_PASS_* (chain/chain.h), chain_pass_fields of them. */
+/* Records a pass in which every chain first replays its current path, then makes `steps` proposals. Free `list` with
+ * step_list_destroy. The caller sets list->pass_words: CHAIN_PASS_* (chain/chain.h), chain_pass_fields of them per
+ * chain. */
 bool chain_list(const FrameParams *frame, uint steps, StepList *list, Error *error);
 
-/* Fields of BUFFER_PASS. */
+/* Words per chain in BUFFER_PASS. */
 uint chain_pass_fields(const FrameParams *frame);
 
-/* Words of a chain's own: its coordinates and what it knows of its current path; and in all, with the walk under way
- * and the buffers of rays and vertices. Densities, one word a vertex, twice. */
+/* State size per chain, in 32-bit words. state: coordinates and what is known of the current path. densities: one per
+ * vertex, for the current path and the proposal. all: these plus the walk under way and the buffers of vertices, rays,
+ * hits and splats. */
 typedef struct ChainWords {
     uint state, densities, all;
 } ChainWords;
 
 ChainWords chain_words(const FrameParams *frame);
 
-/* The bytes of `chains` of them, on standard output. */
+/* Prints the memory that `chains` chains take to standard output. */
 void chain_memory_print(const FrameParams *frame, unsigned chains);
 
-/* Chains at a time where nobody asks for a number. */
+/* Chains that run at once without --chains: generations, and --mlt-scheme=paper. */
 #define CHAINS_DEFAULT 524288u
 #define PAPER_CHAINS_DEFAULT 16384u
 

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Paths of the population and then those of the pool. */
+/* Resampling candidates: first the population's `chains` paths, then the pool's; `all` together. */
 typedef struct Candidates {
-    const float *change; /* of importance; NULL: none */
+    const float *change; /* ratio of target importances, new over old, per cell; NULL: unchanged */
     double *weights;
     uint *keys;
     uint chains, all;
@@ -30,13 +30,13 @@ static uint word_of(const ChainPopulation *population, uint field, uint i)
     return population->words[(size_t)field * population->count + i];
 }
 
-/* The part of a path of such luminance that chains answer for. */
+/* The chains' part of a path's contribution (partition of unity; see the header). most: n / (n + m). */
 static double part_of_chains(double luminance, double most, double threshold)
 {
     return luminance > 0.0 ? most * luminance / (luminance + threshold) : 0.0;
 }
 
-/* Weights in units of brightness: their sum is that of the next population. */
+/* Sets weights in units of brightness: they add up to that of the next population. */
 static void candidates_weigh(const Candidates *candidates, const ChainPopulation *population, const uint *pool,
                              double threshold)
 {
@@ -49,8 +49,8 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
         candidates->weights[i] = change * population->brightness / chains * part;
         candidates->keys[i] = part > 0.0 ? word_of(population, CHAIN_PASS_KEY, i) : 0;
     }
-    /* Also where there are no chains, because all pools before were black: others have had more to show than there
-     * is. */
+    /* Subtract the chains' part even if there are no chains because all earlier pools were black: otherwise the mean
+     * over generations would be biased high. */
     for (uint i = 0; i < samples; ++i) {
         double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
         double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;
@@ -60,7 +60,7 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
     }
 }
 
-/* The words of the chains chosen: of one that goes on its coordinates, of a new one its number in the pool. */
+/* Gathers the chosen chains' words: coordinates for one that continues, the number of the pool sample for a new one. */
 static void words_gather(const ChainPopulation *population, const Candidates *candidates, const uint *seeds, uint count,
                          uint *words)
 {
@@ -69,7 +69,7 @@ static void words_gather(const ChainPopulation *population, const Candidates *ca
         words[(size_t)CHAIN_PASS_KEY * count + i] = candidates->keys[seeds[i]];
         words[(size_t)CHAIN_PASS_ITEM * count + i] = old ? NONE : seeds[i] - candidates->chains;
         if (old) {
-            if (!candidates->change) /* else it is another, which the pass will find */
+            if (!candidates->change) /* otherwise changed; the pass recomputes it */
                 words[(size_t)CHAIN_PASS_LUMINANCE * count + i] = word_of(population, CHAIN_PASS_LUMINANCE, seeds[i]);
             words[(size_t)CHAIN_PASS_RUN * count + i] = word_of(population, CHAIN_PASS_RUN, seeds[i]);
         }
@@ -80,7 +80,7 @@ static void words_gather(const ChainPopulation *population, const Candidates *ca
                 words[(size_t)field * count + i] = word_of(population, field, seeds[i]);
 }
 
-/* A candidate that was chosen several times stands there several times in a row. */
+/* Duplicates of a candidate are adjacent in `seeds`. */
 static void starts_count(const Candidates *candidates, const uint *seeds, uint count, ChainStarts *starts)
 {
     for (uint i = 0; i < count; ++i) {

@@ -1,14 +1,16 @@
-/* Chains that live on from one generation to the next where light is hard to find.
+/* Markov chains that continue from one generation to the next where light is hard to find.
  *
- * A population estimates integrals of f: the sum over its chains of brightness / count times a function of where they
- * are. So does a pool, by independent samples. At a generation's end each answers for a part of path space: chains for
- * the part n / (n + m) f / (f + threshold) of every path, where n samples have made the population and the pool has m,
- * and the pool for the rest. The parts add up to the whole whatever the threshold, so nothing is lost or counted twice,
- * and population and pool are resampled together into the next population. A path that carries much less than the
- * threshold is taken from the new pool; one that carries much more, which pools meet rarely, is remembered, as the mean
- * of all pools has it. (Compare the resampling of Andrieu, Lee and Vihola, "Uniform ergodicity of the iterated
- * conditional SMC and geometric ergodicity of particle Gibbs samplers", 2018, whose chance to keep a state has the same
- * form but which is right only in the limit.) */
+ * A population estimates integrals of the target f: the sum over its chains of brightness / count times the integrand
+ * at their states. So does a pool, with independent samples. At the end of a generation both are combined by a
+ * partition of unity over path space: of every path, chains answer for the part n / (n + m) f / (f + threshold), where
+ * n samples have made the population so far and the new pool has m, and the pool for the rest. This is unbiased for any
+ * threshold. Population and pool are then resampled together into the next population. Paths with f well below the
+ * threshold come from the new pool; paths well above it, which pools rarely find, are remembered, with the mean weight
+ * that all pools so far have given them.
+ *
+ * Compare the resampling of Andrieu, Lee and Vihola, "Uniform ergodicity of the iterated conditional SMC and geometric
+ * ergodicity of particle Gibbs samplers", 2018: its probability to keep a state has the same form, but it is right only
+ * in the limit. */
 #ifndef TWINLIGHT_MMLT_CHAIN_POPULATION_H
 #define TWINLIGHT_MMLT_CHAIN_POPULATION_H
 
@@ -18,20 +20,22 @@
 #include "render/chain_statistics.h"
 
 typedef struct ChainPopulation {
-    uint *words; /* BUFFER_PASS: CHAIN_PASS_* (chain/chain.h) of `count` chains, `fields` words each */
+    uint *words; /* BUFFER_PASS: CHAIN_PASS_* (chain/chain.h), [fields][count] */
     uint fields;
     uint count;
-    double samples; /* of all pools so far */
-    double brightness; /* mean worth of a pool's sample (POOL_WEIGHT); 0: there are no chains */
+    double samples; /* number of samples of all pools so far */
+    double brightness; /* mean contribution weight of a pool's sample (POOL_WEIGHT); 0: there are no chains */
 } ChainPopulation;
 
+/* An empty population. fields: words per chain, chain_pass_fields (mmlt/chain_list.h). */
 void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 
-/* The next population, of `count` chains, ready for a pass: from this one, if it has chains, and from the pool_count
- * samples whose words are pool[POOL_* * pool_count ...] (chain/pool.h). change: of each cell, the importance that the
- * pool had and the next pass has over that of the pass before; NULL: it is what it was. order, offset:
- * mmlt/chain_seeds.h. `starts` (may be NULL) gets what they begin with. */
+/* Resamples this population, if it has chains, and a pool into the next population of `count` chains, ready for a pass.
+ * pool: the words of pool_count samples, POOL_* at pool[POOL_* * pool_count + i] (chain/pool.h). change: per cell, the
+ * target importance of this pool and the next pass over that of the previous pass; NULL: unchanged. threshold: see
+ * above, in units of f. order, offset: as for chain_seeds_choose. starts: receives the counts of starting paths; may be
+ * NULL. Fails only when out of memory; the population is then unchanged. */
 bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
                             double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
                             Error *error);

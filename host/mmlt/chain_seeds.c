@@ -14,7 +14,7 @@ static uint key_rank(uint key, ChainOrder order)
     return depth * KEY_SIDE + (order == CHAIN_ORDER_STRATEGY ? chain_key_s(key) % KEY_SIDE : 0);
 }
 
-/* numbers[0 ... returned - 1]: paths there are, by key (a counting sort, so that those of a key keep their order). */
+/* Lists the candidates that have a path, sorted by key, in numbers[]; returns their number. A counting sort: stable. */
 static uint candidates_order(const uint *keys, uint candidates, ChainOrder order, uint *numbers)
 {
     uint starts[KEY_COUNT + 1] = {0}, found = 0;

@@ -6,27 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a sample of each estimator takes, in samples of path tracing: typical ones of the CPU backend. Figures that do
- * not depend on the machine, so that the image does not either. */
+/* Cost of a sample of each estimator, in samples of path tracing, on the CPU backend. Constants, so that the image does
+ * not depend on the machine; docs/TUNING.md. */
 static const double COSTS[ESTIMATOR_COUNT] = {1.2, 4.0, 1.0};
 
-/* Before anything is known, work of path tracing counts for so much of that of pools. With all of it, a lamp in glass
- * had a third more square error in small pictures and beaten metal a sixth; with none, a large one of a diffuse room
- * had a third more. */
+/* Until variances are known, path tracing is weighted by this fraction of its work, against all of a pool's;
+ * docs/TUNING.md. */
 #define FIRST_PATHS 0.25
 
-/* Keeps what has no variance, because it is black, from a division by zero. */
+/* Avoids division by zero in tiles without variance (black ones). */
 #define SPREAD_MIN 1e-30
 
-/* A plan divides the time into so many parts. */
+/* Plans are searched on a grid that divides time into this many parts. */
 #define PLAN_PARTS 20
 
-/* What chains show varies by where they begin, which falls with the pools' samples, and by what they do then, which
- * falls with their steps. In the time T the two are a / T_pool + b / T_steps, and the best division gives pools the
- * part sqrt(a) / (sqrt(a) + sqrt(b)) of it: this one. Measured at equal time on a lamp in glass, a glossy hall and a
- * door ajar, 128 x 128 pixels and 20 seconds of one thread: with 0.25 the blocks of 8 x 8 pixels have 1.3 to 2 times
- * the square error, with 0.8 pixels have, but for their worst hundredth, 1.3 to 1.6 times. 0.4 and 0.55 differ by less
- * than six pictures can tell. */
+/* The fraction of time for pools in the best division between pools and steps. It stands for how much of the chains'
+ * variance a / T_pool + b / T_steps is due to starts and how much to steps: POOL_PART = sqrt(a) / (sqrt(a) + sqrt(b));
+ * docs/TUNING.md. */
 #define POOL_PART 0.45
 
 double combination_work(const double samples[ESTIMATOR_COUNT])
@@ -74,16 +70,17 @@ void combination_destroy(Combination *combination)
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
-/* How a tile is best shown with so many samples of every estimator. */
+/* The optimal combination for a tile, given the samples of each estimator. */
 typedef struct TileCombination {
-    double paths; /* the weight of path tracing with what it does not show */
-    double chains; /* the weight of chains among themselves and the pool, which weight what pools do not show */
+    /* weight of path tracing plus rare, against chains and pool plus excess */
+    double paths;
+    double chains; /* weight of the chains against the pool; both share the excess */
     double variance;
 } TileCombination;
 
-/* Two estimates: chains with the pool, of variance a, and path tracing with what it does not show, of variance b. The
- * latter comes from the same chains as much of the former, c is what both have of it. The weight w of the second that
- * makes (1 - w)^2 a + w^2 b + 2 w (1 - w) c smallest. */
+/* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Excess
+ * and rare come from the same chains, hence the covariance c. The weight w of the second minimises (1 - w)^2 a + w^2 b
+ * + 2 w (1 - w) c. */
 static TileCombination tile_combination(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT])
 {
     const double *spread = tile->spread;
@@ -101,7 +98,7 @@ static TileCombination tile_combination(const CombinationTile *tile, const doubl
     return best;
 }
 
-/* Whether the variances of all estimators that have samples are there. */
+/* Whether the variances of all estimators that have samples are known. */
 static bool combination_known(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
@@ -110,9 +107,9 @@ static bool combination_known(const Combination *combination, const double sampl
     return true;
 }
 
-/* Of each estimator in the tile; all of them 1 together. Before anything is known, what counts is the work, and chains
- * are worth the pool from which they begin. So a large picture, of which the first pools see few pixels, is path traced
- * at first. */
+/* Sets the tile's weights, which add up to 1. Until variances are known they go by work, and chains count as much as
+ * the pool they start from. So a large picture, of which the first pools see few pixels, shows mostly path tracing at
+ * first. */
 static void weights_set(Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                         bool known)
 {
@@ -134,10 +131,10 @@ static void weights_set(Combination *combination, CombinationTile *tile, const d
         combination->weight[s] += tile->weight[s] / (double)combination_tile_count(combination);
 }
 
-/* Sums of the same paths in the films of all estimators: 3 a pixel. */
+/* Film sums of the same paths in all estimators, 3 values a pixel. */
 typedef struct EstimatorSums {
-    int64_t *light[ESTIMATOR_COUNT]; /* below the limits */
-    const int64_t *excess, *rare; /* of chains: what pools and what path tracing do not show */
+    int64_t *light[ESTIMATOR_COUNT]; /* up to the clamping thresholds */
+    const int64_t *excess, *rare; /* from chains: what pools and what path tracing leave out */
 } EstimatorSums;
 
 static EstimatorSums estimator_sums(Film *const films[])
@@ -148,7 +145,7 @@ static EstimatorSums estimator_sums(Film *const films[])
     return sums;
 }
 
-/* Those of paths of so many segments. */
+/* The same for paths of `segments` segments. */
 static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
 {
     EstimatorSums sums = {.excess = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_OWN),
@@ -158,7 +155,7 @@ static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
     return sums;
 }
 
-/* Those of the chains' light become the combination of all, of so much work. */
+/* Replaces the chains' light sums by the combination, scaled to `work` samples. */
 static void sums_join(const Combination *combination, const EstimatorSums *sums, const double samples[ESTIMATOR_COUNT],
                       double work)
 {
@@ -175,8 +172,8 @@ static void sums_join(const Combination *combination, const EstimatorSums *sums,
     }
 }
 
-/* The estimators' light and the direct light become the chains' film, whose number of samples is now what the
- * generation took: that is its weight among others, which may have divided their time differently. */
+/* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's work,
+ * so that film_merge weights generations by work however they divided it between estimators. */
 static void films_join(Combination *combination, Film *const films[])
 {
     Film *into = films[ESTIMATOR_CHAINS];
@@ -186,7 +183,7 @@ static void films_join(Combination *combination, Film *const films[])
         samples[s] = (double)films[s]->light_samples;
     bool known = combination_known(combination, samples);
     double work = fmax(1.0, rint(combination_work(samples)));
-    /* What is full in a estimator need not be so in the combination. */
+    /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
     uint64_t full = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         full += film_full_pixels(films[s]);
@@ -232,15 +229,15 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
 
-/* How a step of chains varies by so many samples of pools for each, in units of its variance by itself: 1 + a / b times
- * the cost of all steps over that of the samples. */
+/* Variance of a chain's step accompanied by pool_per_step pool samples, relative to its variance within chains b: 1 +
+ * (a / b) (cost of all steps / cost of all pool samples). */
 static double step_variance(double pool_per_step)
 {
     const double root = POOL_PART / (1.0 - POOL_PART);
     return 1.0 + root * root * COSTS[ESTIMATOR_CHAINS] / (COSTS[ESTIMATOR_POOL] * pool_per_step);
 }
 
-/* How a step varies in a plan, over how it has varied with the pools so far. */
+/* Variance of a step under a plan, relative to its variance with the pools so far. */
 static double chains_factor(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
     double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
@@ -248,7 +245,7 @@ static double chains_factor(const Combination *combination, const double samples
     return step_variance(samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]) / step_variance(pools / steps);
 }
 
-/* Mean over the tiles. */
+/* Mean light per tile. */
 static double mean_light(const Combination *combination)
 {
     double light = 0.0;
@@ -268,7 +265,7 @@ void combination_errors(const Combination *combination, const double samples[EST
     }
 }
 
-/* Relative square error of the picture from so many samples of every estimator. */
+/* Relative square error of the picture (up to a constant factor) from this many samples of each estimator. */
 static double error_of(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
     double sum = 0.0, light = mean_light(combination), factor = chains_factor(combination, samples);

@@ -1,4 +1,4 @@
-/* What a combination learns of its estimators from the generations before. */
+/* Learns the estimators' variances from the generations before. */
 #include "mmlt/combination_learn.h"
 
 #include "base/sample_statistics.h"
@@ -7,30 +7,29 @@
 #include <math.h>
 #include <string.h>
 
-/* A tile's variance from few generations is uncertain, and that of independent samples is too small until a rare bright
- * path has been met. All are drawn toward the variance that tiles usually have for their brightness (the median), as if
- * that had been seen in so many generations more. */
+/* Weight, in generations, of the prior for a tile's variance: the median over tiles of variance / light, times the
+ * tile's light. A few generations give uncertain variances, and independent samples underestimate theirs until a rare
+ * bright path is found. */
 #define PRIOR_GENERATIONS 2.0
 
-/* Standard errors by which one estimator must be brighter than another before that counts as light which the other
- * misses: few while little is known, half of these after so many generations. Had it been all of them from the first
- * on, rare bright paths would be believed too long to be absent: six times the error of blocks in short pictures of
- * scenes/windows.pbrt. With none, chance would be taken for light: a fifth more noise on a door ajar. */
+/* One estimator must exceed another by this many standard errors before the difference counts as light that the other
+ * misses; half as many after MISSING_GENERATIONS, 0 at first. More trusts path tracing too long, less takes noise for
+ * light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0
 #define MISSING_GENERATIONS 5.0
 
-/* And so many more where the other is as uncertain as it is bright. In a large picture chains are in few tiles, and
- * their chance was taken for light that path tracing misses: a tenth of the square error of a diffuse room, and a fifth
- * of that of lamps in glass. */
+/* This many further standard errors, times the brighter estimator's relative error (at most 1): chains that have been
+ * in few tiles are no evidence; docs/TUNING.md. */
 #define MISSING_UNCERTAIN 3.0
 
-/* A pixel counts as no brighter than so many times its tile's mean: it may be noise. */
+/* A pixel's luminance is clamped to this many times its tile's mean: it may be noise. */
 #define LIGHT_OVER_TILE 4.0
 
-/* A pixel's own light counts as much as its tile's where chains have shown so many steps of it. */
+/* Chain steps per pixel at which the pixel's own mean counts as much as its tile's. */
 #define LIGHT_STEPS 16.0
 
-/* A pool's variance is no less than this part of what is seen, whatever a correction, itself an estimate, says. */
+/* Lower bound of a pool's corrected variance (pool_correct), relative to the observed one: the correction is an
+ * estimate too. */
 #define POOL_SPREAD_LEAST 0.25
 
 size_t combination_tile_count(const Combination *combination)
@@ -44,7 +43,7 @@ size_t combination_tile_of(const Combination *combination, size_t pixel)
     return y / TILE_SIDE * (size_t)combination->tiles[0] + x / TILE_SIDE;
 }
 
-/* ---- pictures ----------------------------------------------------------------------------------------------------- */
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static float luminance_of(const int64_t *sums, double scale)
 {
@@ -54,7 +53,7 @@ static float luminance_of(const int64_t *sums, double scale)
     return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
-/* The picture that `sums` are from `samples` paths. picture, tiles: room for as many values. */
+/* The luminances of `sums`: picture, a value per pixel, and tiles, their sum per tile. */
 static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture,
                      float *tiles)
 {
@@ -67,6 +66,7 @@ static void image_of(const Combination *combination, const Film *film, const int
     }
 }
 
+/* Adds the luminances of `sums` to series s. picture, tiles: scratch, a value per pixel and per tile. */
 static void series_learn(Combination *combination, int s, const Film *film, const int64_t *sums, float *picture,
                          float *tiles)
 {
@@ -95,19 +95,19 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
     }
 }
 
-/* ---- variances ---------------------------------------------------------------------------------------------------- */
+/* ---- variances --------------------------------------------------------------------------------------------------- */
 
-/* Generations in which the estimator's variance was seen. */
-static double seen(const Combination *combination, int s)
+/* Degrees of freedom of the series' variances: the number of its pictures less one. */
+static double freedom_of(const Combination *combination, int s)
 {
     return combination->pixels[s].pictures[0] > 0 ? combination->pixels[s].pictures[0] - 1.0 : 0.0;
 }
 
-/* Luminance of a tile that the series is sure of: its mean less so many standard errors, and some more where it knows
- * little; its mean for none. */
-static double sure_of(const Combination *combination, int s, size_t tile, double deviations)
+/* Lower confidence bound of a tile's light: its mean less `deviations` standard errors and MISSING_UNCERTAIN more in
+ * proportion to its relative error; the mean itself if deviations is 0. 0 until the series' variance is known. */
+static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
 {
-    if (!(seen(combination, s) >= 1.0))
+    if (!(freedom_of(combination, s) >= 1.0))
         return 0.0;
     double mean = (double)combination->sums[s].mean[tile],
            error = sqrt(pixel_series_variance(&combination->sums[s], tile));
@@ -116,19 +116,20 @@ static double sure_of(const Combination *combination, int s, size_t tile, double
     return mean - deviations * error;
 }
 
-/* The same of the brightest way to see the tile. */
-static double brightest_of(const Combination *combination, size_t tile, double deviations)
+/* The largest such bound of any way to see all of the tile's light: path tracing plus rare, chains or pool plus
+ * excess. */
+static double light_bound_best(const Combination *combination, size_t tile, double deviations)
 {
-    double chains = sure_of(combination, ESTIMATOR_CHAINS, tile, deviations),
-           pool = sure_of(combination, ESTIMATOR_POOL, tile, deviations);
-    return fmax(sure_of(combination, ESTIMATOR_PATHS, tile, deviations) +
-                    sure_of(combination, SERIES_RARE, tile, deviations),
-                fmax(chains, pool) + sure_of(combination, SERIES_EXCESS, tile, deviations));
+    double chains = light_bound(combination, ESTIMATOR_CHAINS, tile, deviations),
+           pool = light_bound(combination, ESTIMATOR_POOL, tile, deviations);
+    return fmax(light_bound(combination, ESTIMATOR_PATHS, tile, deviations) +
+                    light_bound(combination, SERIES_RARE, tile, deviations),
+                fmax(chains, pool) + light_bound(combination, SERIES_EXCESS, tile, deviations));
 }
 
-/* A pixel's luminance, no brighter than so many times its tile's mean, and at least that of a dark place. Of a pixel
- * that chains have rarely been to they know no more than of its tile; were it what they have shown there, the few
- * pixels where they have been would count as bright, and chains as sure. */
+/* Squared luminance of a pixel, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
+ * few steps per pixel, their mean of a pixel is pulled toward that of its tile: otherwise the few pixels they have
+ * visited would count as bright, and the chains' relative variance as small. */
 static double light_square(const Combination *combination, size_t pixel, const CombinationTile *tile, double dark)
 {
     const double area = TILE_SIDE * TILE_SIDE;
@@ -141,15 +142,15 @@ static double light_square(const Combination *combination, size_t pixel, const C
     return light * light + dark;
 }
 
-/* Corrects what a tile has seen of pools too small to visit all pixels: which of them they visit changes from pool to
- * pool, but evens out over all of them. A pixel of mean m that a part q of the pools visits seems to vary by m^2 (1 / q
- * - 1) more than it does; q is the pool's samples over the pixels and over the density_ratio. */
+/* Corrects the variance of pools too small to visit all pixels. Which pixels they visit changes from pool to pool but
+ * evens out over several. If a fraction q of a tile's pixels is visited, the variance of a pixel of mean m is
+ * overestimated by m^2 (1 / q - 1); q = pool samples / (pixels x density ratio). */
 static void pool_correct(Combination *combination)
 {
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         CombinationTile *tile = &combination->known[i];
-        double gap = seen(combination, ESTIMATOR_POOL) > 0.0
-                         ? combination->gaps[i] / (seen(combination, ESTIMATOR_POOL) + 1.0)
+        double gap = freedom_of(combination, ESTIMATOR_POOL) > 0.0
+                         ? combination->gaps[i] / (freedom_of(combination, ESTIMATOR_POOL) + 1.0)
                          : 0.0;
         double light = (double)combination->sums[ESTIMATOR_POOL].mean[i], *pool = &tile->spread[ESTIMATOR_POOL];
         double less = gap * (double)combination->direct.pixels * light * light / (TILE_SIDE * TILE_SIDE);
@@ -157,7 +158,7 @@ static void pool_correct(Combination *combination)
     }
 }
 
-/* Variances count relative to the square of the light of their pixel, in units of that of their tile. */
+/* Sums the tiles' variances, each pixel's weighted by the squared luminance of its tile over its own. */
 static void tiles_sum(Combination *combination)
 {
     const double area = TILE_SIDE * TILE_SIDE;
@@ -166,7 +167,7 @@ static void tiles_sum(Combination *combination)
     for (size_t i = 0; i < combination->direct.pixels; ++i)
         combination->known[combination_tile_of(combination, i)].light += fabs((double)combination->direct.mean[i]);
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        combination->known[i].indirect = brightest_of(combination, i, 0.0);
+        combination->known[i].indirect = light_bound_best(combination, i, 0.0);
         combination->known[i].light += combination->known[i].indirect;
         mean += combination->known[i].light / (area * (double)combination_tile_count(combination));
     }
@@ -181,7 +182,7 @@ static void tiles_sum(Combination *combination)
     pool_correct(combination);
 }
 
-/* The median (the upper one of an even number) over the tiles of a estimator's variance over the tile's light. */
+/* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
 static double ratio_median(const Combination *combination, int s, double *ratios)
 {
     size_t count = 0;
@@ -192,17 +193,18 @@ static double ratio_median(const Combination *combination, int s, double *ratios
     return count > 0 ? ratios[count / 2] : 0.0;
 }
 
-/* When another series is sure enough of more light in the tile than series s has seen there, s meets it about once or
- * less in all its samples: its variance is that of one such event. */
+/* If another series has significantly more light in the tile than series s, then s finds that light about once in all
+ * its samples or less: adds the variance of one such event. */
 static double missing_spread(const Combination *combination, int s, size_t tile)
 {
-    double deviations = MISSING_DEVIATIONS * seen(combination, s) / (seen(combination, s) + MISSING_GENERATIONS);
+    double deviations =
+        MISSING_DEVIATIONS * freedom_of(combination, s) / (freedom_of(combination, s) + MISSING_GENERATIONS);
     const PixelSeries *sums = combination->sums;
     double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
-        other = sure_of(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
+        other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
     } else {
-        other = brightest_of(combination, tile, deviations);
+        other = light_bound_best(combination, tile, deviations);
         if (s == SERIES_EXCESS)
             own += fmax((double)sums[ESTIMATOR_CHAINS].mean[tile], (double)sums[ESTIMATOR_POOL].mean[tile]);
         else
@@ -212,7 +214,7 @@ static double missing_spread(const Combination *combination, int s, size_t tile)
     return missing * missing * (double)sums[s].weight[tile];
 }
 
-/* A estimator's variance over the light, in the tile and those beside it. */
+/* An estimator's variance over light in the 3 x 3 tiles around. */
 static double ratio_around(const Combination *combination, int s, size_t tile)
 {
     int columns = combination->tiles[0], rows = combination->tiles[1], x = (int)(tile % (size_t)columns),
@@ -227,9 +229,8 @@ static double ratio_around(const Combination *combination, int s, size_t tile)
     return light > 0.0 ? spread / light : 0.0;
 }
 
-/* What a tile knows of a estimator is no less than what it and those beside it know together: where one has met a rare
- * bright path, the others only have not yet. On a glossy room this divides the square error by 1.5, on a pool with
- * caustics by 1.3. */
+/* Raises a tile's variance to that of the 3 x 3 tiles around it: where one has met a rare bright path, its neighbours
+ * merely have not yet; docs/TUNING.md. */
 static void spreads_share(Combination *combination, int s, double *ratios)
 {
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
@@ -245,7 +246,7 @@ void combination_variances_update(Combination *combination, double *ratios)
     tiles_sum(combination);
     for (int s = 0; s < SERIES_COUNT; ++s) {
         spreads_share(combination, s, ratios);
-        double usual = ratio_median(combination, s, ratios), known = seen(combination, s);
+        double usual = ratio_median(combination, s, ratios), known = freedom_of(combination, s);
         combination->ready[s] = known >= 1.0;
         for (size_t i = 0; i < combination_tile_count(combination); ++i) {
             CombinationTile *tile = &combination->known[i];

@@ -1,4 +1,4 @@
-/* What a combination (mmlt/combination.h) knows of its estimators, and learns of them in every generation. */
+/* What a combination (mmlt/combination.h) knows of its estimators, and how it learns that from every generation. */
 #ifndef TWINLIGHT_MMLT_COMBINATION_LEARN_H
 #define TWINLIGHT_MMLT_COMBINATION_LEARN_H
 
@@ -11,15 +11,15 @@
 
 typedef enum Estimator { ESTIMATOR_CHAINS, ESTIMATOR_POOL, ESTIMATOR_PATHS, ESTIMATOR_COUNT } Estimator;
 
-/* Series of pictures more: what chains see that pools do not show, and that path tracing does not. */
+/* Two more series of pictures, from chains: light that pools leave out, and light that path tracing leaves out. */
 #define SERIES_EXCESS ESTIMATOR_COUNT
 #define SERIES_RARE (ESTIMATOR_COUNT + 1)
 #define SERIES_COUNT (ESTIMATOR_COUNT + 2)
 
 typedef struct CombinationTile {
-    double spread[SERIES_COUNT]; /* variance of one sample, summed over the pixels */
+    double spread[SERIES_COUNT]; /* variance of one sample, summed over the tile's pixels (tiles_sum) */
     double direct; /* the same of direct light */
-    double light, indirect; /* sums of luminances */
+    double light, indirect; /* luminances summed over the tile's pixels */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation */
 } CombinationTile;
 
@@ -27,26 +27,28 @@ typedef struct Combination {
     int size[2], tiles[2];
     PixelSeries pixels[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances of pixels, and summed over tiles */
     PixelSeries direct; /* of pixels */
-    double *density_ratio; /* of a tile: by how much more rarely pools visit it than if they visited all alike */
-    double *gaps; /* of a tile: that less what a pool has visited of a pixel, where it is less, summed over pools */
-    CombinationTile *known; /* a tile */
-    bool ready[SERIES_COUNT]; /* the estimator's variances are there */
+    double *density_ratio; /* per tile: mean density ratio of the latest pools' visits */
+    /* per tile: max(0, density ratio - pool samples per pixel), summed over pools */
+    double *gaps;
+    CombinationTile *known; /* one per tile */
+    bool ready[SERIES_COUNT]; /* the series' variances are known */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation, mean over the tiles */
-    int shown; /* 1 + the estimator that has all of it in generations that have samples of it; 0: as is best */
+    int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it; 0: best weights */
 } Combination;
 
-/* Errors of places darker than the root of this part of the mean square light count as there. */
+/* Errors are relative to light^2 plus this fraction of the squared mean light. */
 #define DARK_PART 0.1
 
+/* Number of tiles, and the tile of a pixel (numbered row by row within the crop). */
 size_t combination_tile_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
 
-/* What the estimators of a generation show joins the series, as long as *stop is 0. picture, tiles: room for as many
- * values. */
+/* Adds a generation's pictures to the series, until *stop becomes 1. picture, tiles: scratch, a value per pixel and per
+ * tile. */
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
                              const atomic_int *stop);
 
-/* What is known of the tiles from the series. ratios: room for as many as there are tiles. */
+/* Recomputes combination->known from the series. ratios: scratch, a value per tile. */
 void combination_variances_update(Combination *combination, double *ratios);
 
 #endif

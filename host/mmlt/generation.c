@@ -1,4 +1,4 @@
-/* A generation: a pool of independent samples, chains that begin with some of them, path tracing, and what all show. */
+/* A generation: a pool, the chains that start from it, path tracing, and their combination. */
 #include "mmlt/mmlt.h"
 
 #include "base/timing.h"
@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Items of one pass of path tracing. */
+/* Most items in a pass of path tracing. */
 #define PATHS_MAX (1u << 24)
 
-/* The words of the chains before the pass writes where they end. */
+/* Keeps the chains' words for --dump-bad, before the pass overwrites them with their final states. */
 static bool begun_keep(Mmlt *mmlt, uint count, Error *error)
 {
     size_t bytes = (size_t)count * mmlt->chains.pass_fields * sizeof *mmlt->begun;
@@ -31,7 +31,7 @@ static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     FrameParams frame = mmlt_chain_frame(mmlt);
     uint64_t delivered = 0;
     if (!(mmlt_population(mmlt)->brightness > 0.0))
-        return true; /* a dark pool: what the chains would have shown is dark, too, on average */
+        return true; /* a black pool: the chains' expected contribution is zero, too */
     frame.item_count = count;
     if (run->options->bad_chains && !begun_keep(mmlt, count, error))
         return false;
@@ -40,13 +40,13 @@ static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     bool done =
         run->interface->run(run->backend, &frame, &mmlt->chains, &sink, render_run_stop(run), &delivered, error);
     *whole = delivered == count;
-    if (mmlt->options.paper) /* they go on; their coordinates are there */
+    if (mmlt->options.paper) /* the next pass continues them from their coordinates */
         for (uint i = 0; i < count; ++i)
             mmlt->chains.pass_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
     return done;
 }
 
-/* What the chains of a pass did, and where they are. */
+/* Statistics of a finished pass of chains. */
 static void chains_count(Mmlt *mmlt, uint count)
 {
     const uint *words = mmlt->chains.pass_words;
@@ -57,8 +57,8 @@ static void chains_count(Mmlt *mmlt, uint count)
 
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
 
-/* Path tracing that goes with `steps` steps of chains: whole samples of all pixels, and at least one in the first two
- * generations of either replica of the image, from which its variances are known. */
+/* Path tracing that accompanies `steps` steps of chains: whole samples of all pixels. In the first two generations of
+ * either replica generation g ends with at least g + 1 of them, so that their variances become known. */
 static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
@@ -92,7 +92,7 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
 
 /* ---- all of it --------------------------------------------------------------------------------------------------- */
 
-/* For the other replica, whose turn it is. */
+/* The next generation's plan, from what the replica that has just run knows: the other replica is next. */
 static void plan_renew(Mmlt *mmlt, const Combination *combination)
 {
     Plan plan = combination_plan(combination);
@@ -102,14 +102,14 @@ static void plan_renew(Mmlt *mmlt, const Combination *combination)
     }
 }
 
-/* What the generation showed, to the picture and the layers. */
+/* Adds the generation to the picture and its layers. */
 static bool generation_take(Mmlt *mmlt, Error *error)
 {
     RenderLayers *layers = mmlt->run->options->layers;
     Film *const estimators[ESTIMATOR_COUNT] = {
         [ESTIMATOR_CHAINS] = &mmlt->film, [ESTIMATOR_POOL] = &mmlt->pool_film, [ESTIMATOR_PATHS] = &mmlt->paths_film};
     if (mmlt->options.chains_only) {
-        mmlt->paths_film.light_samples = 0; /* direct light alone */
+        mmlt->paths_film.light_samples = 0; /* it has direct light only, in `sums` */
         if (!film_merge(&mmlt->film, &mmlt->paths_film, error))
             return false;
     } else {
@@ -141,7 +141,7 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return true;
 }
 
-/* Of the generation that has run: steps of its chains, its pool where it had one of its own, and its path tracing. */
+/* The work of the generation that has run: its steps, its pool (if it had its own) and its path tracing. */
 static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
 {
     bool pool = steps > 0 && (!mmlt->options.paper || mmlt->generation == 0);
@@ -152,8 +152,9 @@ static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
     return work > 1.0 ? (uint64_t)work : 1;
 }
 
-/* All passes of a generation. The first begins with path tracing, after the pilot that says what that leaves out: so a
- * stop soon finds something to show. Later ones end with it, for it has the importance that comes with the pool. */
+/* Runs all passes of a generation. The first generation starts with path tracing, after the pilot that gives its
+ * clamping threshold, so that a stop soon has something to show. Later ones end with path tracing, which needs the
+ * target importance that is renewed before the pool. */
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     uint64_t steps = (uint64_t)count * mmlt->options.steps;
@@ -166,8 +167,8 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return first || !*whole || paths_run(mmlt, steps, whole, error);
 }
 
-/* What a first generation that was stopped has of path tracing, as samples of their pixels alone. Paths that it leaves
- * to chains are missing. */
+/* A first generation that was stopped: its finished path tracing samples go to the film as samples of their pixels.
+ * Light above the clamping threshold, which chains would have shown, is missing. */
 static bool stopped_take(Mmlt *mmlt, Error *error)
 {
     Film *film = &mmlt->paths_film;

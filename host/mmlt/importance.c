@@ -5,21 +5,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A place's light counts for no less than this part of the mean. */
+/* Lower bound of a cell's light, relative to the mean. */
 #define LIGHT_LEAST 0.05
 
-/* 1 would have all places visited alike, were what is known of them exact. Half way the square error of a door ajar and
- * of a glossy room is 1.15 times smaller than without, and that of a pool's caustics 1.03 times larger, which three
- * seeds cannot tell from none. */
+/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells alike;
+ * docs/TUNING.md. */
 #define EXPONENT 0.5
 
-/* Every pixel has at least this part of the visits that it would have if all were visited alike, as a path that has not
- * been met is not known of. At equal time, without the worst thousandth of pixels, these visits divide the square error
- * of a lamp in glass by 1.3 and that of a glossy hall by 1.1; that of a door ajar is the same. In proportion to the
- * error and not to its root, or with the largest of the tiles beside, they are worse ... */
+/* Fraction of a pool's visits that all pixels share evenly, for paths not yet found; the rest goes where errors are
+ * large; docs/TUNING.md. */
 #define VISITS_EVEN 0.25
 
-/* ... which is so many visits before they are rounded. */
+/* Mean visits per pixel before they are rounded to whole numbers. */
 #define VISITS_MEAN 4.0
 
 void importance_even(float importance[IMPORTANCE_CELLS])
@@ -28,7 +25,7 @@ void importance_even(float importance[IMPORTANCE_CELLS])
         importance[i] = 1.0f;
 }
 
-/* Tiles that meet cell `cell` of `size` pixels along an axis, or stand next to it. */
+/* Range of the tiles that overlap cell `cell` of an axis of `size` pixels, and their neighbours. */
 static void tiles_near(int cell, int size, int tiles, int *first, int *last)
 {
     double unit = (double)size / (double)IMPORTANCE_SIDE;
@@ -89,7 +86,7 @@ static uint cell_pixels(const Combination *combination, uint cell)
            (cell_begin(row + 1, height) - cell_begin(row, height));
 }
 
-/* The tiles' relative error in a cell that has pixels: mean over those that it meets. */
+/* Mean relative error of the tiles that overlap a cell that has pixels. */
 static double error_around(const Combination *combination, const double *errors, uint cell)
 {
     uint width = (uint)combination->size[0], height = (uint)combination->size[1];

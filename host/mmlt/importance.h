@@ -1,32 +1,39 @@
-/* Where the chains of a picture go, and pools more often than elsewhere. The error that counts is relative: dark places
- * need as many visits as bright ones, but chains that go after f spend them where light is. So they go after f times an
- * importance that is the smaller the brighter a place is known to be, and what they carry to the film is divided by it.
- * Pools, whose samples are independent, visit a pixel the more often the larger the error is there: n samples leave an
- * error v / n, and the sum of all is least where n is in proportion to the root of v (Neyman 1934). */
+/* Where chains and pools spend their samples on the film.
+ *
+ * Relative error counts, so dark places need as many samples as bright ones; but chains of target f go where light is.
+ * Their target is therefore f times a target importance that falls with a place's known brightness, and splats are
+ * divided by it (two-stage targets, Hoberock and Hart 2010). Pools, whose samples are independent, visit pixels in
+ * proportion to the root of their error: n samples leave an error v / n, and the sum over all pixels is least for n
+ * proportional to sqrt(v) (Neyman 1934).
+ *
+ * Both are constant over each of IMPORTANCE_SIDE x IMPORTANCE_SIDE cells of the crop window. */
 #ifndef TWINLIGHT_MMLT_IMPORTANCE_H
 #define TWINLIGHT_MMLT_IMPORTANCE_H
 
 #include "layout/scene_types.h"
 #include "mmlt/combination.h"
 
-/* No place before another. */
+/* Sets all target importances to 1. */
 void importance_even(float importance[IMPORTANCE_CELLS]);
 
-/* From what `combination` has learnt of the picture so far. Scaled such that the mean worth of a path stays what it is
- * without. */
+/* Computes target importances from what `combination` has learned of the picture, scaled to leave the mean contribution
+ * weight unchanged. All 1 if the picture is black so far. */
 void importance_learn(const Combination *combination, float importance[IMPORTANCE_CELLS]);
 
-/* How often a pool visits the pixels of every cell, as frame->visits: the more often the larger the relative error is
- * there, as `combination` knows it from so many samples of every estimator and from pools that have visited a cell's
- * pixels visited[cell] times as often as the picture's. Where too little is known, all alike: the last is 0. */
+/* Computes the visits of a pool per cell (Guide.visits): the pixels of a cell are visited the more often the larger
+ * their relative error.
+ *
+ * samples: of each estimator, for which errors are predicted (combination_errors). visited[cell]: how often earlier
+ * pools have visited the cell's pixels, relative to the mean. The last of `visits` is 0, which means that all pixels
+ * are visited alike, while errors are unknown or if the film is too large. Fails only when out of memory. */
 bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                        const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error);
 
-/* By how much more rarely pools of such visits visit a cell's pixels than if they visited all alike. 0: it has no
- * pixels. */
+/* The density ratio of a cell: how much more rarely pools with these visits sample it than if they visited all pixels
+ * alike. 0: the cell has no pixels. */
 double importance_density_ratio(const Combination *combination, const uint visits[IMPORTANCE_CELLS + 1], uint cell);
 
-/* Tells `combination` of the visits of the pools that it learns from next. */
+/* Sets the tiles' density ratios in `combination` to those of the pools it learns from next. */
 void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Combination *combination);
 
 #endif

@@ -1,11 +1,11 @@
 /* Multiplexed Metropolis light transport (Hachisuka, Kaplanyan and Dachsbacher 2014; Frolov 2018): paths of one and two
  * segments by path tracing, longer ones by Markov chains.
  *
- * In generations: a pool of independent bidirectional samples, from it chains drawn in proportion to what the samples
- * are worth, some steps of each, and again. The mean of a generation's chains is right whatever their number and
- * length, for chains that begin in proportion to f stay so (sampling by importance resampling; Rubin 1987). Sizes,
- * weights, limits and importance of a generation follow from earlier ones, and the picture is a ratio of sums over all:
- * it is consistent. */
+ * Rendering proceeds in generations: a pool of independent bidirectional samples, chains that start from samples drawn
+ * in proportion to their contribution weights, and a number of steps of each. A generation's chains have the right mean
+ * whatever their number and length, for chains that start with density proportional to f keep it (sampling-importance
+ * resampling, Rubin 1987). Sizes, weights, clamping thresholds and target importance follow from earlier generations,
+ * and the picture is a ratio of sums over all of them: it is consistent, not unbiased. */
 #include "mmlt/mmlt.h"
 
 #include "backend/step_recorder.h"
@@ -16,36 +16,34 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Bits of BD_LIGHT_DELTA. */
+/* Number of bits in BD_LIGHT_DELTA. */
 #define MMLT_DEPTH_LIMIT 31
 
 #define CHAINS_FIRST 256u
 #define STEPS_DEFAULT 64u
 
-/* What a chain of `paper` is chosen from. */
+/* With --mlt-scheme=paper: samples of the pool per chain. */
 #define PAPER_POOL_PER_CHAIN 8u
 
 #define LARGE_STEP_DEFAULT 0.3
 
-/* So many of the steps of the camera's half are shifts (chain/shift.h). For the same work, relMSE of a glossy hall and,
- * in brackets, that with the worst thousandth of its pixels: 0.040 (0.075) with none, 0.029 (0.039) with a quarter,
- * 0.027 (0.037) with this, 0.029 (0.041) with 0.9; of a door ajar 0.087 (0.13) with none, 0.057 (0.090) with half. */
+/* Fraction of the camera subpath's mutations that are shifts (chain/shift.h), which survive on paths over several
+ * glossy surfaces; docs/TUNING.md. */
 #define SHIFTS 0.75f
 
-/* Samples of path tracing for every step of a chain: until variances are known, and where only direct light is
- * wanted. */
+/* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
 #define PATHS_FIRST 1.0
 #define PATHS_DIRECT 0.5
 
-/* A generation takes no longer than this part of the time so far, so that stopping and saving are prompt. */
+/* A generation may take this fraction of the time or work so far, so that stopping and saving are prompt ... */
 #define GENERATION_PART 0.1
 
-/* But for one with a sample of path tracing of every pixel, which may take so much. */
+/* ... or this much if that allows a path tracing sample of every pixel. */
 #define WHOLE_SAMPLE_PART 0.25
 
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
 
-/* Work of a chain and of what goes with it. */
+/* The work of a chain in a generation, with its part of the pool and of path tracing. */
 static double chain_work(const Mmlt *mmlt)
 {
     double steps = (double)mmlt->options.steps;
@@ -55,14 +53,14 @@ static double chain_work(const Mmlt *mmlt)
     return combination_work(samples);
 }
 
-/* Chains that the work left is enough for, rounded up. */
+/* How many chains the remaining work is enough for, rounded up. */
 static uint64_t chains_left(const Mmlt *mmlt, uint64_t total)
 {
     return (uint64_t)ceil((double)(total - mmlt->work_done) / chain_work(mmlt));
 }
 
-/* Chains that go with one sample of path tracing of every pixel, while that is no more work than a part of all so far:
- * generations that have no path tracing show easy light badly. */
+/* Chains that go with one path tracing sample of every pixel, unless that exceeds WHOLE_SAMPLE_PART of the work so far:
+ * generations without path tracing show easy light badly. */
 static uint chains_of_sample(const Mmlt *mmlt)
 {
     double whole = (double)mmlt->run->crop_pixels / (mmlt->paths_per_step * (double)mmlt->options.steps);
@@ -70,8 +68,8 @@ static uint chains_of_sample(const Mmlt *mmlt)
     return mmlt->options.chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
 }
 
-/* Chains of the next generation: generations come in pairs of a size, one for either replica of the image. With a
- * number of samples it follows from that alone, so that the image does. */
+/* Chains in the next generation. Two generations, one for each replica, have the same size. With --samples the sizes
+ * depend on that number alone, so that the image does not depend on the clock. */
 static uint chains_next(const Mmlt *mmlt, uint chains, double seconds, uint64_t total)
 {
     const RenderOptions *options = mmlt->run->options;
@@ -88,7 +86,7 @@ static uint chains_next(const Mmlt *mmlt, uint chains, double seconds, uint64_t 
     return left < next ? (uint)left : next;
 }
 
-/* Few, so that there is soon an image; and no more than half of what a number of samples wants. */
+/* Chains in the first generation: few, for an early image, and at most half of the work that --samples asks for. */
 static uint chains_first(const Mmlt *mmlt, uint64_t total)
 {
     uint64_t left = chains_left(mmlt, total);
@@ -161,7 +159,7 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     return made;
 }
 
-/* Of the films that are shown. */
+/* Reserves sums by depth in the films that are shown. */
 static bool depths_reserve(Mmlt *mmlt, Error *error)
 {
     const RenderLayers *layers = mmlt->run->options->layers;

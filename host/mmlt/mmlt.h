@@ -1,5 +1,5 @@
-/* Metropolis light transport under way: what its loop (mmlt/integrator_mmlt.c), a generation (mmlt/generation.c) and
- * its pool (mmlt/pool.c) weight. */
+/* The state of a Metropolis rendering, shared by its main loop (mmlt/integrator_mmlt.c), a generation
+ * (mmlt/generation.c) and its pool (mmlt/pool.c). */
 #ifndef TWINLIGHT_MMLT_MMLT_H
 #define TWINLIGHT_MMLT_MMLT_H
 
@@ -13,14 +13,13 @@
 
 #include "chain/chain.h"
 
-/* Samples of a pool for every step of a chain, at least. On a Cornell box a sample takes as long as four or five steps,
- * so pools take about a quarter of the time. */
+/* Fewest samples of a pool per step of a chain; docs/TUNING.md. */
 #define POOL_PER_STEP (1.0 / 12.0)
 
-/* Even generations and odd ones are two renderings that know of each other only what they have found out about the
- * scene: weights, plans and limits of one follow from what the other has seen. So neither weighs its own errors
- * directly, which its chains carry on from one generation to the next, and the images of both can be compared. By way
- * of the other its past does have a part in its weights, so a picture is consistent but not unbiased. */
+/* Even and odd generations are two replicas, independent but for what each has learned of the scene: a generation's
+ * weights, plan and clamping threshold come from the other replica. So no replica weights its own errors, which its
+ * chains carry from one generation to the next, and the two images can be compared. Through the other replica its own
+ * past does affect its weights: the picture is consistent but not unbiased. */
 #define REPLICAS 2
 
 typedef struct Mmlt {
@@ -28,74 +27,78 @@ typedef struct Mmlt {
     ChainOptions options;
     FrameParams paths_frame;
     StepList paths, pool, chains;
-    uint64_t paths_delivered; /* of the generation under way, samples of single pixels */
-    uint64_t paths_done; /* whole samples of path tracing, of every pixel */
-    double paths_wanted; /* as many, in all */
-    double paths_per_step, pool_per_step; /* samples of path tracing and of pools for a step of a chain */
-    uint64_t work_done, work_last; /* combination_work: what --samples and progress count; of the latest generation */
-    uint next_sample; /* of the pool: numbers below it are used */
-    uint pool_sample; /* the first of the latest pool */
-    uint pool_pixel; /* where the latest pool began in the order in which they visit the pixels */
-    uint pool_lights_first; /* of its samples: the first with a walk from the light */
-    uint pool_next[REPLICAS + 1]; /* where the next of a half will; last: of all that visit every pixel alike */
-    uint pool_turns[REPLICAS + 1]; /* how often they have visited them all, or how many that visit more there were */
+    uint64_t paths_delivered; /* single-pixel samples of path tracing in the generation under way */
+    uint64_t paths_done; /* path tracing samples of every pixel so far */
+    double paths_wanted; /* the same according to the plan, fractions included */
+    double paths_per_step, pool_per_step; /* the current plan */
+    /* combination_work, in all (what --samples and progress count) and of the latest generation */
+    uint64_t work_done, work_last;
+    uint next_sample; /* the next unused sample number for pools */
+    uint pool_sample; /* first sample number of the latest pool */
+    uint pool_pixel; /* first position of the latest pool in the order in which pools visit pixels */
+    uint pool_lights_first; /* index of the latest pool's first sample with a light subpath */
+    /* pixel order position of the next pool: of each replica's own visits; last: of all that visit every pixel alike */
+    uint pool_next[REPLICAS + 1];
+    /* rounds of the pixels completed in each order; for pools longer than a round, the number of pools */
+    uint pool_turns[REPLICAS + 1];
     uint generation;
-    uint pool_count; /* room for so many samples */
+    uint pool_count; /* capacity of pool_words, samples */
     uint *pool_words;
-    uint *begun; /* words of the chains as their pass began, where somebody wants to know */
+    uint *begun; /* the chains' words before the pass; only with --dump-bad */
     ChainPopulation populations[REPLICAS];
     float importance[REPLICAS][IMPORTANCE_CELLS];
-    Guide guide; /* what the passes under way go by */
-    uint visits[REPLICAS][IMPORTANCE_CELLS + 1]; /* of pools: importance_visits */
-    double visited[REPLICAS][IMPORTANCE_CELLS]; /* visits of a cell's pixels over those of all, summed over samples */
-    double visited_all[REPLICAS]; /* samples of pools */
+    Guide guide; /* for the passes under way */
+    uint visits[REPLICAS][IMPORTANCE_CELLS + 1]; /* of each replica's pools: importance_visits */
+    double visited[REPLICAS][IMPORTANCE_CELLS]; /* visits per pixel over the mean, summed over samples */
+    double visited_all[REPLICAS]; /* pool samples in `visited` */
     ChainGroups groups;
     Film film, pool_film, paths_film; /* of the generation under way */
     Combination combinations[REPLICAS];
-    double pilot_brightness; /* of the pool before the first; 0: there was none */
-    double brightness; /* of the latest pool: mean worth of a sample (POOL_WEIGHT) */
-    double brightness_sum[REPLICAS]; /* of all pools */
+    double pilot_brightness; /* brightness by the pilot pool; 0: there was none */
+    double brightness; /* of the latest pool: mean contribution weight (POOL_WEIGHT) */
+    double brightness_sum[REPLICAS]; /* summed over the replica's pools */
 } Mmlt;
 
-/* The lists of steps, films, and options as they are meant; run->film must have its quantum. To be destroyed whether it
- * fails or not. */
+/* Creates step lists and films and fills in default options. run->film must have its quantum. Call mmlt_destroy even on
+ * failure. */
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error);
 void mmlt_destroy(Mmlt *mmlt);
 
-/* Chains of the generation under way. */
+/* The population of the replica whose generation is under way. */
 ChainPopulation *mmlt_population(Mmlt *mmlt);
 
-/* For a pass whose splats go to `film`. */
+/* Prepares the frame of a pass whose splats go to `film`. */
 void mmlt_frame_film(FrameParams *frame, const Film *film);
 
-/* Which replica of the image a generation is for; `paper` has chains that never end. */
+/* The replica that a generation belongs to; always 0 with --mlt-scheme=paper, whose chains never restart. */
 int mmlt_replica(const Mmlt *mmlt, uint generation);
 
-/* What all passes of a generation have in common: importance and limit. */
+/* Sets what all passes of a generation share: target importance (in mmlt->guide) and clamping threshold. */
 void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame);
 
-/* What passes of the latest pool, of `count` samples, and of chains from it are given. */
+/* Frames for passes of the latest pool, of `count` samples, and of chains that start from it. */
 FrameParams mmlt_pool_frame(Mmlt *mmlt, uint count);
 FrameParams mmlt_chain_frame(Mmlt *mmlt);
 
-/* A small pool before the first, of which only its brightness is kept: so the first generation has a limit as later
- * ones do, and what it shows can be compared with them. `chains`: of the first generation. *whole becomes false when it
- * was stopped before its end. */
+/* Runs a small pilot pool before the first generation and keeps only its brightness, so that the first generation has a
+ * clamping threshold as later ones do and its variances compare with theirs. chains: of the first generation. *whole:
+ * set to false if stopped before the end. */
 bool mmlt_pilot_run(Mmlt *mmlt, uint chains, bool *whole, Error *error);
 
-/* A pool, and where `count` chains begin (the words of mmlt->chains). *whole becomes false when it was stopped before
- * its end. */
+/* Runs a pool and resamples `count` chains from it (the words of mmlt->chains). *whole: set to false if stopped before
+ * the end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 
-/* Takes down where the latest pool has been. */
+/* Adds the latest pool's visits to `visited`. */
 void mmlt_visits_count(Mmlt *mmlt);
 
-/* Writes what makes the bad ones of a pass of `count` chains again where somebody wants to know
+/* Only with --dump-bad: writes what reproduces the chains of a pass of `count` that met a non-finite contribution
  * (RenderOptions.bad_chains). */
 void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);
 
-/* A pool, `count` chains from it, path tracing, and what they show to the film. Counts only as a whole: when it is
- * stopped before its end nothing of it is kept, but of the first the samples of path tracing that were finished. */
+/* Runs a generation (a pool, `count` chains from it, path tracing) and adds their combination to the film. All or
+ * nothing: a generation that is stopped is discarded, except that of the first the finished path tracing samples are
+ * kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
 #endif

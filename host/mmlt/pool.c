@@ -1,4 +1,4 @@
-/* A pool, from where its samples are taken to the chains that begin with some of them. */
+/* The bootstrap pool: which pixels its samples visit, its pass, and the chains that start from it. */
 #include "mmlt/mmlt.h"
 
 #include "base/sample_statistics.h"
@@ -12,19 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A path may show so many times the mean worth of a pool's sample, both with their importance. The rest is left to
- * chains, which have it with less noise: for the same work, pixels of a lamp in glass, a door ajar and a glossy hall
- * have 1.2 times the square error with 16. With 1 they have the same. */
+/* Clamping threshold, in units of the mean contribution weight of a pool's sample. More shows fireflies, less leaves
+ * more to the chains; docs/TUNING.md. */
 #define CLAMP_FACTOR 2.0
 
-/* The part of a pool's samples that have a walk from the light. The rest, which take a third of the time, look for what
- * the camera's walk meets or connects with a light by itself. At equal time, 128 x 128 pixels, against pools of which
- * all have one: half the square error of a lamp in glass, where the worst dots are lights met by chance through glass;
- * 0.8 times that of a door ajar, the same in a glossy hall. With a sixteenth easy places of the lamp's room have 1.5
- * times the error. */
+/* Fraction of a pool's samples that have a light subpath; those without take a third of the time; docs/TUNING.md. */
 #define POOL_LIGHTS 0.25
 
-/* Of the pool before the first, at most. */
+/* The pilot pool: most samples, and parts whose median brightness counts. */
 #define PILOT_SAMPLES 4096u
 #define PILOT_PARTS 16u
 
@@ -49,7 +44,7 @@ ChainPopulation *mmlt_population(Mmlt *mmlt)
     return &mmlt->populations[mmlt_replica(mmlt, mmlt->generation)];
 }
 
-/* What the other replica has seen of the pools' brightness; before that, what the pilot has. */
+/* The mean brightness of the other replica's pools so far; at first the pilot's. */
 static double brightness_known(const Mmlt *mmlt)
 {
     uint generations = (mmlt->generation + 1) / 2;
@@ -57,22 +52,23 @@ static double brightness_known(const Mmlt *mmlt)
                            : mmlt->pilot_brightness;
 }
 
-/* A uniform number of the host's own. */
+/* A uniform number in (0, 1), a function of seed, generation and use. */
 static double host_random(const FrameParams *frame, uint generation, uint use)
 {
     Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
     return ((double)random.x[0] + 0.5) / 4294967296.0;
 }
 
-/* Terms of the sequence by which lights_first goes before it begins anew. */
+/* Terms of the van der Corput sequence in lights_first; then a new random shift. */
 #define TURNS 16u
 
-/* The first sample with a walk from the light, of the next pool, which begins at `place` in the order of the pixels.
- * Pools visit the same pixels again after a round, so those with a walk are chosen by their place in that order: each
- * has one in about four rounds, whatever the sizes of pool and round. Parts of a pool take turns in the order of van
- * der Corput's sequence, shifted by chance, and anew after TURNS, so that periods that fit it cannot add up. Samples
- * with a walk stay together, so that chunks without any leave out their steps. turn: rounds so far, or pools where
- * those are longer. */
+/* Index of the next pool's first sample with a light subpath; the pool starts at position `place` of the pixel order.
+ * turn: rounds completed so far, or pools if those are longer than a round.
+ *
+ * Pools visit the same pixels again in the next round, so samples with a light subpath are chosen by position: every
+ * position gets one in about 1 / POOL_LIGHTS rounds, whatever the sizes of pool and round. Parts of a pool take turns
+ * in van der Corput order, randomly shifted; a new shift every TURNS keeps periods that match the sequence from adding
+ * up. These samples are contiguous, so that chunks with none skip the light walk. */
 static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t place, uint items)
 {
     double part = host_random(&mmlt->run->frame, (uint)(turn / TURNS), 2 + order);
@@ -81,8 +77,8 @@ static uint lights_first(const Mmlt *mmlt, uint order, uint64_t turn, uint64_t p
     return (uint)(((uint64_t)(part * items) + items - place % items) % items);
 }
 
-/* The next pool, of `items` samples: it goes on visiting the pixels where the last one stopped, and the first begins
- * anywhere, so that each by itself is as likely to see one pixel as another. */
+/* Places the next pool of `items` samples: it continues in the pixel order where the last one stopped. The first starts
+ * at a random position, so that each pool on its own samples all pixels with equal probability. */
 static void pool_place(Mmlt *mmlt, uint items)
 {
     int replica = mmlt_replica(mmlt, mmlt->generation);
@@ -93,7 +89,7 @@ static void pool_place(Mmlt *mmlt, uint items)
         *next = (uint)(host_random(&mmlt->run->frame, 0, 1) * (double)round);
     uint64_t end = (uint64_t)*next + items;
     mmlt->pool_pixel = *next;
-    if (items <= round && *next + items / 2 >= round) /* most of it is in the next round */
+    if (items <= round && *next + items / 2 >= round) /* most of it lies in the next round */
         mmlt->pool_lights_first = lights_first(mmlt, order, *turn + 1, *next + items - round % items, items);
     else
         mmlt->pool_lights_first = lights_first(mmlt, order, *turn, *next, items);
@@ -103,7 +99,7 @@ static void pool_place(Mmlt *mmlt, uint items)
     mmlt->next_sample += (uint)((end + round - 1) / round) * (visits > 0 ? VISITS_MOST : 1);
 }
 
-/* Of what a path shows before it becomes an excess: that of a usual one many times, as earlier pools have it. */
+/* The pool's clamping threshold, from the brightness of earlier pools. */
 static float clamp_threshold_of(const Mmlt *mmlt)
 {
     if (mmlt->options.chains_only)
@@ -118,7 +114,7 @@ void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame)
     frame->clamp_threshold = clamp_threshold_of(mmlt);
 }
 
-/* What a pool and the chains from it have in common. */
+/* Sets what a pool and the chains that start from it share. */
 static void seeds_frame(Mmlt *mmlt, FrameParams *frame)
 {
     mmlt_generation_frame(mmlt, frame);
@@ -181,13 +177,13 @@ static bool pool_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return done;
 }
 
-/* Uniform numbers of the host's own, one for each generation. */
-static double offset_of(const Mmlt *mmlt)
+/* A uniform number for each generation, for systematic resampling. */
+static double resampling_offset(const Mmlt *mmlt)
 {
     return host_random(&mmlt->run->frame, mmlt->generation, 0);
 }
 
-/* Mean worth of every so-manyth of the latest pool's samples, from the first on. */
+/* Mean contribution weight of the latest pool's samples first, first + every, ... */
 static double pool_brightness(const Mmlt *mmlt, uint pool_count, uint first, uint every)
 {
     double sum = 0.0, count = 0.0;
@@ -203,11 +199,11 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint 
 {
     ChainPopulation *population = mmlt_population(mmlt);
     ChainStarts starts;
-    /* A sample of a pool that is worth this begins one chain. */
+    /* A pool sample of this contribution weight starts one chain on average. */
     double threshold = brightness_known(mmlt) * pool_count / count;
     mmlt->brightness = pool_brightness(mmlt, pool_count, 0, 1);
     if (!chain_population_renew(population, mmlt->pool_words, pool_count, change, threshold, mmlt->options.order,
-                                offset_of(mmlt), count, &starts, error))
+                                resampling_offset(mmlt), count, &starts, error))
         return false;
     mmlt->chains.pass_words = population->words;
     mmlt->chains.pass_stride = count;
@@ -217,8 +213,8 @@ static bool chains_begin(Mmlt *mmlt, uint pool_count, const float *change, uint 
 
 /* ---- what is known of the picture -------------------------------------------------------------------------------- */
 
-/* Samples of a pool for so many steps of chains: of every pixel as many, where that changes the number by no more than
- * half. */
+/* Samples of a pool that accompanies `steps` steps: --pool, else the plan's, rounded to whole samples per pixel if that
+ * gives at least one. */
 static uint pool_size(const Mmlt *mmlt, double steps)
 {
     double pixels = (double)mmlt->run->crop_pixels, whole = rint(mmlt->pool_per_step * steps / pixels);
@@ -228,15 +224,15 @@ static uint pool_size(const Mmlt *mmlt, double steps)
     return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
 }
 
-/* Whether the replica whose turn it is goes by what is known now: after 2, 4, 8 ... generations of its own, so that
- * what is known has grown by much since, and chains nearly always go on as they were. */
+/* Whether the replica under way adopts new importance and visits: after 2, 4, 8 ... generations of its own, when much
+ * more is known, so that its target changes rarely. */
 static bool importance_due(const Mmlt *mmlt)
 {
     uint own = mmlt->generation / REPLICAS;
     return !mmlt->options.chains_only && own >= 2 && (own & (own - 1)) == 0;
 }
 
-/* The importance as the other replica knows it. change: room for what it is over what it was. */
+/* Renews the target importance from what the other replica knows. change: receives the ratio new over old, per cell. */
 static void importance_renew(Mmlt *mmlt, float *change)
 {
     int replica = mmlt_replica(mmlt, mmlt->generation);
@@ -247,7 +243,7 @@ static void importance_renew(Mmlt *mmlt, float *change)
         change[i] = importance[i] / change[i];
 }
 
-/* The same of how often its pools visit what. */
+/* Renews the pools' visits likewise. */
 static bool visits_renew(Mmlt *mmlt, Error *error)
 {
     int replica = mmlt_replica(mmlt, mmlt->generation), other = 1 - replica;
@@ -275,8 +271,8 @@ void mmlt_visits_count(Mmlt *mmlt)
     mmlt->visited_all[replica] += samples;
 }
 
-/* pool_brightness for a limit that has no more to go by than one small pool: the median of the means of its parts,
- * which a rare bright path in one of them does not change. */
+/* Robust pool_brightness for the clamping threshold of one small pool: the median of means over parts, which a rare
+ * bright path in one part does not change. */
 static double pool_brightness_robust(const Mmlt *mmlt, uint pool_count)
 {
     double parts[PILOT_PARTS];

@@ -1,4 +1,4 @@
-/* Names of the state of bidirectional integrators (path/bd_state.h, path/ib_weight.h). */
+/* Names of the state words of bidirectional integrators (path/bd_state.h, path/ib_weight.h), for --verify. */
 #ifndef TWINLIGHT_RENDER_BD_FIELDS_H
 #define TWINLIGHT_RENDER_BD_FIELDS_H
 
@@ -6,7 +6,7 @@
 
 #include "path/bd_state.h"
 
-/* The words that all bidirectional integrators have, for arrays of StateField. */
+/* The state words that all bidirectional integrators have, as initialisers of StateField. */
 #define BD_FIELD_LIST                                                                                                  \
     {BUFFER_PATHS, BD_PIXEL, 1, false, "pixel"}, {BUFFER_PATHS, BD_SAMPLE, 1, false, "sample"},                        \
         {BUFFER_PATHS, BD_WEIGHT, 1, true, "filter weight"}, {BUFFER_PATHS, BD_RADIANCE, 3, true, "radiance"},         \
@@ -36,12 +36,13 @@
         BUFFER_PATHS, BD_SURVIVAL, 1, true, "survival of the walk"                                                     \
     }
 
-/* Those behind the first BD_FIELD_COUNT are IBPT's. */
+/* All fields; those after the first BD_FIELD_COUNT belong to IBPT alone. */
 #define BD_FIELD_COUNT 31
 #define IB_FIELD_COUNT (BD_FIELD_COUNT + 6)
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 
-/* The list of BDPT; with frame->pool that of a pool's samples, which end in BUFFER_PASS (chain/pool.h). */
+/* Records BDPT, or with frame->pool a pool for chains, whose samples end in BUFFER_PASS (chain/pool.h). Free `list`
+ * with step_list_destroy. */
 bool bdpt_list(FrameParams *frame, StepList *list, Error *error);
 
 #endif

@@ -7,7 +7,7 @@ static uint64_t larger(uint64_t a, uint64_t b)
     return a > b ? a : b;
 }
 
-/* Of two parts; 0: not known. */
+/* The smaller of two fractions; 0: unknown. */
 static double smaller_known(double a, double b)
 {
     return a > 0.0 && (a < b || !(b > 0.0)) ? a : b;

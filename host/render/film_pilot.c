@@ -11,7 +11,7 @@
 
 #define PILOT_ITEMS 4096u
 
-/* A sum of floats that does not depend on their order: mantissas of 24 bits by exponent. */
+/* An order-independent sum of non-negative floats: 24-bit mantissas summed per exponent. */
 #define FLOAT_EXPONENTS 255u
 
 typedef struct Pilot {
@@ -44,7 +44,7 @@ static void pilot_splats(void *context, const uint *splats, uint count, uint str
     pthread_mutex_unlock(&pilot->mutex);
 }
 
-/* What shows a picture of the integrator in independent samples. */
+/* An integrator that renders the same picture in independent samples. */
 static const Integrator *pilot_integrator(const Integrator *integrator)
 {
     return integrator->list ? integrator : integrator_bdpt();
@@ -66,8 +66,8 @@ static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrato
     return frame;
 }
 
-/* Mean radiance, were the lights' flux spread over the sphere around the scene, and leaving it in all directions
- * alike. */
+/* Mean radiance if the lights' flux were spread over the scene's bounding sphere and left it evenly in all
+ * directions. */
 static double radiance_of_power(const Scene *scene)
 {
     double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;

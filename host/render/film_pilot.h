@@ -1,4 +1,4 @@
-/* The pilot: a few paths that say how bright the picture is, before the film has its quantum. */
+/* The pilot: a few paths that estimate the picture's brightness before the film has its quantum. */
 #ifndef TWINLIGHT_RENDER_FILM_PILOT_H
 #define TWINLIGHT_RENDER_FILM_PILOT_H
 
@@ -6,13 +6,13 @@
 #include "render/run.h"
 #include "scene/scene.h"
 
-/* The number of the pilot's samples, which no image reaches. */
+/* Sample number of the pilot's paths; above those of any image. */
 #define PILOT_SAMPLE 0xffff0000u
 
-/* Sets the quantum of run->film from the mean radiance of 4096 paths of the integrator's strategies, with those that
- * `strategy` and `unweighted` leave out; where they see nothing, from the power of the lights. It is that of the whole
- * film, so that a crop has the quantum and with it the bits of the whole picture, and depends on scene, integrator,
- * depth and seed alone. */
+/* Sets the quantum of run->film from the mean radiance of 4096 paths over the whole film. They use all of the
+ * integrator's strategies, even those excluded by `only_strategy`, and ignore `unweighted`. If all are black, the
+ * lights' power is used instead. The quantum depends on scene, integrator, depth and seed only, so a crop has the same
+ * bits as the whole picture. Fails if the backend does or out of memory. */
 bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error);
 
 #endif

@@ -1,4 +1,5 @@
-/* Algorithms that light is carried by: each is a list of steps over items, one item a path or a pair of them. */
+/* Light transport algorithms. An integrator is a list of steps over items, where an item is one path or one pair of
+ * subpaths. */
 #ifndef TWINLIGHT_RENDER_INTEGRATOR_H
 #define TWINLIGHT_RENDER_INTEGRATOR_H
 
@@ -8,14 +9,15 @@
 struct RenderRun;
 
 typedef struct Integrator {
-    const char *name; /* of --integrator */
+    const char *name; /* name for --integrator */
     const char *summary;
-    int depth_limit; /* the longest path in segments */
+    int depth_limit; /* most segments of a path */
     uint strategies; /* STRATEGIES_* */
-    bool guides; /* directions count from lights (light/light_guide.h), unless options say otherwise */
-    /* Records the steps for paths of up to frame->max_depth segments, to be freed by step_list_destroy. */
+    bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
+    /* Records the steps for paths of up to frame->max_depth segments; free with step_list_destroy. NULL if `render` is
+     * set. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
-    /* Renders on its own terms; NULL: passes of `list` over the samples of all pixels (render/render.h). */
+    /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h); may be NULL. */
     bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 
@@ -26,7 +28,7 @@ typedef struct Integrator {
 INTEGRATOR_LIST(INTEGRATOR_DECLARE)
 #undef INTEGRATOR_DECLARE
 
-/* NULL with an error that lists what there is. */
+/* Finds an integrator by name; NULL with an error that lists all. */
 const Integrator *integrator_find(const char *name, Error *error);
 
 #endif

@@ -1,21 +1,21 @@
-/* Bidirectional path tracing: a walk from a light, a walk from the camera, and every connection between them. */
+/* Bidirectional path tracing: a light subpath, a camera subpath, and all connections between them. */
 #include "backend/step_recorder.h"
 #include "layout/kernel_list.h"
 #include "path/bd_state.h"
 #include "render/bd_fields.h"
 #include "render/integrator.h"
 
-/* Bits of BD_LIGHT_DELTA; also what vertices and pairs are worth storing and making. */
+/* Bits in BD_LIGHT_DELTA; longer paths would not be worth their storage and connections. */
 #define BDPT_DEPTH_LIMIT 31
 
-/* What has been gathered so far to the film, where depths are split: it is all of one depth. */
+/* With split depths: splats what has been gathered since the last splat, all of one depth. */
 static void record_gathered(Recorder *recorder)
 {
     recorder_kernel(recorder, KERNEL_bd_splat, false);
     recorder_step(recorder, STEP_SPLAT);
 }
 
-/* The camera's walk where depths are split. Nothing is left out: a splat that is, is what it was in another pass. */
+/* The camera subpath with split depths. Without skips: a skipped splat would repeat a stale one. */
 static void record_split_walk(Recorder *recorder, uint segments)
 {
     for (uint i = 1; i <= segments; ++i) {
@@ -38,7 +38,7 @@ static void record_connection(Recorder *recorder, uint t, bool split)
         record_gathered(recorder);
 }
 
-/* The pairs in the order that connection_advance (kernels/bd_connect.cl) has. */
+/* Connections (s, t) in the order of connection_advance (kernels/bd_connect.cl). */
 static void record_connections(Recorder *recorder, uint max_depth, bool split)
 {
     for (uint s = 2; s <= max_depth; ++s)
@@ -52,7 +52,7 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->max_depth;
     bool split = frame->split_depths != 0;
-    /* Two walks, their beginnings and the splat, and up to five steps a pair. */
+    /* Two walks, their starts, the last splat, and up to five steps per connection. */
     size_t capacity = 9 * (size_t)max_depth + 9 + 5 * (size_t)max_depth * (max_depth + 1) / 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))

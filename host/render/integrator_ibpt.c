@@ -1,4 +1,5 @@
-/* Instant bidirectional path tracing: both walks, each with the one connection that its vertices allow on their own. */
+/* Instant bidirectional path tracing: light and camera subpaths whose vertices are connected as they are made (t = 1
+ * and s = 1) and not stored. */
 #include "backend/step_recorder.h"
 #include "layout/kernel_list.h"
 #include "path/bd_state.h"
@@ -8,13 +9,13 @@
 
 #include <assert.h>
 
-/* Random numbers of connections have 64 places a depth (path/bd_random.h). */
+/* Connections (s, t) use random numbers 64 s + t (path/bd_random.h). */
 #define IBPT_DEPTH_LIMIT 63
 
-/* Steps of a segment: rays, vertex, connection, its ray, its sum, [splats,] next direction, skip. */
+/* Steps per segment: rays, vertex, connection, shadow rays, contribution, [splats,] next direction, skip. */
 #define SEGMENT_STEPS_MAX 8
 
-/* The light's walk: every vertex but y_0 is shown to the lens. */
+/* The light subpath: every vertex but y_0 is connected to the lens. */
 static void record_light(Recorder *recorder, uint segments)
 {
     size_t end = recorder->count + (size_t)segments * 8 - 2;
@@ -23,7 +24,7 @@ static void record_light(Recorder *recorder, uint segments)
         recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
         recorder_kernel(recorder, KERNEL_ib_connect, true);
         recorder_step(recorder, STEP_TRACE_SHADOW);
-        /* Those that died have a splat to take back. */
+        /* not live_only: items whose walk has ended must clear their last splat */
         recorder_kernel(recorder, KERNEL_ib_add_connections, false);
         recorder_step(recorder, STEP_SPLAT);
         if (i == segments)

@@ -1,4 +1,4 @@
-/* Path tracing: which kernels run when. */
+/* Path tracing: the order of its kernels. */
 #include "render/integrator.h"
 
 #include "backend/step_recorder.h"
@@ -7,9 +7,9 @@
 
 #include <assert.h>
 
-/* Two steps around the loop, seven in it, two in its last turn. Where direct light is split off there are two more in
- * the second turn, which is never left out. Where depths are, there are two in all turns after it but the last, and
- * none is left out: a splat that is, is what it was in another pass. */
+/* Records two steps around the loop, seven per segment, and two in the last. Splitting off direct light adds two in the
+ * second, which is never skipped. Splitting by depth adds two in each later one but the last and disables skips: a
+ * skipped splat would repeat a stale one. */
 static void steps_record(Recorder *recorder, uint max_depth, bool split, bool split_depths)
 {
     size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2 + (split ? 1 : 0);

@@ -1,4 +1,4 @@
-/* What is asked of a rendering. */
+/* The options of a rendering, and its callbacks. */
 #ifndef TWINLIGHT_RENDER_JOB_H
 #define TWINLIGHT_RENDER_JOB_H
 
@@ -7,53 +7,56 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-/* How chains lie in memory: by depth and strategy, by depth, or as they were drawn. */
+/* Order of chains in memory: by depth and strategy, by depth, or as drawn. */
 typedef enum ChainOrder { CHAIN_ORDER_STRATEGY, CHAIN_ORDER_DEPTH, CHAIN_ORDER_NONE } ChainOrder;
 
-/* How chains are run (mmlt/integrator_mmlt.c). Zeros: the defaults. */
+/* Options of Markov chains (mmlt/integrator_mmlt.c). Zero means the default. */
 typedef struct ChainOptions {
-    unsigned chains; /* at a time */
-    unsigned steps; /* of a chain between two pools */
-    unsigned pool; /* samples of a pool */
-    bool
-        paper; /* one pool, and large steps within the chains, as Frolov 2018; else a new pool and new chains every time */
-    double large_step; /* probability, of `paper` */
-    unsigned mutations; /* bit MUTATION_* */
+    unsigned chains; /* at once */
+    unsigned steps; /* per chain between two pools */
+    unsigned pool; /* samples per pool */
+    /* the scheme of Frolov 2018: one pool, then large steps; otherwise every generation has a new pool */
+    bool paper;
+    double large_step; /* probability, for `paper` */
+    unsigned mutations; /* MUTATION_* as bits */
     ChainOrder order;
-    bool ungrouped; /* every chain its own kind of mutation */
-    bool shiftless; /* no step keeps the rest of the path */
-    bool unguided; /* directions do not count from lights */
-    bool chains_only; /* the pool's samples are not shown (mmlt/combination.h) */
-    int shown; /* 1 + BLEND_*: that stream alone, with what it leaves to chains; 0: all. For tests */
+    bool ungrouped; /* each chain chooses its own kind of mutation */
+    bool shiftless; /* no shifts (chain/shift.h) */
+    bool unguided; /* no light guides (light/light_guide.h) */
+    bool chains_only; /* show chains and direct light only; no combination (mmlt/combination.h) */
+    int shown; /* for tests: 1 + ESTIMATOR_*, to show that estimator and what it leaves to chains; 0: all */
 } ChainOptions;
 
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */
     double seconds; /* 0: no limit but `samples` */
-    int max_depth; /* path segments, >= 1 */
+    int max_depth; /* segments, >= 1 */
     uint64_t seed;
-    bool balance; /* balance heuristic; else the power heuristic */
-    bool only_strategy; /* show one strategy alone: */
+    bool balance; /* balance heuristic; otherwise the power heuristic */
+    bool only_strategy; /* show one strategy only */
     unsigned strategy[2]; /* s, t */
-    bool unweighted; /* its weights taken for 1 */
+    bool unweighted; /* with MIS weight 1 */
     ChainOptions chains;
-    FILE *bad_chains; /* gets a line of JSON for every chain that met something not finite; NULL: nobody does */
-    struct RenderLayers *layers; /* .wanted says what; filled in besides the film, to be destroyed. NULL: nothing */
+    /* --dump-bad: receives a line of JSON per chain that met a non-finite contribution; NULL: none */
+    FILE *bad_chains;
+    /* in: .wanted; out: the layers, to be destroyed by the caller; NULL: none */
+    struct RenderLayers *layers;
     double save_every; /* seconds between calls of `save`; 0: never */
-    const atomic_int *stop; /* becomes 1 by a signal: return what is finished, at once; NULL: never */
+    /* set to 1 by a signal handler: return at once with the samples finished so far; NULL: never */
+    const atomic_int *stop;
 } RenderOptions;
 
 typedef struct RenderProgress {
-    double elapsed; /* seconds of rendering */
-    double fraction; /* 0 ... 1 of the budget */
-    uint64_t samples; /* paths finished */
+    double elapsed; /* seconds */
+    double fraction; /* of the budget, 0 ... 1 */
+    uint64_t samples; /* paths; MMLT: work in samples of path tracing */
     uint64_t rays;
 } RenderProgress;
 
 typedef struct RenderCallbacks {
     void (*progress)(void *context, const RenderProgress *progress); /* a few times a second; may be NULL */
-    /* Every save_every seconds, and again when it fails; may be NULL. */
+    /* Called every save_every seconds, also after failures; may be NULL. */
     bool (*save)(void *context, const Film *film, Error *error);
     void *context;
 } RenderCallbacks;

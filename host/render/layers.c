@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/* Samples of a pixel's AOVs at most. */
+/* Most AOV samples per pixel. */
 #define AOV_SAMPLES 16u
 
 static bool wants(const RenderLayers *layers, Layer layer)

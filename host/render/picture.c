@@ -8,8 +8,8 @@
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-/* OpenEXR holds a band packed, rearranged and compressed, which may take a little more than its size; the rest is for
- * zlib, libpng, and the header. */
+/* OpenEXR holds a band packed, rearranged and compressed, each possibly slightly larger than the band; the rest is for
+ * zlib, libpng and the header. */
 #define SPARE_BANDS 4
 #define SPARE_BYTES ((size_t)2 << 20)
 
@@ -19,7 +19,7 @@ static size_t depth_groups(uint last)
     return last >= SPLAT_DEPTH_MIN ? last + 1 - SPLAT_DEPTH_MIN : 0;
 }
 
-/* Groups that a picture may have. */
+/* Most groups that a picture with these settings has. */
 static size_t groups_of(const PictureSettings *settings, uint depth)
 {
     unsigned wanted = settings->layers ? settings->layers->wanted : 0;
@@ -34,7 +34,7 @@ bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings,
                          Error *error)
 {
     size_t row = 3 * (size_t)width, groups = groups_of(settings, depth);
-    size_t plane = groups * EXR_BAND_ROWS * row, values = plane + 2 * row; /* despeckling sees a row above and below */
+    size_t plane = groups * EXR_BAND_ROWS * row, values = plane + 2 * row; /* despeckling reads a row above and below */
     memory->spare_bytes = SPARE_BANDS * plane * sizeof(float) + SPARE_BYTES + sizeof(uint64_t) * (size_t)height;
     memory->values = malloc(values * sizeof *memory->values);
     memory->plane = malloc(plane * sizeof *memory->plane);
@@ -60,7 +60,7 @@ void picture_memory_lend(PictureMemory *memory)
     memory->spare = NULL;
 }
 
-/* That it may fail is no worse than not to try. */
+/* If this fails, the next write merely has no reserve. */
 void picture_memory_take_back(PictureMemory *memory)
 {
     memory->spare = malloc(memory->spare_bytes);
@@ -106,7 +106,7 @@ static void depths_add(Picture *picture, const Film *film)
     }
 }
 
-/* The picture's own layers: of light alone, so everything but the variables. */
+/* Adds the layers that are parts of the picture's light. */
 static void parts_add(Picture *picture, const Film *film)
 {
     float scale = picture->settings.scale;
@@ -138,7 +138,7 @@ static void variables_add(Picture *picture)
                  FILM_ALL, 1.0f);
     if (wants(picture, LAYER_DEPTH)) {
         film_set(group_add(picture, PICTURE_FILM, "Z", "", "", false), &layers->aovs[AOV_DEPTH], FILM_ALL, 1.0f);
-        picture->channel_count -= 2; /* all three are the same */
+        picture->channel_count -= 2; /* one channel, not three equal ones */
     }
 }
 
@@ -147,7 +147,7 @@ void picture_init(Picture *picture, const PictureSettings *settings, const Film 
     *picture = (Picture){
         .settings = *settings, .width = film->crop[2] - film->crop[0], .height = film->crop[3] - film->crop[1]};
     size_t row = 3 * (size_t)picture->width;
-    picture->free = memory->values + row; /* the row above the picture's own band */
+    picture->free = memory->values + row; /* leaves room for the row above the picture's own band */
     film_set(group_add(picture, PICTURE_FILM, "R", "G", "B", false), film, FILM_ALL, settings->scale);
     picture->free += row;
     parts_add(picture, film);
@@ -158,7 +158,7 @@ void picture_init(Picture *picture, const PictureSettings *settings, const Film 
 
 /* ---- bands ------------------------------------------------------------------------------------------------------- */
 
-/* Rows above and below a band that despeckling sees, too; fewer at the picture's edges. */
+/* Extra rows above and below a band that despeckling reads; none at the picture's edges. */
 static int rows_above(const Picture *picture, int first)
 {
     return picture->settings.despeckle > 0.0 && first > 0 ? 1 : 0;
@@ -169,7 +169,7 @@ static int rows_below(const Picture *picture, int first, int count)
     return picture->settings.despeckle > 0.0 && first + count < picture->height ? 1 : 0;
 }
 
-/* The picture itself, with the rows around it. */
+/* The picture itself, with the extra rows around the band. */
 static void own_band(const Picture *picture, int first, int count)
 {
     const PictureGroup *own = &picture->groups[0];

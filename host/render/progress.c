@@ -56,12 +56,12 @@ void progress_line(const RenderProgress *now, int columns, char *text, size_t si
     double per_second = now->elapsed > 0.0 ? 1.0 / now->elapsed : 0.0;
     progress_rate((double)now->samples * per_second, samples, sizeof samples);
     progress_rate((double)now->rays * per_second, rays, sizeof rays);
-    /* 99 % at most: while this line is shown, the rendering is not done. */
+    /* at most 99 %: the rendering is not done while this line is shown */
     snprintf(figures, sizeof figures, "%3.0f %%  %s, %s%s  %ssamples/s  %srays/s",
              fmin(99.0, floor(100.0 * now->fraction)), elapsed, finishing ? "finishing" : remaining,
              finishing ? "" : " left", samples, rays);
 
-    int width = columns - (int)strlen(figures) - 4; /* brackets, a blank, and the last column free */
+    int width = columns - (int)strlen(figures) - 4; /* brackets, a blank, and a free last column */
     width = width > BAR_MAX ? BAR_MAX : width;
     if (width < BAR_MIN) {
         snprintf(text, size, "%s", figures);

@@ -11,29 +11,29 @@
 #include <math.h>
 #include <string.h>
 
-/* The first segments of a bidirectional walk always survive Russian roulette. */
+/* Russian roulette starts at this segment of a bidirectional walk. */
 #define ROULETTE_DEPTH 3
 
-/* A pass is sized to take about this long, so that saving, stopping and progress are prompt. */
+/* Target duration of a pass: short, so that saving, stopping and progress are prompt. */
 #define PASS_SECONDS 0.25
 #define PASS_ITEMS_MIN 16384u
 #define PASS_ITEMS_MAX (1u << 28)
 
-/* Names of the kernels' counters in reports. */
+/* Names of the kernels' counters. */
 #define DIAGNOSTIC_NAME(constant, name) name,
 static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(DIAGNOSTIC_NAME)};
 #undef DIAGNOSTIC_NAME
 
 /* ---- the passes ------------------------------------------------------------------------------------------------- */
 
-/* The loop of integrators whose items are samples of pixels. */
+/* The loop for integrators whose items are samples of pixels. */
 typedef struct PassLoop {
     RenderRun *run;
     StepList list;
-    uint64_t next, total; /* items; without a limit as many as there are sample numbers */
+    uint64_t next, total; /* items; without a limit, all sample numbers */
 } PassLoop;
 
-/* One pass of `items` items. */
+/* Runs a pass of `items` items. */
 static bool pass_run(PassLoop *loop, uint items, Error *error)
 {
     RenderRun *run = loop->run;
@@ -44,7 +44,7 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     run->frame.film_exponent = run->film->quantum_exponent;
     const SplatSink sink = render_run_sink(run->film);
     if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop(run), &delivered, error)) {
-        run->done += delivered; /* they are in the film */
+        run->done += delivered; /* these are in the film all the same */
         return false;
     }
     loop->next += items;
@@ -52,7 +52,7 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     return true;
 }
 
-/* How many items the next pass takes, given the speed so far. */
+/* Size of the next pass, in items, from the speed so far. */
 static uint pass_items(const PassLoop *loop, double elapsed)
 {
     double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)loop->run->done / elapsed : PASS_ITEMS_MIN;
@@ -68,7 +68,7 @@ static bool passes_run(PassLoop *loop, Error *error)
     run->start = run->last_save = timing_now();
     while (loop->next < loop->total) {
         double elapsed = timing_now() - run->start;
-        /* With a time, too, every pixel has a sample: an image without holes is worth a moment. */
+        /* Even with --time every pixel gets one sample: no holes in the image. */
         bool spent = options->seconds > 0.0 && elapsed >= options->seconds && loop->next >= run->crop_pixels;
         if (spent || *render_run_stop(run))
             break;

@@ -1,4 +1,5 @@
-/* Renders a finished scene on one backend: passes until the budget is spent, the film saved now and then. */
+/* Renders a finished scene on one backend: runs passes until the budget is spent and saves the film from time to
+ * time. */
 #ifndef TWINLIGHT_RENDER_RENDER_H
 #define TWINLIGHT_RENDER_RENDER_H
 
@@ -9,11 +10,11 @@
 
 #define DIAGNOSTIC_NAMES_MAX 16
 
-/* What happened inside the kernels: names from layout/diagnostics.h. */
+/* The outcome of a rendering; diagnostics are the kernels' counters (layout/diagnostics.h). */
 typedef struct RenderResult {
-    uint64_t samples; /* paths */
+    uint64_t samples; /* paths; MMLT: work in samples of path tracing */
     double samples_per_pixel;
-    double seconds; /* rendering alone */
+    double seconds; /* of rendering alone */
     bool stopped; /* by options->stop */
     BackendStatistics backend;
     ChainStatistics chains;
@@ -22,11 +23,13 @@ typedef struct RenderResult {
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];
 } RenderResult;
 
-/* The frame of the scene for all items from the first on, its depth within the integrator's limit. */
+/* Fills in *frame for the scene and the options, starting at the first item. max_depth is limited to what the
+ * integrator supports. */
 void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame);
 
-/* `film` must be initialised with the scene's size and crop; its quantum is set from a pilot of the scene unless
- * `keep_quantum`. On failure the film holds what was finished, and *result says how much that is. */
+/* Renders into `film`, which must be initialised with the scene's size and crop; its quantum is set by a pilot
+ * (film_pilot_run) unless `keep_quantum`. callbacks: may be NULL. On failure the film holds what was finished, and
+ * *result says how much that is. */
 bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
                  const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
                  RenderResult *result, Error *error);

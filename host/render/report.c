@@ -3,17 +3,18 @@
 #include "base/log.h"
 #include "layout/diagnostics.h"
 
-/* The part of all samples that may be too faint for the film without a warning. */
+/* Fraction of all samples that may be too faint for the film without a warning. */
 #define VANISHED_PART 0.01
 
-/* How many there were, also for every 100 samples. what: "contributions", "rays" ... and what became of them. */
+/* Warns of `count` events, absolute and per 100 samples. what: "contributions ...", "rays ..." and what became of
+ * them. */
 static void count_report(const RenderResult *result, uint64_t count, const char *what)
 {
     double part = (double)count / (double)(result->samples > 0 ? result->samples : 1);
     log_message(LOG_WARNING, "%llu (%.2g for every 100 samples) %s", (unsigned long long)count, 100.0 * part, what);
 }
 
-/* What the film's range has cost. */
+/* Warns of pixels and contributions outside the film's range. */
 static void film_report(const RenderResult *result, const Film *film, float scale)
 {
     size_t full = film_full_pixels(film), pixels = film_pixels(film), empty = film_empty_pixels(film);

@@ -1,10 +1,10 @@
-/* What a picture may suffer from, as warnings. */
+/* Warnings about a finished picture. */
 #ifndef TWINLIGHT_RENDER_REPORT_H
 #define TWINLIGHT_RENDER_REPORT_H
 
 #include "render/render.h"
 
-/* `scale`: factor on every pixel of the film. */
+/* Logs a warning for every kind of problem. scale: factor on every pixel of the film. */
 void render_report(const RenderResult *result, const Film *film, float scale);
 
 #endif

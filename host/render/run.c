@@ -48,7 +48,7 @@ void render_run_save_if_due(RenderRun *run)
         timing_now() - run->last_save < run->options->save_every)
         return;
     bool saved = run->callbacks->save(run->callbacks->context, run->film, &error);
-    /* Once for a row of failures. */
+    /* One warning per series of failures. */
     if (!saved && !run->save_failed)
         log_message(LOG_WARNING, "%s; rendering goes on, and saving is tried again", error_text(&error));
     if (saved && run->save_failed)

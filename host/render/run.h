@@ -1,4 +1,4 @@
-/* A rendering under way, for integrators that have a loop of their own. */
+/* A rendering under way, for integrators with a loop of their own. */
 #ifndef TWINLIGHT_RENDER_RUN_H
 #define TWINLIGHT_RENDER_RUN_H
 
@@ -11,26 +11,27 @@ typedef struct RenderRun {
     Backend *backend;
     const RenderOptions *options;
     const RenderCallbacks *callbacks; /* may be NULL */
-    FrameParams frame; /* render_frame */
+    FrameParams frame; /* from render_frame */
     const Guide *guide; /* the scene's */
     Film *film;
     uint64_t crop_pixels;
-    uint64_t done; /* samples in the film */
+    uint64_t done; /* paths in the film; MMLT: its work (combination_work) */
     double start, last_save;
-    bool save_failed; /* the last one did */
+    bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;
 } RenderRun;
 
-/* Becomes 1 when the rendering is to end at once (options->stop), or stays 0. */
+/* The flag that becomes 1 if the rendering is to end at once (options->stop); a constant 0 if there is none. */
 const atomic_int *render_run_stop(const RenderRun *run);
 
-/* Adds splats to the film; frame.film_exponent must be its quantum_exponent. */
+/* A sink that adds splats to the film. Passes that use it must set frame.film_exponent to the film's
+ * quantum_exponent. */
 SplatSink render_run_sink(Film *film);
 
-/* Calls `progress`. fraction: of the samples wanted; 0 where their number is not limited. */
+/* Calls `progress`. fraction: of the samples wanted; 0 if their number is not limited. */
 void render_run_report(const RenderRun *run, double fraction);
 
-/* Calls `save` when it is due. When that fails there is a warning, and it is tried again when the next one is due. */
+/* Calls `save` if it is due. A failure causes a warning; the next attempt is made when the next save is due. */
 void render_run_save_if_due(RenderRun *run);
 
 #endif

@@ -68,14 +68,14 @@ void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "direct_seconds", chains->direct_seconds);
 }
 
-/* The name of a member for paths of `depth` segments. */
+/* JSON key for paths of `depth` segments. */
 static const char *depth_key(int depth, char text[16])
 {
     snprintf(text, 16, "%d", depth);
     return text;
 }
 
-/* "KEY": {"3": ..., ...} of the depths that have chains. */
+/* "KEY": {"3": ..., ...}, for the depths that have chains. */
 static void stats_by_depth(JsonWriter *json, const char *key, const ChainStatistics *chains, const uint64_t *counts)
 {
     json_object_begin(json, key);
@@ -102,7 +102,7 @@ void stats_chain_health(JsonWriter *json, const ChainStatistics *chains)
     json_object_end(json);
 }
 
-/* One object a kind of mutation that was made: proposals, and acceptance of every depth. */
+/* Includes, per kind of mutation, the acceptance rate by depth. */
 static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
 {
     json_object_begin(json, "chains");
@@ -186,7 +186,7 @@ bool stats_to_output(const char *path)
 bool stats_write(const char *path, const RenderStats *stats, Error *error)
 {
     if (stats_to_output(path)) {
-        stats_print(stdout, stats); /* main looks for failures */
+        stats_print(stdout, stats); /* main checks for write errors */
         return true;
     }
     OutputFile file;

@@ -1,5 +1,5 @@
-/* The --stats file: what was rendered, how fast, and what was noticed. twinlight-render(1) documents the keys; they
- * are a promise to scripts: add keys, never rename or remove one without raising STATS_FORMAT. */
+/* The --stats file: what was rendered, how fast, and what was noticed. twinlight-render(1) documents the keys. Scripts
+ * rely on them: add keys freely, but raise STATS_FORMAT when renaming or removing one. */
 #ifndef TWINLIGHT_RENDER_STATS_H
 #define TWINLIGHT_RENDER_STATS_H
 
@@ -18,22 +18,23 @@ typedef struct RenderStats {
     const char *exr;
     const char *png; /* "": none */
     const RenderResult *result;
-    /* Seconds of wall-clock time. */
+    /* Wall-clock seconds. */
     double load, build, render, write, total;
 } RenderStats;
 
-/* Whether the path means standard output: "-". */
+/* Whether the path is "-", standard output. */
 bool stats_to_output(const char *path);
 
+/* Writes the file, or prints to standard output if the path is "-". */
 bool stats_write(const char *path, const RenderStats *stats, Error *error);
 
-/* The name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */
+/* Name of a kind of mutation, 0 ... CHAIN_KINDS - 1. */
 const char *stats_chain_kind(int kind);
 
-/* What chains did in all, into the object that is open. */
+/* Adds the chains' total counts and times to the open object. */
 void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains);
 
-/* Whether they have got about, by depth. */
+/* Adds measures of mixing by depth (runs of rejections, distinct starts, R-hat) to the open object. */
 void stats_chain_health(JsonWriter *json, const ChainStatistics *chains);
 
 #endif

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Items compared at a time: enough to keep a device busy, few enough for some hundred bytes of each. */
+/* Items compared at once: enough to keep a device busy, few enough to keep a few hundred bytes of each. */
 #define BLOCK_ITEMS 8192u
 
 #define KERNEL_NAME(name, count, ...) #name,
@@ -40,7 +40,7 @@ static const StateField SHARED_FIELDS[] = {
 
 /* ---- one side's state -------------------------------------------------------------------------------------------- */
 
-/* Words of a block, buffer behind buffer, each [field][BLOCK_ITEMS]. */
+/* State of a block: all buffers in a row, each [field][BLOCK_ITEMS]. */
 typedef struct BlockState {
     uint *words;
     size_t offset[BUFFER_COUNT];
@@ -49,10 +49,10 @@ typedef struct BlockState {
 typedef struct Verifier {
     const BackendMember *sides;
     const StepList *list;
-    FrameParams frame; /* the block's */
+    FrameParams frame; /* for the current block */
     uint words_per_item;
     BlockState state[2];
-    uint *pass; /* the list's pass_words as every run is to find them; NULL: none */
+    uint *pass; /* initial contents of the list's pass_words, restored before every run; NULL: none */
 } Verifier;
 
 static size_t pass_bytes(const StepList *list)
@@ -92,13 +92,13 @@ static void verifier_destroy(Verifier *verifier)
     free(verifier->pass);
 }
 
-/* What a StateSink gets as its context. */
+/* Context of a StateSink. */
 typedef struct BlockWriter {
     const Verifier *verifier;
     BlockState *state;
 } BlockWriter;
 
-/* Threads write to different items. */
+/* Called by several threads, for disjoint items. */
 static void block_write(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride)
 {
     const BlockWriter *writer = context;
@@ -131,7 +131,7 @@ typedef struct Difference {
     uint bits[2];
 } Difference;
 
-/* The lowest item that differs, and its first field. */
+/* Finds the lowest item that differs, and its first differing field. */
 static bool block_difference(const Verifier *verifier, Difference *difference)
 {
     difference->item = NONE;
@@ -177,7 +177,7 @@ static void value_print(char *out, size_t size, bool is_float, uint bits)
         snprintf(out, size, "%u (0x%08x)", bits, bits);
 }
 
-/* "kernel pt_shade_hits" and the segment it worked on: as many closest-hit steps as lie before its end. */
+/* "kernel pt_shade_hits (segment 2)": the segment is the number of closest-hit steps up to and including this step. */
 static void step_print(char *out, size_t size, const StepList *list, size_t index)
 {
     const Step *step = &list->steps[index];
@@ -213,7 +213,7 @@ static bool difference_report(const Verifier *verifier, size_t step, const Diffe
 
 /* ---- the blocks -------------------------------------------------------------------------------------------------- */
 
-/* Whether no item has a ray left that is to be traced. */
+/* Whether no item has a live ray. */
 static bool block_is_idle(const Verifier *verifier)
 {
     const BlockState *state = &verifier->state[0];
@@ -224,7 +224,7 @@ static bool block_is_idle(const Verifier *verifier)
     return true;
 }
 
-/* How many steps to run next: one more, or when all paths have ended, as far as they skip and one more. */
+/* Length of the next prefix: one step more, or one beyond the target of a skip that is taken. */
 static size_t steps_next(const Verifier *verifier, size_t steps)
 {
     const Step *last = &verifier->list->steps[steps - 1];
@@ -232,7 +232,7 @@ static size_t steps_next(const Verifier *verifier, size_t steps)
     return (idle ? last->target : steps) + 1;
 }
 
-/* Compares after every step that anything can happen in. */
+/* Compares after every step, leaving out those that are skipped. */
 static bool block_verify_steps(Verifier *verifier, const atomic_int *stop, uint64_t *prefixes, Error *error)
 {
     Difference difference;
@@ -246,7 +246,7 @@ static bool block_verify_steps(Verifier *verifier, const atomic_int *stop, uint6
     return true;
 }
 
-/* Compares after the last step; where that differs, finds the first step that does. */
+/* Compares after the last step; on a difference, finds the first step with one. */
 static bool block_verify_end(Verifier *verifier, Error *error)
 {
     static const atomic_int never = 0;
