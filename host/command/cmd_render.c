@@ -14,6 +14,7 @@
 #include "command/render_verify.h"
 #include "mmlt/bad_chains.h"
 #include "mmlt/chain_list.h"
+#include "mmlt/scheme.h"
 #include "pbrt/import.h"
 #include "render/progress.h"
 #include "render/render.h"
@@ -322,7 +323,7 @@ static int memory_print(const RenderJob *job)
     const ChainOptions *options = &job->command->chains;
     FrameParams frame = job->scene.frame;
     frame.max_depth = (uint)job->scene.settings.max_depth;
-    unsigned usual = options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
+    unsigned usual = mmlt_scheme(options->paper)->chains;
     chain_memory_print(&frame, options->chains ? options->chains : usual);
     return EXIT_OK;
 }

@@ -41,6 +41,7 @@ ExrAttribute exr_real(const char *name, double real);
 /* `matrix` is row-major and acts on column vectors. It is written transposed, since EXR's matrices act on row
  * vectors. */
 ExrAttribute exr_matrix(const char *name, const float matrix[16]);
+
 typedef struct ExrPicture {
     const ExrChannel *channels;
     size_t channel_count;

@@ -24,8 +24,4 @@ ChainWords chain_words(const FrameParams *frame);
 /* Prints the memory that `chains` chains take to standard output. */
 void chain_memory_print(const FrameParams *frame, unsigned chains);
 
-/* Chains that run at once without --chains: generations, and --mlt-scheme=paper. */
-#define CHAINS_DEFAULT 524288u
-#define PAPER_CHAINS_DEFAULT 16384u
-
 #endif

@@ -1,6 +1,7 @@
 #include "mmlt/combination.h"
 
 #include "camera/film_sum.h"
+#include "mmlt/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,20 +11,8 @@
  * not depend on the machine; docs/TUNING.md. */
 static const double COSTS[ESTIMATOR_COUNT] = {1.2, 4.0, 1.0};
 
-/* Until variances are known, path tracing is weighted by this fraction of its work, against all of a pool's;
- * docs/TUNING.md. */
-#define FIRST_PATHS 0.25
-
 /* Avoids division by zero in tiles without variance (black ones). */
 #define SPREAD_MIN 1e-30
-
-/* Plans are searched on a grid that divides time into this many parts. */
-#define PLAN_PARTS 20
-
-/* The fraction of time for pools in the best division between pools and steps. It stands for how much of the chains'
- * variance a / T_pool + b / T_steps is due to starts and how much to steps: POOL_PART = sqrt(a) / (sqrt(a) + sqrt(b));
- * docs/TUNING.md. */
-#define POOL_PART 0.45
 
 double combination_work(const double samples[ESTIMATOR_COUNT])
 {

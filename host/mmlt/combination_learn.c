@@ -3,34 +3,10 @@
 
 #include "base/sample_statistics.h"
 #include "math/vec.h"
+#include "mmlt/tuning.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Weight, in generations, of the prior for a tile's variance: the median over tiles of variance / light, times the
- * tile's light. A few generations give uncertain variances, and independent samples underestimate theirs until a rare
- * bright path is found. */
-#define PRIOR_GENERATIONS 2.0
-
-/* One estimator must exceed another by this many standard errors before the difference counts as light that the other
- * misses; half as many after MISSING_GENERATIONS, 0 at first. More trusts path tracing too long, less takes noise for
- * light; docs/TUNING.md. */
-#define MISSING_DEVIATIONS 2.0
-#define MISSING_GENERATIONS 5.0
-
-/* This many further standard errors, times the brighter estimator's relative error (at most 1): chains that have been
- * in few tiles are no evidence; docs/TUNING.md. */
-#define MISSING_UNCERTAIN 3.0
-
-/* A pixel's luminance is clamped to this many times its tile's mean: it may be noise. */
-#define LIGHT_OVER_TILE 4.0
-
-/* Chain steps per pixel at which the pixel's own mean counts as much as its tile's. */
-#define LIGHT_STEPS 16.0
-
-/* Lower bound of a pool's corrected variance (pool_correct), relative to the observed one: the correction is an
- * estimate too. */
-#define POOL_SPREAD_LEAST 0.25
 
 size_t combination_tile_count(const Combination *combination)
 {

@@ -36,9 +36,6 @@ typedef struct Combination {
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it; 0: best weights */
 } Combination;
 
-/* Errors are relative to light^2 plus this fraction of the squared mean light. */
-#define DARK_PART 0.1
-
 /* Number of tiles, and the tile of a pixel (numbered row by row within the crop). */
 size_t combination_tile_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);

@@ -5,13 +5,11 @@
 #include "render/layers.h"
 
 #include "chain/chain.h"
+#include "mmlt/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Most items in a pass of path tracing. */
-#define PATHS_MAX (1u << 24)
 
 /* Keeps the chains' words for --dump-bad, before the pass overwrites them with their final states. */
 static bool begun_keep(Mmlt *mmlt, uint count, Error *error)
@@ -40,7 +38,7 @@ static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     bool done =
         run->interface->run(run->backend, &frame, &mmlt->chains, &sink, render_run_stop(run), &delivered, error);
     *whole = delivered == count;
-    if (mmlt->options.paper) /* the next pass continues them from their coordinates */
+    if (!mmlt->scheme->renews) /* the next pass continues them from their coordinates */
         for (uint i = 0; i < count; ++i)
             mmlt->chains.pass_words[(size_t)CHAIN_PASS_ITEM * count + i] = NONE;
     return done;
@@ -52,7 +50,7 @@ static void chains_count(Mmlt *mmlt, uint count)
     const uint *words = mmlt->chains.pass_words;
     uint replica = (uint)mmlt_replica(mmlt, mmlt->generation);
     chain_statistics_pass(&mmlt->run->chains, words, count, mmlt->options.steps);
-    chain_groups_add(&mmlt->groups, words, count, replica, mmlt->options.paper ? CHAIN_GROUPS : 1);
+    chain_groups_add(&mmlt->groups, words, count, replica, mmlt->scheme->groups);
 }
 
 /* ---- path tracing ------------------------------------------------------------------------------------------------ */
@@ -130,7 +128,7 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     RenderRun *run = mmlt->run;
     double begin = timing_now();
-    bool anew = !mmlt->options.paper || mmlt->generation == 0;
+    bool anew = mmlt->scheme->renews || mmlt->generation == 0;
     if (anew && !mmlt_seeds_run(mmlt, count, whole, error))
         return false;
     double seeded = timing_now();
@@ -144,7 +142,7 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
 /* The work of the generation that has run: its steps, its pool (if it had its own) and its path tracing. */
 static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
 {
-    bool pool = steps > 0 && (!mmlt->options.paper || mmlt->generation == 0);
+    bool pool = steps > 0 && (mmlt->scheme->renews || mmlt->generation == 0);
     const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)steps,
                                              [ESTIMATOR_POOL] = pool ? (double)mmlt->pool_film.light_samples : 0.0,
                                              [ESTIMATOR_PATHS] = (double)mmlt->paths_film.light_samples};

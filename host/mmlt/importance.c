@@ -1,23 +1,10 @@
 #include "mmlt/importance.h"
 
 #include "layout/item.h"
+#include "mmlt/tuning.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Lower bound of a cell's light, relative to the mean. */
-#define LIGHT_LEAST 0.05
-
-/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells alike;
- * docs/TUNING.md. */
-#define EXPONENT 0.5
-
-/* Fraction of a pool's visits that all pixels share evenly, for paths not yet found; the rest goes where errors are
- * large; docs/TUNING.md. */
-#define VISITS_EVEN 0.25
-
-/* Mean visits per pixel before they are rounded to whole numbers. */
-#define VISITS_MEAN 4.0
 
 void importance_even(float importance[IMPORTANCE_CELLS])
 {

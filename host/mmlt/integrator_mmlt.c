@@ -10,6 +10,7 @@
 
 #include "backend/step_recorder.h"
 #include "base/timing.h"
+#include "mmlt/tuning.h"
 #include "render/bd_fields.h"
 #include "render/layers.h"
 
@@ -19,28 +20,6 @@
 /* Number of bits in BD_LIGHT_DELTA. */
 #define MMLT_DEPTH_LIMIT 31
 
-#define CHAINS_FIRST 256u
-#define STEPS_DEFAULT 64u
-
-/* With --mlt-scheme=paper: samples of the pool per chain. */
-#define PAPER_POOL_PER_CHAIN 8u
-
-#define LARGE_STEP_DEFAULT 0.3
-
-/* Fraction of the camera subpath's mutations that are shifts (chain/shift.h), which survive on paths over several
- * glossy surfaces; docs/TUNING.md. */
-#define SHIFTS 0.75f
-
-/* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
-#define PATHS_FIRST 1.0
-#define PATHS_DIRECT 0.5
-
-/* A generation may take this fraction of the time or work so far, so that stopping and saving are prompt ... */
-#define GENERATION_PART 0.1
-
-/* ... or this much if that allows a path tracing sample of every pixel. */
-#define WHOLE_SAMPLE_PART 0.25
-
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
 
 /* The work of a chain in a generation, with its part of the pool and of path tracing. */
@@ -48,7 +27,8 @@ static double chain_work(const Mmlt *mmlt)
 {
     double steps = (double)mmlt->options.steps;
     const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = steps,
-                                             [ESTIMATOR_POOL] = mmlt->options.paper ? 0.0 : steps * mmlt->pool_per_step,
+                                             [ESTIMATOR_POOL] =
+                                                 mmlt->scheme->renews ? steps * mmlt->pool_per_step : 0.0,
                                              [ESTIMATOR_PATHS] = steps * mmlt->paths_per_step};
     return combination_work(samples);
 }
@@ -91,7 +71,7 @@ static uint chains_first(const Mmlt *mmlt, uint64_t total)
 {
     uint64_t left = chains_left(mmlt, total);
     uint chains = mmlt->options.chains;
-    if (!mmlt->options.paper) {
+    if (mmlt->scheme->grows) {
         left = (left + 1) / 2;
         chains = chains < CHAINS_FIRST ? chains : CHAINS_FIRST;
     }
@@ -113,22 +93,21 @@ static bool generations_run(Mmlt *mmlt, uint64_t total, Error *error)
         if (*render_run_stop(run) || (options->seconds > 0.0 && now - run->start >= options->seconds))
             break;
         render_run_save_if_due(run);
-        if (!mmlt->options.paper)
+        if (mmlt->scheme->grows)
             chains = chains_next(mmlt, chains, now - begin, total);
     }
     return true;
 }
 
-static void options_complete(ChainOptions *options, uint max_depth)
+static void options_complete(ChainOptions *options, const MmltScheme *scheme, uint max_depth)
 {
-    options->chains_only = options->chains_only || options->paper || max_depth < CHAIN_DEPTH_MIN;
-    options->chains = options->chains ? options->chains : options->paper ? PAPER_CHAINS_DEFAULT : CHAINS_DEFAULT;
-    if (options->paper && !options->pool)
-        options->pool = PAPER_POOL_PER_CHAIN * options->chains;
+    options->chains_only = options->chains_only || !scheme->combines || max_depth < CHAIN_DEPTH_MIN;
+    options->chains = options->chains ? options->chains : scheme->chains;
+    options->pool = options->pool ? options->pool : scheme->pool_per_chain * options->chains;
     options->steps = options->steps ? options->steps : STEPS_DEFAULT;
     options->mutations = options->mutations ? options->mutations : 7u;
-    if (options->paper && !(options->large_step > 0.0))
-        options->large_step = LARGE_STEP_DEFAULT;
+    if (!(options->large_step > 0.0))
+        options->large_step = scheme->large_step;
 }
 
 static bool lists_make(Mmlt *mmlt, Error *error)
@@ -144,8 +123,8 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     frame->mis_exponent = 1;
     frame->mutations = mmlt->options.mutations;
     frame->group_mutations = !mmlt->options.ungrouped;
-    frame->large_step = mmlt->options.paper ? (float)mmlt->options.large_step : 0.0f;
-    frame->shifts = mmlt->options.paper || mmlt->options.shiftless ? 0.0f : SHIFTS;
+    frame->large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
+    frame->shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
     frame->keep_chains = 1;
     pool_frame = *frame;
     pool_frame.pool = 1;
@@ -190,7 +169,8 @@ static bool films_init(Mmlt *mmlt, Error *error)
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
 {
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .next_sample = run->options->first_sample};
-    options_complete(&mmlt->options, run->frame.max_depth);
+    mmlt->scheme = mmlt_scheme(mmlt->options.paper);
+    options_complete(&mmlt->options, mmlt->scheme, run->frame.max_depth);
     mmlt->pool_per_step = POOL_PER_STEP;
     mmlt->paths_per_step = mmlt->options.chains_only ? PATHS_DIRECT : PATHS_FIRST;
     if (!films_init(mmlt, error) || !lists_make(mmlt, error))

@@ -8,23 +8,16 @@
 #include "mmlt/chain_population.h"
 #include "mmlt/combination.h"
 #include "mmlt/importance.h"
+#include "mmlt/scheme.h"
 #include "render/integrator.h"
 #include "render/run.h"
 
 #include "chain/chain.h"
 
-/* Fewest samples of a pool per step of a chain; docs/TUNING.md. */
-#define POOL_PER_STEP (1.0 / 12.0)
-
-/* Even and odd generations are two replicas, independent but for what each has learned of the scene: a generation's
- * weights, plan and clamping threshold come from the other replica. So no replica weights its own errors, which its
- * chains carry from one generation to the next, and the two images can be compared. Through the other replica its own
- * past does affect its weights: the picture is consistent but not unbiased. */
-#define REPLICAS 2
-
 typedef struct Mmlt {
     RenderRun *run;
     ChainOptions options;
+    const MmltScheme *scheme;
     FrameParams paths_frame;
     StepList paths, pool, chains;
     uint64_t paths_delivered; /* single-pixel samples of path tracing in the generation under way */

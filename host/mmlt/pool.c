@@ -6,22 +6,12 @@
 #include "math/rng.h"
 
 #include "chain/chain.h"
+#include "mmlt/tuning.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Clamping threshold, in units of the mean contribution weight of a pool's sample. More shows fireflies, less leaves
- * more to the chains; docs/TUNING.md. */
-#define CLAMP_FACTOR 2.0
-
-/* Fraction of a pool's samples that have a light subpath; those without take a third of the time; docs/TUNING.md. */
-#define POOL_LIGHTS 0.25
-
-/* The pilot pool: most samples, and parts whose median brightness counts. */
-#define PILOT_SAMPLES 4096u
-#define PILOT_PARTS 16u
 
 static bool pool_reserve(Mmlt *mmlt, uint count, Error *error)
 {
@@ -36,7 +26,7 @@ static bool pool_reserve(Mmlt *mmlt, uint count, Error *error)
 
 int mmlt_replica(const Mmlt *mmlt, uint generation)
 {
-    return mmlt->options.paper ? 0 : (int)(generation % REPLICAS);
+    return (int)(generation % (uint)mmlt->scheme->replicas);
 }
 
 ChainPopulation *mmlt_population(Mmlt *mmlt)
@@ -58,9 +48,6 @@ static double host_random(const FrameParams *frame, uint generation, uint use)
     Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
     return ((double)random.x[0] + 0.5) / 4294967296.0;
 }
-
-/* Terms of the van der Corput sequence in lights_first; then a new random shift. */
-#define TURNS 16u
 
 /* Index of the next pool's first sample with a light subpath; the pool starts at position `place` of the pixel order.
  * turn: rounds completed so far, or pools if those are longer than a round.

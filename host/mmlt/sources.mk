@@ -11,4 +11,6 @@ libtwinlight_host_la_SOURCES += \
 	host/mmlt/importance.c host/mmlt/importance.h \
 	host/mmlt/integrator_mmlt.c \
 	host/mmlt/mmlt.h \
-	host/mmlt/pool.c
+	host/mmlt/pool.c \
+	host/mmlt/scheme.c host/mmlt/scheme.h \
+	host/mmlt/tuning.h

@@ -128,6 +128,38 @@ START_TEST(test_exr_crop)
 }
 END_TEST
 
+/* Numbers and matrices in a header have their own types; an integer that EXR has none for is text. */
+START_TEST(test_exr_attribute_types)
+{
+    float rgb[3 * WIDTH * HEIGHT], matrix[16];
+    for (int i = 0; i < 16; ++i)
+        matrix[i] = (float)i;
+    picture_fill(rgb);
+    const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
+    const ExrAttribute attributes[] = {exr_whole("samples", 2147483647u), exr_whole("seed", 2147483648u),
+                                       exr_real("time", 0.5), exr_matrix("worldToCamera", matrix)};
+    Error error;
+    ck_assert(exr_write(test_path("types.exr"), channels, 3, WIDTH, HEIGHT, NULL, attributes, 4, &error));
+    exr_context_t context = NULL;
+    int32_t whole = 0;
+    float real = 0.0f;
+    exr_attr_m44f_t m;
+    const char *text = NULL;
+    ck_assert_int_eq(exr_start_read(&context, test_path("types.exr"), NULL), EXR_ERR_SUCCESS);
+    ck_assert_int_eq(exr_attr_get_int(context, 0, "samples", &whole), EXR_ERR_SUCCESS);
+    ck_assert_int_eq(whole, 2147483647);
+    ck_assert_int_eq(exr_attr_get_string(context, 0, "seed", NULL, &text), EXR_ERR_SUCCESS);
+    ck_assert_str_eq(text, "2147483648");
+    ck_assert_int_eq(exr_attr_get_float(context, 0, "time", &real), EXR_ERR_SUCCESS);
+    ck_assert_float_eq(real, 0.5f);
+    ck_assert_int_eq(exr_attr_get_m44f(context, 0, "worldToCamera", &m), EXR_ERR_SUCCESS);
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            ck_assert_float_eq(m.m[4 * column + row], matrix[4 * row + column]);
+    exr_finish(&context);
+}
+END_TEST
+
 /* Layers, given out of order, with different strides, as halves. */
 START_TEST(test_exr_layers)
 {
@@ -258,6 +290,7 @@ TCase *film_output_tcase(void)
     tcase_add_test(tcase, test_exr_noise);
     tcase_add_test(tcase, test_exr_bytes_are_reproducible);
     tcase_add_test(tcase, test_exr_crop);
+    tcase_add_test(tcase, test_exr_attribute_types);
     tcase_add_test(tcase, test_exr_layers);
     tcase_add_test(tcase, test_bands);
     tcase_add_test(tcase, test_unwritable);

@@ -6,6 +6,7 @@
 #include "camera/film_sum.h"
 #include "mmlt/combination_learn.h"
 #include "mmlt/importance.h"
+#include "mmlt/tuning.h"
 
 /* Width and height differ, and half of the last row of tiles is outside the image. */
 #define WIDTH 64
@@ -17,7 +18,7 @@ static const atomic_int never = 0; /* never stops */
 
 /* The pools' part of the time of pools and chains together if only these matter (test_plan in
  * mmlt/test_combination.c). */
-#define POOL_PART 0.45
+#define POOL_TIME 0.45
 
 typedef struct Known {
     Film film;
@@ -189,11 +190,11 @@ START_TEST(test_errors_known)
 END_TEST
 
 /* The variance of chains is a / T_pool + b / T_steps. In a given total time it is least if pools have the part sqrt(a)
- * / (sqrt(a) + sqrt(b)), which is POOL_PART. Returns the variance of one step relative to that of the past. */
+ * / (sqrt(a) + sqrt(b)), which is POOL_TIME. Returns the variance of one step relative to that of the past. */
 static double chains_vary(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                           const double costs[ESTIMATOR_COUNT])
 {
-    double a = POOL_PART * POOL_PART, b = (1.0 - POOL_PART) * (1.0 - POOL_PART);
+    double a = POOL_TIME * POOL_TIME, b = (1.0 - POOL_TIME) * (1.0 - POOL_TIME);
     double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
            steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
     double now =

@@ -1,0 +1,120 @@
+/* The tuned constants of MMLT: each says what it trades. What was measured, on which scenes, is in docs/TUNING.md. Those of
+ * the kernels are beside the code that has them (shared/chain/). */
+#ifndef TWINLIGHT_MMLT_TUNING_H
+#define TWINLIGHT_MMLT_TUNING_H
+
+/* ---- pools ------------------------------------------------------------------------------------------------------ */
+
+/* Fewest samples of a pool per step of a chain; docs/TUNING.md. */
+#define POOL_PER_STEP (1.0 / 12.0)
+
+/* Fraction of a pool's samples that have a light subpath; those without take a third of the time; docs/TUNING.md. */
+#define POOL_LIGHTS 0.25
+
+/* Clamping threshold, in units of the mean contribution weight of a pool's sample. More shows fireflies, less leaves
+ * more to the chains; docs/TUNING.md. */
+#define CLAMP_FACTOR 2.0
+
+/* The pilot pool: most samples, and parts whose median brightness counts. */
+#define PILOT_SAMPLES 4096u
+#define PILOT_PARTS 16u
+
+/* Terms of the van der Corput sequence in lights_first; then a new random shift. */
+#define TURNS 16u
+
+/* ---- generations ------------------------------------------------------------------------------------------------ */
+
+/* Chains of the first generation: few, so that there is soon an image. */
+#define CHAINS_FIRST 256u
+
+/* Most chains of a generation. More spread a generation over more starts and need more memory. */
+#define CHAINS_DEFAULT 524288u
+
+/* Steps of a chain in a generation. More make a start worth more, fewer explore by more starts. */
+#define STEPS_DEFAULT 64u
+
+/* Fraction of the camera subpath's mutations that are shifts (chain/shift.h), which survive on paths over several
+ * glossy surfaces; docs/TUNING.md. */
+#define SHIFTS 0.75f
+
+/* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
+#define PATHS_FIRST 1.0
+#define PATHS_DIRECT 0.5
+
+/* A generation may take this fraction of the time or work so far, so that stopping and saving are prompt ... */
+#define GENERATION_PART 0.1
+
+/* ... or this much if that allows a path tracing sample of every pixel. */
+#define WHOLE_SAMPLE_PART 0.25
+
+/* Most items in a pass of path tracing. */
+#define PATHS_MAX (1u << 24)
+
+/* ---- the published scheme --------------------------------------------------------------------------------------- */
+
+/* Chains, samples of its pool per chain, and the probability of a large step. */
+#define PAPER_CHAINS_DEFAULT 16384u
+#define PAPER_POOL_PER_CHAIN 8u
+#define LARGE_STEP_DEFAULT 0.3
+
+/* ---- what a combination learns ---------------------------------------------------------------------------------- */
+
+/* Weight, in generations, of the prior for a tile's variance: the median over tiles of variance / light, times the
+ * tile's light. A few generations give uncertain variances, and independent samples underestimate theirs until a rare
+ * bright path is found. */
+#define PRIOR_GENERATIONS 2.0
+
+/* One estimator must exceed another by this many standard errors before the difference counts as light that the other
+ * misses; half as many after MISSING_GENERATIONS, 0 at first. More trusts path tracing too long, less takes noise for
+ * light; docs/TUNING.md. */
+#define MISSING_DEVIATIONS 2.0
+#define MISSING_GENERATIONS 5.0
+
+/* This many further standard errors, times the brighter estimator's relative error (at most 1): chains that have been
+ * in few tiles are no evidence; docs/TUNING.md. */
+#define MISSING_UNCERTAIN 3.0
+
+/* A pixel's luminance is clamped to this many times its tile's mean: it may be noise. */
+#define LIGHT_OVER_TILE 4.0
+
+/* Chain steps per pixel at which the pixel's own mean counts as much as its tile's. */
+#define LIGHT_STEPS 16.0
+
+/* Lower bound of a pool's corrected variance (pool_correct), relative to the observed one: the correction is an
+ * estimate too. */
+#define POOL_SPREAD_LEAST 0.25
+
+/* Errors are relative to light^2 plus this fraction of the squared mean light. */
+#define DARK_PART 0.1
+
+/* ---- weights and plans ------------------------------------------------------------------------------------------ */
+
+/* Until variances are known, path tracing is weighted by this fraction of its work, against all of a pool's;
+ * docs/TUNING.md. */
+#define FIRST_PATHS 0.25
+
+/* Plans are searched on a grid that divides time into this many parts. */
+#define PLAN_PARTS 20
+
+/* The fraction of time for pools in the best division between pools and steps. It stands for how much of the chains'
+ * variance a / T_pool + b / T_steps is due to starts and how much to steps: POOL_PART = sqrt(a) / (sqrt(a) + sqrt(b));
+ * docs/TUNING.md. */
+#define POOL_PART 0.45
+
+/* ---- target importance and visits ------------------------------------------------------------------------------- */
+
+/* Lower bound of a cell's light, relative to the mean. */
+#define LIGHT_LEAST 0.05
+
+/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells alike;
+ * docs/TUNING.md. */
+#define EXPONENT 0.5
+
+/* Fraction of a pool's visits that all pixels share evenly, for paths not yet found; the rest goes where errors are
+ * large; docs/TUNING.md. */
+#define VISITS_EVEN 0.25
+
+/* Mean visits per pixel before they are rounded to whole numbers. */
+#define VISITS_MEAN 4.0
+
+#endif
