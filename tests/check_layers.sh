@@ -97,6 +97,9 @@ check() {
         esac
     done >"$work/faults"
     tsort "$work/pairs" 2>&1 >/dev/null | sed -n 's/^tsort: \([^ ]*\/[^ ]*\)$/\1:2: includes itself by way of others/p' >>"$work/faults"
+    (cd "$1" && find shared host -mindepth 2 -name '*.[ch]' -o -mindepth 2 -name '*.cl') | while read -r file; do
+        grep -qF "$file" "$1/${file%/*}/sources.mk" 2>/dev/null || echo "$file:1: ${file%/*}/sources.mk does not list it"
+    done >>"$work/faults"
     cat "$work/faults"
     [ ! -s "$work/faults" ]
 }
@@ -111,6 +114,7 @@ planted() {
         host/scene/scene.h host/scene/pack.c host/scene/pack.h host/backend/backend.h host/base/error.h host/base/log.h \
         backend_cpu/backend_cpu.h backend_cpu/rays.c backend_ocl/backend_ocl.h; do
         echo '/* a file */' >"$work/tree/$file"
+        echo "$file" >>"$work/tree/${file%/*}/sources.mk"
     done
     echo '#include <math.h>' >>"$work/tree/shared/math/platform.h"
     echo '#include "math/vec.h"' >>"$work/tree/shared/geometry/ray.h"
@@ -122,13 +126,13 @@ planted() {
         cat "$work/output"
         status=1
     fi
-    [ -d "$work/tree/${1%/*}" ] || mkdir "$work/tree/${1%/*}"
+    [ -d "$work/tree/${1%/*}" ] || { mkdir "$work/tree/${1%/*}" && echo "$1" >"$work/tree/${1%/*}/sources.mk"; }
     printf '/* a file */\n%s\n' "$2" >"$work/tree/$1"
     if check "$work/tree" >"$work/output"; then
         echo "self-test: $1 may contain $2"
         status=1
-    elif ! grep -q "^$1:2: \|^${1%.[ch]}:2: " "$work/output"; then
-        echo "self-test: the fault in line 2 of $1 is reported as:"
+    elif ! grep -q "^$1:${3:-2}: \|^${1%.[ch]}:2: " "$work/output"; then
+        echo "self-test: the fault in line ${3:-2} of $1 is reported as:"
         cat "$work/output"
         status=1
     fi
@@ -143,6 +147,7 @@ planted shared/math/vec.h '#include <math.h>'
 planted shared/math/vec.h '#include "config.h"'
 planted shared/math/vec.h '#include "backend_cpu.h"'
 planted shared/math/vec.h '#include "geometry/ray.h"'
+planted shared/math/forgotten.h '#include "math/vec.h"' 1
 planted shared/attic/old.h '#include "math/vec.h"'
 planted host/base/log.h '#include "scene/scene.h"'
 planted host/attic/old.h '#include "base/log.h"'

@@ -8,6 +8,7 @@ SHARED_FILES += \
 	shared/path/bd_weight.h \
 	shared/path/ib_weight.h \
 	shared/path/mis.h \
+	shared/path/partition.h \
 	shared/path/path_random.h \
 	shared/path/path_state.h \
 	shared/path/strategy.h
