@@ -231,12 +231,12 @@ static uint geometry_features(const Scene *scene)
     }
     /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers */
     for (size_t i = 0; i < scene->primitives.count; ++i)
-        features |=
-            FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
+        features |= (uint)FEATURE_TRIANGLE
+                    << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
     return features;
 }
 
-#define FEATURE_OF(NAME, text, feature) [LIGHT_##NAME] = feature,
+#define FEATURE_OF(NAME, text, feature) [LIGHT_##NAME] = (feature),
 static const uint FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
 #undef FEATURE_OF
 
