@@ -58,16 +58,48 @@ static void estimator_set(Estimators *estimators, int s, double samples, double 
     }
 }
 
-static double generation(Estimators *estimators)
+static double generation_until(Estimators *estimators, const atomic_int *stop)
 {
     Film *const films[ESTIMATOR_COUNT] = {&estimators->films[0], &estimators->films[1], &estimators->films[2]};
     Error error = {0};
     double sum = 0.0;
-    ck_assert(combination_generation(&estimators->combination, &estimators->combination, films, &never, &error));
+    ck_assert(combination_generation(&estimators->combination, &estimators->combination, films, stop, &error));
     for (size_t i = 0; i < 3 * PIXELS; ++i)
         sum += (double)films[ESTIMATOR_CHAINS]->light_sums[i];
     return sum * 0x1p-30 / 3.0 / (double)films[ESTIMATOR_CHAINS]->light_samples;
 }
+
+static double generation(Estimators *estimators)
+{
+    return generation_until(estimators, &never);
+}
+
+/* A generation that a stop has ended is shown like any other, and nothing is learnt from it. */
+START_TEST(test_stopped)
+{
+    static const atomic_int stopped = 1;
+    Estimators estimators;
+    CombinationTile known;
+    estimators_init(&estimators);
+    for (int g = 0; g < 4; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
+        if (g < 3) {
+            generation(&estimators);
+            known = estimators.combination.known[0];
+        } else {
+            ck_assert_double_eq_tol(generation_until(&estimators, &stopped), 1.0, 0.08);
+        }
+    }
+    const CombinationTile *tile = &estimators.combination.known[0];
+    for (int s = 0; s < SERIES_COUNT; ++s) {
+        ck_assert_double_eq(tile->spread[s], known.spread[s]);
+        ck_assert_uint_eq(estimators.combination.pixels[s].pictures[0], 3);
+    }
+    estimators_destroy(&estimators);
+}
+END_TEST
 
 /* Weights are proportional to samples over variance. */
 START_TEST(test_weights)
@@ -340,6 +372,7 @@ int main(void)
     Suite *suite = suite_create("combination");
     TCase *tcase = tcase_create("combination");
     tcase_add_test(tcase, test_weights);
+    tcase_add_test(tcase, test_stopped);
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
     tcase_add_loop_test(tcase, test_absent, 0, 6);
     tcase_add_test(tcase, test_alone);
