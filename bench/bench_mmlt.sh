@@ -23,6 +23,7 @@ backends=cpu
 if ! "$twinlight" devices --json | grep -q '"opencl": *\[\]'; then
     backends='cpu opencl'
 fi
+backends=${BACKENDS:-$backends}
 
 # run NAME SCENE OPTION...: renders once, with statistics in $folder/NAME.$run.json
 run() {
