@@ -95,5 +95,6 @@ for scene in "$@"; do
         done
     done
 done
+[ -f "$folder/acceptance" ] || exit 0
 printf '\nscene\tscheme\tmutation\tdepth\taccepted\n'
 cat "$folder/acceptance"
