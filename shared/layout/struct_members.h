@@ -148,51 +148,51 @@
     MEMBER(FrameParams, infinite_light_count)                                                                          \
     MEMBER(FrameParams, camera)                                                                                        \
     MEMBER(FrameParams, filter)                                                                                        \
+    MEMBER(FrameParams, world_center)                                                                                  \
+    MEMBER(FrameParams, world_radius)                                                                                  \
+    MEMBER(FrameParams, ray_reach)                                                                                     \
     MEMBER(FrameParams, width)                                                                                         \
     MEMBER(FrameParams, height)                                                                                        \
     MEMBER(FrameParams, crop_x0)                                                                                       \
     MEMBER(FrameParams, crop_y0)                                                                                       \
     MEMBER(FrameParams, crop_x1)                                                                                       \
     MEMBER(FrameParams, crop_y1)                                                                                       \
-    MEMBER(FrameParams, aov)                                                                                           \
-    MEMBER(FrameParams, split_direct)                                                                                  \
+    MEMBER(FrameParams, film_exponent)                                                                                 \
     MEMBER(FrameParams, split_depths)                                                                                  \
+    MEMBER(FrameParams, split_direct)                                                                                  \
+    MEMBER(FrameParams, aov)                                                                                           \
     MEMBER(FrameParams, max_depth)                                                                                     \
     MEMBER(FrameParams, min_depth)                                                                                     \
     MEMBER(FrameParams, roulette_depth)                                                                                \
-    MEMBER(FrameParams, pool)                                                                                          \
-    MEMBER(FrameParams, pool_items)                                                                                    \
-    MEMBER(FrameParams, pool_lights)                                                                                   \
-    MEMBER(FrameParams, pool_lights_first)                                                                             \
-    MEMBER(FrameParams, pool_lights_weight)                                                                            \
     MEMBER(FrameParams, strategies)                                                                                    \
     MEMBER(FrameParams, mis_exponent)                                                                                  \
     MEMBER(FrameParams, only_s)                                                                                        \
     MEMBER(FrameParams, only_t)                                                                                        \
     MEMBER(FrameParams, unweighted)                                                                                    \
+    MEMBER(FrameParams, pool)                                                                                          \
+    MEMBER(FrameParams, pool_items)                                                                                    \
+    MEMBER(FrameParams, pool_lights)                                                                                   \
+    MEMBER(FrameParams, pool_lights_first)                                                                             \
+    MEMBER(FrameParams, pool_lights_weight)                                                                            \
+    MEMBER(FrameParams, pool_visits)                                                                                   \
+    MEMBER(FrameParams, guide_count)                                                                                   \
+    MEMBER(FrameParams, clamp_threshold)                                                                               \
     MEMBER(FrameParams, mutations)                                                                                     \
     MEMBER(FrameParams, group_mutations)                                                                               \
     MEMBER(FrameParams, shifts)                                                                                        \
-    MEMBER(FrameParams, keep_chains)                                                                                   \
     MEMBER(FrameParams, large_step)                                                                                    \
-    MEMBER(FrameParams, clamp_threshold)                                                                               \
+    MEMBER(FrameParams, keep_chains)                                                                                   \
     MEMBER(FrameParams, brightness)                                                                                    \
-    MEMBER(FrameParams, guide_count)                                                                                   \
-    MEMBER(FrameParams, pool_visits)                                                                                   \
     MEMBER(FrameParams, seed_low)                                                                                      \
     MEMBER(FrameParams, seed_high)                                                                                     \
-    MEMBER(FrameParams, stride)                                                                                        \
-    MEMBER(FrameParams, first_item)                                                                                    \
-    MEMBER(FrameParams, item_count)                                                                                    \
     MEMBER(FrameParams, sample_index)                                                                                  \
-    MEMBER(FrameParams, pass_first)                                                                                    \
-    MEMBER(FrameParams, pass_stride)                                                                                   \
     MEMBER(FrameParams, pixel_stride)                                                                                  \
     MEMBER(FrameParams, pixel_first)                                                                                   \
-    MEMBER(FrameParams, film_exponent)                                                                                 \
-    MEMBER(FrameParams, world_center)                                                                                  \
-    MEMBER(FrameParams, world_radius)                                                                                  \
-    MEMBER(FrameParams, ray_reach)                                                                                     \
+    MEMBER(FrameParams, first_item)                                                                                    \
+    MEMBER(FrameParams, item_count)                                                                                    \
+    MEMBER(FrameParams, stride)                                                                                        \
+    MEMBER(FrameParams, pass_first)                                                                                    \
+    MEMBER(FrameParams, pass_stride)                                                                                   \
     STRUCT(Guide)                                                                                                      \
     MEMBER(Guide, lights)                                                                                              \
     MEMBER(Guide, lights_near)                                                                                         \
