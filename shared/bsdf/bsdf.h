@@ -58,9 +58,8 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
 }
 
 /* Whether bsdf_sample_base reads u_base. */
-SHARED_FUNCTION bool bsdf_has_base(const SceneView *scene, const Bsdf *bsdf)
+SHARED_FUNCTION bool bsdf_has_base(const Bsdf *bsdf)
 {
-    (void)scene;
     return (bsdf_traits(bsdf->kind) & TRAIT_COSINE) != 0u;
 }
 
@@ -101,5 +100,7 @@ SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 
 #undef INVERT
     return false;
 }
+
+#undef OF_KIND
 
 #endif

@@ -95,7 +95,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     BsdfSample sample;
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     Vec2 u = scatter_point(random), u_base = u;
-    if (side == SIDE_CAMERA && scene->frame->guide_count > 0u && bsdf_has_base(scene, &vertex->bsdf))
+    if (side == SIDE_CAMERA && scene->frame->guide_count > 0u && bsdf_has_base(&vertex->bsdf))
         u_base = scatter_point(light_guide_numbers(scene, vertex->p, vertex->frame, random));
     if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
         return false;
