@@ -178,8 +178,8 @@ static bool threads_start(Backend *backend, uint count, Error *error)
         thread->backend = backend;
         bool ready = worker_init(&thread->worker, backend->scene, backend->rays, error);
         if (ready && pthread_create(&thread->thread, NULL, thread_main, thread) != 0) {
-            error_set(error, "thread %u of %u cannot be started", i + 1, count);
-            ready = error_fix(error, "ask for fewer with --threads");
+            error_set(error, "cannot start thread %u of %u", i + 1, count);
+            ready = error_fix(error, "use fewer, with --threads");
         }
         if (!ready) {
             worker_destroy(&thread->worker);

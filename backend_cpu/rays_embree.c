@@ -359,8 +359,8 @@ static bool thread_probe(Error *error)
     pthread_t thread;
     if (pthread_create(&thread, NULL, thread_empty, NULL) == 0)
         return pthread_join(thread, NULL) == 0;
-    error_set(error, "no thread can be started");
-    return error_fix(error, "end other programs, or have the limit raised: ulimit -u");
+    error_set(error, "cannot start a thread");
+    return error_fix(error, "end other programs, or raise the limit on processes: ulimit -u");
 }
 
 static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads, Error *error)
@@ -372,9 +372,9 @@ static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads,
     rays->device = rtcNewDevice(config);
     if (!rays->device) {
         int code = (int)rtcGetDeviceError(NULL);
-        error_set(error, "Embree cannot be started (error %d%s)", code,
+        error_set(error, "cannot start Embree (error %d%s)", code,
                   code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "");
-        return error_fix(error, "use a machine with more memory, or raise the limit of address space: ulimit -v");
+        return error_fix(error, "use a machine with more memory, or raise the limit on address space: ulimit -v");
     }
     if (!memory_probe(rays, threads, error))
         return false;

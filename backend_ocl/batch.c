@@ -137,7 +137,7 @@ static bool batch_begin(Launch *launch)
     const DeviceMemory *memory = launch->launcher->memory;
     Batch *batch = launch->batch;
     if (batch->number == launch->launcher->fail_at)
-        return check(launch, CL_OUT_OF_RESOURCES, "computing (TWINLIGHT_TEST_FAIL_BATCH orders it)");
+        return check(launch, CL_OUT_OF_RESOURCES, "computing (as TWINLIGHT_TEST_FAIL_BATCH requests)");
     return buffer_write(launch, batch->memory->frame, &batch->frame, sizeof batch->frame) &&
            buffer_write(launch, memory->state[BUFFER_COUNTS], ZEROS, COUNT_WORDS * sizeof(uint)) &&
            buffer_write(launch, memory->state[BUFFER_DIAGNOSTICS], ZEROS, DIAGNOSTIC_COUNT * sizeof(uint));

@@ -91,8 +91,8 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
     }
     snprintf(given, sizeof given, "%.*s", length, word);
     if (matches > 1) {
-        error_set(error, "option --%s is short for several: %s", given, list);
-        error_fix(error, "write more of the name");
+        error_set(error, "option --%s is ambiguous: it may stand for %s", given, list);
+        error_fix(error, "write more letters of the name");
         return;
     }
     const char *nearest = name_nearest(given, names, (size_t)table->count + 1);

@@ -411,7 +411,7 @@ static bool file_end(PbrtImport *im)
     size_t open = im->saved.count - file->nesting;
     if (open > 0) {
         const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
-        error_at(im->error, save->place, "%s without its end", save->opened_by);
+        error_at(im->error, save->place, "%s has no matching end", save->opened_by);
         error_fix(im->error, "add the missing end, or delete this line");
         if (!errors_note(im, false))
             return false;

@@ -28,7 +28,7 @@ bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const c
     size_t used = 0;
     error_at(im->error, place, "unknown %s \"%s\"", kind, name);
     if (scene_format_is_v3(kind, name))
-        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade, which is pbrt-v4's");
+        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade of pbrt-v4");
     if (nearest)
         return error_fix(im->error, "did you mean \"%s\"?", nearest);
     for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)

@@ -14,7 +14,7 @@ static bool format_check(TextWindow *window, const char *name, Error *error)
     other = scene_format_other(window->position, (size_t)(window->end - window->position), &fix);
     if (!other)
         return true;
-    error_at(error, (SourcePlace){.file = name}, "this is no scene of pbrt-v4's but %s", other);
+    error_at(error, (SourcePlace){.file = name}, "this is not a pbrt-v4 scene, but %s", other);
     return error_fix(error, "%s", fix);
 }
 

@@ -77,7 +77,7 @@ bool state_coordinate_system(PbrtImport *im, const char *name, const Matrix tran
     if (known == NONE) {
         if (im->coordinate_systems.entries.count >= IMPORT_COORDINATE_SYSTEMS_MAX) {
             error_at(im->error, im->place, "more than %d coordinate systems", IMPORT_COORDINATE_SYSTEMS_MAX);
-            return error_fix(im->error, "use a name again where the old one is not needed any more");
+            return error_fix(im->error, "reuse a name that is no longer needed");
         }
         known = (uint)(im->coordinate_matrices.count / 2);
         name = arena_text(&im->arena, name, strlen(name), im->error);
@@ -115,7 +115,7 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
         if (im->params.params.count + (older ? older->total : 0) > IMPORT_ATTRIBUTES_MAX) {
             error_at(im->error, im->place, "more than %d parameters of Attribute directives in force",
                      IMPORT_ATTRIBUTES_MAX);
-            return error_fix(im->error, "put AttributeBegin and AttributeEnd around what they are for");
+            return error_fix(im->error, "enclose the directives that they are for in AttributeBegin and AttributeEnd");
         }
         im->state.attributes[i] = param_set_make(&im->params, older, &im->arena, im->error);
         return im->state.attributes[i] != NULL;
@@ -158,7 +158,7 @@ bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Mat
 {
     if (!matrix_inverse(matrix, inverse)) {
         error_at(im->error, place, "the current transform cannot be inverted");
-        return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+        return error_fix(im->error, "look for a Scale by 0 or a Transform with linearly dependent rows");
     }
     if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
         return true;
