@@ -43,8 +43,8 @@ struct Backend {
 /* ---- the pool ---------------------------------------------------------------------------------------------------- */
 
 /* Items per chunk. In a small pass, such as the first generations of chains, every thread should get several chunks.
- * Not when states are compared: a chunk of few items may be idle and skip steps that clear state, which a device with
- * its larger batch would run. */
+ * Not when states are compared: if all items of a small chunk are dead, steps that clear state are skipped, which a
+ * device with its larger batch would run. */
 static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)

@@ -47,7 +47,7 @@ struct RaysEmbree {
 /* What the callbacks reach through the context that Embree passes on. The hit is kept here and not in Embree's record;
  * Embree only learns the new end of the ray. */
 typedef struct RayWalk {
-    struct RTCIntersectContext context; /* first, so that Embree's pointer to it is one to the walk */
+    struct RTCIntersectContext context; /* first, so that Embree's pointer to it also points to the walk */
     const RaysEmbree *rays;
     const Ray *ray; /* NULL once `query` is made from it: many rays hit no box and never need one */
     RayQuery query;
@@ -353,7 +353,7 @@ static void *thread_empty(void *nothing)
     return nothing;
 }
 
-/* Likewise if no thread can be started. */
+/* Embree may also end the program if it cannot start a thread. */
 static bool thread_probe(Error *error)
 {
     pthread_t thread;
@@ -440,8 +440,8 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
-/* Whether the ray starts beyond the reach of Embree's margins. That choice decides no bit: both traversals find what
- * the shared primitive test finds. */
+/* Whether the ray starts beyond the reach of Embree's margins. The choice affects no bit: both traversals find the hits
+ * of the shared primitive test. */
 static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
 {
     return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;

@@ -150,8 +150,8 @@ static void counted_release(Launch *launch)
     launch->counted = NULL;
 }
 
-/* Counts live rays and traces them. Near the turn at which a batch may have ended, the count is read back while the
- * rays are traced, so that the device stays busy while the host waits for it. */
+/* Counts live rays and traces them. From one turn before first_check on, the count is read back while the rays are
+ * traced, so that the device stays busy while the host waits for it. */
 static bool trace_closest(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -252,8 +252,8 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
     return done;
 }
 
-/* The next batch starts asking one turn before this one ended, since batches differ by a turn or two. With several
- * walks in the list, each of which may end early, all turns are asked. */
+/* The next batch starts to check for live rays one turn before this one ended, since batches differ by a turn or two.
+ * With several walks in the list, each of which may end early, every turn is checked. */
 static void first_check_adapt(Launch *launch)
 {
     Launcher *launcher = launch->launcher;

@@ -60,7 +60,7 @@ typedef struct RenderJob {
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
 
-/* A number that no name takes would have every frame overwrite the last. */
+/* A number that no file name uses would make every frame overwrite the one before. */
 static bool frame_check(const RenderJob *job, Error *error)
 {
     if (job->command->frame < 0 || job->frame_used)

@@ -96,9 +96,9 @@ static bool combination_known(const Combination *combination, const double sampl
     return true;
 }
 
-/* Sets the tile's weights, which add up to 1. Until variances are known they go by work, and chains count as much as
- * the pool they start from. So a large picture, of which the first pools see few pixels, shows mostly path tracing at
- * first. */
+/* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
+ * the weight of the pool they start from. So a large picture, of which the first pools visit few pixels, shows mostly
+ * path tracing at first. */
 static void weights_set(Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                         bool known)
 {

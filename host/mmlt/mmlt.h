@@ -85,7 +85,7 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 /* Adds the latest pool's visits to `visited`. */
 void mmlt_visits_count(Mmlt *mmlt);
 
-/* Only with --dump-bad: writes what reproduces the chains of a pass of `count` that met a non-finite contribution
+/* Only with --dump-bad: writes what reproduces the chains, of a pass of `count`, that had a non-finite contribution
  * (RenderOptions.bad_chains). */
 void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);
 

@@ -344,8 +344,8 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
         path_splat(paths, splats, diagnostics, frame->stride, item, 0u);
 }
 
-/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's
- * sample before. With frame->split_depths also in the course of a path: what its latest segment has brought. */
+/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's sample
+ * before. With frame->split_depths it also runs in the course of a path, for the contribution of the latest segment. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
