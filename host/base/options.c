@@ -103,7 +103,7 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
         error_fix(error, "see twinlight %s --help", table->command);
 }
 
-/* Reports what getopt_long refused: `code` is its return value, `word` the argument it was reading. */
+/* Reports what getopt_long rejected: `code` is its return value, `word` the argument it was reading. */
 static void options_refuse(const OptionTable *table, int code, const char *word, Error *error)
 {
     int index = optopt ? spec_index(table, optopt) : -1;

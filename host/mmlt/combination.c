@@ -218,7 +218,7 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
 
-/* Variance of a chain's step accompanied by pool_per_step pool samples, relative to its variance within chains b: 1 +
+/* Variance of a chain's step that pool_per_step pool samples accompany, relative to b, the variance within chains: 1 +
  * (a / b) (cost of all steps / cost of all pool samples). */
 static double step_variance(double pool_per_step)
 {

@@ -30,7 +30,8 @@ typedef struct Mmlt {
     uint pool_sample; /* first sample number of the latest pool */
     uint pool_pixel; /* first position of the latest pool in the order in which pools visit pixels */
     uint pool_lights_first; /* index of the latest pool's first sample with a light subpath */
-    /* pixel order position of the next pool: of each replica's own visits; last: of all that visit every pixel alike */
+    /* pixel order position of the next pool: of each replica's own visits; last: of all that visit every pixel
+     * equally */
     uint pool_next[REPLICAS + 1];
     /* rounds of the pixels completed in each order; for pools longer than a round, the number of pools */
     uint pool_turns[REPLICAS + 1];

@@ -1,5 +1,5 @@
-/* The tuned constants of MMLT: each says what it trades. What was measured, on which scenes, is in docs/TUNING.md. Those of
- * the kernels are beside the code that has them (shared/chain/). */
+/* The tuned constants of MMLT, each with its trade-off. What was measured, on which scenes, is in docs/TUNING.md. Those
+ * of the kernels are beside the code that uses them (shared/chain/, shared/path/). */
 #ifndef TWINLIGHT_MMLT_TUNING_H
 #define TWINLIGHT_MMLT_TUNING_H
 
@@ -106,7 +106,7 @@
 /* Lower bound of a cell's light, relative to the mean. */
 #define LIGHT_LEAST 0.05
 
-/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells alike;
+/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells equally;
  * docs/TUNING.md. */
 #define EXPONENT 0.5
 

@@ -103,8 +103,8 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
     return partition_shown(path_tracing, limit);
 }
 
-/* s = 0: the camera's path hits `radiance`, which light sampling would have found with density `pdf_other` (0:
- * never). */
+/* s = 0: the camera's path hits a light of `radiance`, which light sampling would have found with density `pdf_other`
+ * (0: never). */
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                   Vec3 radiance, float pdf_other)
 {
