@@ -16,8 +16,8 @@ bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, con
     }
     error_at(im->error, place, "%s is not supported", what);
     if (fix)
-        return error_fix(im->error, "%s; or use --lenient (%s)", fix, substitute);
-    return error_fix(im->error, "use --lenient (%s)", substitute);
+        return error_fix(im->error, "%s; or replace it by --lenient (%s)", fix, substitute);
+    return error_fix(im->error, "replace it by --lenient (%s)", substitute);
 }
 
 bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,

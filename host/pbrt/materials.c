@@ -179,7 +179,7 @@ static uint mix_part(MaterialReader *r, const Param *param, size_t i)
         name_table_list(&r->im->materials, known, sizeof known);
         errors_missing(r->im);
         param_error(r->list, "materials", "unknown material \"%s\"", name);
-        error_fix(r->list->error, "defined before this line: %s", known);
+        error_fix(r->list->error, "define it before this line; defined so far: %s", known);
     } else if (material == MATERIAL_INTERFACE) {
         param_error(r->list, "materials", "the material \"%s\" is an \"interface\" and cannot be mixed", name);
     }
@@ -354,6 +354,6 @@ bool value_material(PbrtImport *im, uint *material)
     name_table_list(&im->materials, known, sizeof known);
     errors_missing(im);
     error_at(im->error, state->material_place, "unknown material \"%s\"", state->material_name);
-    return error_fix(im->error, "%s%s%sdefined: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
+    return error_fix(im->error, "%s%s%sdefined so far: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
                      nearest ? "\"? " : "", known);
 }

@@ -20,7 +20,7 @@ static void film_report(const RenderResult *result, const Film *film, float scal
     size_t full = film_full_pixels(film), pixels = film_pixels(film), empty = film_empty_pixels(film);
     size_t infinite = film_infinite_pixels(film, scale);
     if (empty > 0)
-        log_message(LOG_WARNING, "%zu of %zu pixels have no sample and are black", empty, pixels);
+        log_message(LOG_WARNING, "%zu of %zu pixels have no sample and are black: render for longer", empty, pixels);
     if (infinite > 0)
         log_message(LOG_WARNING,
                     "%zu of %zu pixels (%.3g %%) exceed the range of a float and are infinite in the image: make the "
