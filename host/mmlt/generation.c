@@ -30,7 +30,7 @@ static bool chains_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     uint64_t delivered = 0;
     if (!(mmlt_population(mmlt)->brightness > 0.0))
         return true; /* a black pool: the chains' expected contribution is zero, too */
-    frame.item_count = count;
+    frame.pass.item_count = count;
     if (run->options->bad_chains && !begun_keep(mmlt, count, error))
         return false;
     SplatSink sink = render_run_sink(&mmlt->film);
@@ -70,17 +70,17 @@ static bool paths_run(Mmlt *mmlt, uint64_t steps, bool *whole, Error *error)
     mmlt->paths_delivered = 0;
     const SplatSink sink = render_run_sink(&mmlt->paths_film);
     mmlt_generation_frame(mmlt, frame);
-    mmlt_frame_film(frame, &mmlt->paths_film);
+    mmlt_film_params(&frame->film, &mmlt->paths_film);
     uint64_t items = target > mmlt->paths_done ? (target - mmlt->paths_done) * run->crop_pixels : 0;
-    for (uint64_t next = 0; next < items && *whole; next += frame->item_count) {
+    for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered = 0, left = items - next;
-        frame->sample_index = run->options->first_sample + (uint)(mmlt->paths_done + next / run->crop_pixels);
-        frame->first_item = (uint)(next % run->crop_pixels);
-        frame->item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
+        frame->pass.sample_index = run->options->first_sample + (uint)(mmlt->paths_done + next / run->crop_pixels);
+        frame->pass.first_item = (uint)(next % run->crop_pixels);
+        frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
         if (!run->interface->run(run->backend, frame, &mmlt->paths, &sink, render_run_stop(run), &delivered, error))
             return false;
         mmlt->paths_delivered += delivered;
-        *whole = delivered == frame->item_count;
+        *whole = delivered == frame->pass.item_count;
     }
     mmlt->paths_done = target > mmlt->paths_done ? target : mmlt->paths_done;
     mmlt->paths_film.light_samples = items;
@@ -156,7 +156,7 @@ static uint64_t generation_work(const Mmlt *mmlt, uint64_t steps)
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     uint64_t steps = (uint64_t)count * mmlt->options.steps;
-    bool chains = mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN, first = mmlt->generation == 0;
+    bool chains = mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN, first = mmlt->generation == 0;
     if (first &&
         ((chains && !mmlt_pilot_run(mmlt, count, whole, error)) || (*whole && !paths_run(mmlt, steps, whole, error))))
         return false;
@@ -183,7 +183,7 @@ static bool stopped_take(Mmlt *mmlt, Error *error)
 static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
 {
     mmlt->brightness_sum[mmlt_replica(mmlt, mmlt->generation)] += mmlt->brightness;
-    if (mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN && mmlt_population(mmlt)->brightness > 0.0) {
+    if (mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN && mmlt_population(mmlt)->brightness > 0.0) {
         chains_count(mmlt, count);
         mmlt_bad_chains_write(mmlt, count);
     }
@@ -200,7 +200,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
         return false;
     if (whole) {
         mmlt->film.light_samples = steps;
-        uint64_t work = generation_work(mmlt, mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN ? steps : 0);
+        uint64_t work = generation_work(mmlt, mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN ? steps : 0);
         if (!generation_take(mmlt, error))
             return false;
         generation_count(mmlt, count, work);

@@ -115,24 +115,25 @@ static bool lists_make(Mmlt *mmlt, Error *error)
     RenderRun *run = mmlt->run;
     FrameParams *frame = &run->frame, pool_frame;
     mmlt->paths_frame = *frame;
-    mmlt->paths_frame.strategies = integrator_pt()->strategies;
-    mmlt->paths_frame.split_direct = !mmlt->options.chains_only;
-    if (mmlt->options.chains_only && frame->max_depth >= CHAIN_DEPTH_MIN)
-        mmlt->paths_frame.max_depth = CHAIN_DEPTH_MIN - 1;
-    frame->min_depth = CHAIN_DEPTH_MIN;
-    frame->mis_exponent = 1;
-    frame->mutations = mmlt->options.mutations;
-    frame->group_mutations = !mmlt->options.ungrouped;
-    frame->large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
-    frame->shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
-    frame->keep_chains = 1;
+    mmlt->paths_frame.path.strategies = integrator_pt()->strategies;
+    mmlt->paths_frame.partition.split_direct = !mmlt->options.chains_only;
+    if (mmlt->options.chains_only && frame->path.max_depth >= CHAIN_DEPTH_MIN)
+        mmlt->paths_frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
+    frame->path.min_depth = CHAIN_DEPTH_MIN;
+    frame->path.mis_exponent = 1;
+    frame->chains.mutations = mmlt->options.mutations;
+    frame->chains.group_mutations = !mmlt->options.ungrouped;
+    frame->chains.large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
+    frame->chains.shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
+    frame->chains.keep = 1;
     pool_frame = *frame;
-    pool_frame.pool = 1;
-    mmlt_frame_film(&pool_frame, &mmlt->pool_film);
-    mmlt_frame_film(&mmlt->paths_frame, &mmlt->paths_film);
-    bool made = integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
-                (frame->max_depth < CHAIN_DEPTH_MIN || (bdpt_list(&pool_frame, &mmlt->pool, error) &&
-                                                        chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
+    pool_frame.pool.enabled = 1;
+    mmlt_film_params(&pool_frame.film, &mmlt->pool_film);
+    mmlt_film_params(&mmlt->paths_frame.film, &mmlt->paths_film);
+    bool made =
+        integrator_pt()->list(&mmlt->paths_frame, &mmlt->paths, error) &&
+        (frame->path.max_depth < CHAIN_DEPTH_MIN ||
+         (bdpt_list(&pool_frame, &mmlt->pool, error) && chain_list(frame, mmlt->options.steps, &mmlt->chains, error)));
     mmlt->guide = *mmlt->run->guide;
     mmlt->paths.guide = mmlt->pool.guide = mmlt->chains.guide = &mmlt->guide;
     return made;
@@ -142,7 +143,7 @@ static bool lists_make(Mmlt *mmlt, Error *error)
 static bool depths_reserve(Mmlt *mmlt, Error *error)
 {
     const RenderLayers *layers = mmlt->run->options->layers;
-    uint last = mmlt->run->frame.max_depth;
+    uint last = mmlt->run->frame.path.max_depth;
     if (!layers || (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) == 0)
         return true;
     return film_depths_reserve(mmlt->run->film, last, error) && film_depths_reserve(&mmlt->film, last, error) &&
@@ -170,7 +171,7 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
 {
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .next_sample = run->options->first_sample};
     mmlt->scheme = mmlt_scheme(mmlt->options.paper);
-    options_complete(&mmlt->options, mmlt->scheme, run->frame.max_depth);
+    options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt->pool_per_step = POOL_PER_STEP;
     mmlt->paths_per_step = mmlt->options.chains_only ? PATHS_DIRECT : PATHS_FIRST;
     if (!films_init(mmlt, error) || !lists_make(mmlt, error))

@@ -62,7 +62,7 @@ void mmlt_destroy(Mmlt *mmlt);
 ChainPopulation *mmlt_population(Mmlt *mmlt);
 
 /* Prepares the frame of a pass whose splats go to `film`. */
-void mmlt_frame_film(FrameParams *frame, const Film *film);
+void mmlt_film_params(FilmParams *params, const Film *film);
 
 /* The replica that a generation belongs to; always 0 with --mlt-scheme=paper, whose chains never restart. */
 int mmlt_replica(const Mmlt *mmlt, uint generation);

@@ -45,7 +45,7 @@ static double brightness_known(const Mmlt *mmlt)
 /* A uniform number in (0, 1), a function of seed, generation and use. */
 static double host_random(const FrameParams *frame, uint generation, uint use)
 {
-    Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->seed_low, frame->seed_high);
+    Random4 random = random_four(generation, use, NONE, PATH_STREAM_POOL, frame->pass.seed_low, frame->pass.seed_high);
     return ((double)random.x[0] + 0.5) / 4294967296.0;
 }
 
@@ -99,39 +99,40 @@ void mmlt_generation_frame(Mmlt *mmlt, FrameParams *frame)
 {
     memcpy(mmlt->guide.importance, mmlt->importance[mmlt_replica(mmlt, mmlt->generation)],
            sizeof mmlt->guide.importance);
-    frame->clamp_threshold = clamp_threshold_of(mmlt);
+    frame->partition.clamp_threshold = clamp_threshold_of(mmlt);
 }
 
 /* Sets what a pool and the chains that start from it share. */
 static void seeds_frame(Mmlt *mmlt, FrameParams *frame)
 {
     mmlt_generation_frame(mmlt, frame);
-    frame->sample_index = mmlt->pool_sample;
-    frame->pixel_first = mmlt->pool_pixel;
+    frame->pass.sample_index = mmlt->pool_sample;
+    frame->pass.pixel_first = mmlt->pool_pixel;
     const uint *visits = mmlt->visits[mmlt_replica(mmlt, mmlt->generation)];
     memcpy(mmlt->guide.visits, visits, sizeof mmlt->guide.visits);
-    frame->pool_visits = visits[IMPORTANCE_CELLS];
-    frame->pixel_stride = visits[IMPORTANCE_CELLS] > 0
-                              ? pixel_order_stride_of(visits[IMPORTANCE_CELLS])
-                              : pixel_order_stride(frame->crop_x1 - frame->crop_x0, frame->crop_y1 - frame->crop_y0);
+    frame->pool.visits = visits[IMPORTANCE_CELLS];
+    frame->pass.pixel_stride =
+        visits[IMPORTANCE_CELLS] > 0
+            ? pixel_order_stride_of(visits[IMPORTANCE_CELLS])
+            : pixel_order_stride(frame->film.crop_x1 - frame->film.crop_x0, frame->film.crop_y1 - frame->film.crop_y0);
 }
 
-void mmlt_frame_film(FrameParams *frame, const Film *film)
+void mmlt_film_params(FilmParams *params, const Film *film)
 {
-    frame->film_exponent = film->quantum_exponent;
-    frame->split_depths = film->depth_kinds;
+    params->exponent = film->quantum_exponent;
+    params->split_depths = film->depth_kinds;
 }
 
 FrameParams mmlt_pool_frame(Mmlt *mmlt, uint count)
 {
     FrameParams frame = mmlt->run->frame;
-    frame.pool = 1;
-    frame.pool_lights = mmlt->options.chains_only ? count : (uint)ceil(POOL_LIGHTS * count);
-    frame.pool_items = count;
-    frame.pool_lights_first = mmlt->pool_lights_first;
-    frame.pool_lights_weight = (float)((double)count / frame.pool_lights);
+    frame.pool.enabled = 1;
+    frame.pool.lights = mmlt->options.chains_only ? count : (uint)ceil(POOL_LIGHTS * count);
+    frame.pool.items = count;
+    frame.pool.lights_first = mmlt->pool_lights_first;
+    frame.pool.lights_weight = (float)((double)count / frame.pool.lights);
     seeds_frame(mmlt, &frame);
-    mmlt_frame_film(&frame, &mmlt->pool_film);
+    mmlt_film_params(&frame.film, &mmlt->pool_film);
     return frame;
 }
 
@@ -139,9 +140,9 @@ FrameParams mmlt_chain_frame(Mmlt *mmlt)
 {
     FrameParams frame = mmlt->run->frame;
     seeds_frame(mmlt, &frame);
-    frame.brightness = (float)mmlt_population(mmlt)->brightness;
-    frame.roulette_depth = NONE;
-    mmlt_frame_film(&frame, &mmlt->film);
+    frame.chains.brightness = (float)mmlt_population(mmlt)->brightness;
+    frame.path.roulette_depth = NONE;
+    mmlt_film_params(&frame.film, &mmlt->film);
     return frame;
 }
 
@@ -155,7 +156,7 @@ static bool pool_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     mmlt->pool.pass_words = mmlt->pool_words;
     mmlt->pool.pass_fields = POOL_WORDS;
     mmlt->pool.pass_stride = count;
-    frame.item_count = count;
+    frame.pass.item_count = count;
     film_clear(&mmlt->pool_film);
     SplatSink sink = render_run_sink(&mmlt->pool_film);
     sink.whole = true;
