@@ -217,6 +217,7 @@ completes() {
 }
 completion=${scene%/scenes/*}/man/bash/twinlight
 [ "$(completes pyr)" = pyramid ] && [ "$(completes render --integ)" = --integrator= ] &&
+    [ "$(completes render --unw)" = --unweighted ] && [ "$(completes render --png)" = --png= ] &&
     [ "$(completes render --backend = op)" = opencl ] && [ "$(completes compare --no)" = "$(
         "$program" compare --help | grep -o -- '--no[a-z-]*' | paste -s -d ' ')" ]
 result 'completion in bash' $?
