@@ -30,7 +30,8 @@ typedef struct Mmlt {
     uint pool_sample; /* first sample number of the latest pool */
     uint pool_pixel; /* first position of the latest pool in the order in which pools visit pixels */
     uint pool_lights_first; /* index of the latest pool's first sample with a light subpath */
-    /* pixel order position of the next pool: of each replica's own visits; last: of all that visit every pixel alike */
+    /* pixel order position of the next pool: of each replica's own visits; last: of all that visit every pixel
+     * equally */
     uint pool_next[REPLICAS + 1];
     /* rounds of the pixels completed in each order; for pools longer than a round, the number of pools */
     uint pool_turns[REPLICAS + 1];
@@ -85,7 +86,7 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 /* Adds the latest pool's visits to `visited`. */
 void mmlt_visits_count(Mmlt *mmlt);
 
-/* Only with --dump-bad: writes what reproduces the chains of a pass of `count` that met a non-finite contribution
+/* Only with --dump-bad: writes what reproduces the chains, of a pass of `count`, that had a non-finite contribution
  * (RenderOptions.bad_chains). */
 void mmlt_bad_chains_write(const Mmlt *mmlt, uint count);
 

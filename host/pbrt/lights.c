@@ -177,7 +177,7 @@ static bool map_finite(LightReader *r, const float *rgb, size_t pixels, const ch
 {
     for (size_t i = 0; i < 3 * pixels; ++i)
         if (!isfinite(rgb[i])) {
-            param_error(r->list, "filename", "%s has pixels that are not finite, so it is no light", path);
+            param_error(r->list, "filename", "%s has pixels that are not finite and cannot be used as a light", path);
             return false;
         }
     return true;

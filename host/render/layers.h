@@ -42,8 +42,8 @@ bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Er
 /* rgb[3 * count]: the estimated variance of scale x the picture in pixels first ... first + count - 1. */
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
-/* Renders the AOVs that the run's layers want, if any: brings them to as many samples per pixel as `samples` paths of
- * light make, at most 16, since AOVs are nearly noise-free. */
+/* Renders the AOVs that the run's layers want, if any: brings them to the samples per pixel of an image of `samples`
+ * paths, at most 16, since AOVs are nearly noise-free. */
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error);
 
 #endif
