@@ -44,10 +44,9 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
-    [OPTION_LAYERS] =
-        {"layers", 0, "NAME,...",
-         "what the image holds besides: direct, indirect, halves, variance, by-depth (mmlt), albedo, normal, "
-         "depth; all (but by-depth) or none (default: mmlt all, else none)"},
+    [OPTION_LAYERS] = {"layers", 0, "NAME,...",
+                       "what the image holds besides: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
+                           LAYER_TEXT_OF) "or all (but by-depth) or none (default: mmlt all, else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
                           "add a layer without pixels that are T times as bright as the median around them"},
     [OPTION_FRAME] = {"frame", 0, "N", "the number that file names with %d, %4d or %04d get in its place"},
@@ -186,16 +185,16 @@ static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
 
 static bool layers_set(RenderCommand *command, const char *value, Error *error)
 {
-    static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
-                                                   "albedo", "normal",   "depth",  "by-depth"};
+#define TEXT(NAME, name, text, ...) text,
+    static const char *const NAMES[LAYER_COUNT] = {LAYER_LIST(TEXT)};
+#undef TEXT
     const char *other;
     command->has_layers = true;
     command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
     if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
         return true;
     error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal, depth and by-depth, with "
-                            "commas between, or all (but by-depth) or none");
+    return error_fix(error, "use " LAYER_LIST(LAYER_TEXT_OF) "with commas between, or all (but by-depth) or none");
 }
 
 static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)

@@ -312,12 +312,6 @@ typedef struct SceneLayout {
 #define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
 #define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
 
-/* Auxiliary variables of a pixel, besides light (kernels/aov.cl). */
-#define AOV_ALBEDO 0u
-#define AOV_NORMAL 1u
-#define AOV_DEPTH 2u
-#define AOV_COUNT 3u
-
 /* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
 
@@ -346,7 +340,7 @@ typedef struct FrameParams {
     int film_exponent; /* one unit of the film's sums is 2^film_exponent (camera/film_sum.h) */
     uint split_depths; /* kinds of sums that the film has per depth (camera/film_sum.h); 0: splats carry no depth */
     uint split_direct; /* 1: path tracing splats light of up to two segments apart (kernels/pt.cl) */
-    uint aov; /* AOV_*: the variable that a pass of kernels/aov.cl is for */
+    uint aov; /* AOV_* (layout/aov_list.h): what a pass of kernels/aov.cl is for */
 
     /* Paths of any integrator, and MIS. */
     uint max_depth; /* largest depth of a path, >= 1 */
