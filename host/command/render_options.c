@@ -49,7 +49,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
     [OPTION_LAYERS] = {"layers", 0, "NAME,...",
-                       "additional layers, e.g. albedo,depth; all or none (default: all with mmlt, else none)"},
+                       "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
+                           LAYER_TEXT_OF) "or all (but by-depth) or none (default: all with mmlt, else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
                           "add a layer in which pixels over T times as bright as the median around them are replaced"},
     [OPTION_FRAME] = {"frame", 0, "N", "number that replaces %d, %4d or %04d in file names"},
@@ -187,16 +188,16 @@ static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
 
 static bool layers_set(RenderCommand *command, const char *value, Error *error)
 {
-    static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
-                                                   "albedo", "normal",   "depth",  "by-depth"};
+#define TEXT(NAME, name, text, ...) text,
+    static const char *const NAMES[LAYER_COUNT] = {LAYER_LIST(TEXT)};
+#undef TEXT
     const char *other;
     command->has_layers = true;
     command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
     if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
         return true;
     error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal, depth and by-depth, separated by "
-                            "commas, or all (but by-depth) or none");
+    return error_fix(error, "use " LAYER_LIST(LAYER_TEXT_OF) "separated by commas, or all (but by-depth) or none");
 }
 
 static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)

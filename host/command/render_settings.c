@@ -47,7 +47,7 @@ bool render_settings_layers(const RenderCommand *command, const Integrator *inte
         *wanted &= LAYERS_AOV;
     else if ((command->layers & ~LAYERS_AOV) != 0) {
         error_set(error, "--layers: the image of %s has no layers of light", integrator->name);
-        return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");
+        return error_fix(error, "use " AOV_LIST(LAYER_TEXT_OF) "or --integrator=mmlt");
     }
     return true;
 }

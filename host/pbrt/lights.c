@@ -266,10 +266,12 @@ static void infinite_read(LightReader *r)
     r->light.emission = emission_make(r->list, radiance, scale);
 }
 
+#define READER(NAME, name, text, feature, position) {text, name##_read},
 static const struct {
     const char *name;
     void (*read)(LightReader *r);
-} KINDS[] = {{"point", point_read}, {"spot", spot_read}, {"distant", distant_read}, {"infinite", infinite_read}};
+} KINDS[] = {LIGHT_LIST_DELTA(READER){"infinite", infinite_read}};
+#undef READER
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
 static bool light_other(PbrtImport *im, const char *kind)

@@ -15,12 +15,6 @@
 #define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
 #define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
 
-/* Auxiliary variables of a pixel, besides light (kernels/aov.cl). */
-#define AOV_ALBEDO 0u
-#define AOV_NORMAL 1u
-#define AOV_DEPTH 2u
-#define AOV_COUNT 3u
-
 /* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
 
