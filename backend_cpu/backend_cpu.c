@@ -49,14 +49,15 @@ static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)
         return CHUNK_ITEMS;
-    uint part = job->frame->item_count / (CHUNKS_PER_THREAD * backend->thread_count);
+    uint part = job->frame->pass.item_count / (CHUNKS_PER_THREAD * backend->thread_count);
     return part < CHUNK_ITEMS_MIN ? CHUNK_ITEMS_MIN : part < CHUNK_ITEMS ? part : CHUNK_ITEMS;
 }
 
 static void thread_run_job(Thread *thread, const Job *job)
 {
     Backend *backend = thread->backend;
-    uint size = chunk_items(job, backend), items = job->frame->item_count, chunks = items / size + (items % size != 0);
+    uint size = chunk_items(job, backend), items = job->frame->pass.item_count,
+         chunks = items / size + (items % size != 0);
     if (!worker_reserve(&thread->worker, job->list)) {
         atomic_store(&backend->out_of_memory, true);
         return;

@@ -15,7 +15,7 @@
 #ifndef KERNEL_ANY_STRIDE
 #include "chunk.h"
 #define STATE_STRIDE CHUNK_STRIDE
-#define STRIDE_IS_KNOWN(frame) ((frame)->stride == CHUNK_STRIDE)
+#define STRIDE_IS_KNOWN(frame) ((frame)->pass.stride == CHUNK_STRIDE)
 #else
 #define STRIDE_IS_KNOWN(frame) ((frame) != NULL)
 #endif

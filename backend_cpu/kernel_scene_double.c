@@ -37,7 +37,14 @@ enum {
         FloatParam: STRUCT_FloatParam,                                                                                 \
         Camera: STRUCT_Camera,                                                                                         \
         PixelFilter: STRUCT_PixelFilter,                                                                               \
-        SceneLayout: STRUCT_SceneLayout)
+        SceneLayout: STRUCT_SceneLayout,                                                                               \
+        SceneParams: STRUCT_SceneParams,                                                                               \
+        FilmParams: STRUCT_FilmParams,                                                                                 \
+        PathParams: STRUCT_PathParams,                                                                                 \
+        PartitionParams: STRUCT_PartitionParams,                                                                       \
+        PoolParams: STRUCT_PoolParams,                                                                                 \
+        ChainParams: STRUCT_ChainParams,                                                                               \
+        PassParams: STRUCT_PassParams)
 
 typedef struct Member {
     int owner, kind; /* -1: the entry begins the struct `owner` */
@@ -70,7 +77,7 @@ static size_t member_count(const Member *member)
     return member->size / (member->kind == MEMBER_FLOATS ? sizeof(float) : sizeof(uint));
 }
 
-/* Words of the host's struct. Structs hold structs two deep. */
+/* Words of the host's struct. Structs hold structs three deep. */
 static size_t struct_words(int type) // NOLINT(misc-no-recursion)
 {
     size_t words = 0;
@@ -173,7 +180,7 @@ static SceneLayout layout_of(const void *frame)
 static bool scene_widen(KernelScene *out, const BackendScene *scene, Error *error)
 {
     const SceneLayout from = layout_of(scene->frame);
-    SceneLayout *to = &out->frame.layout;
+    SceneLayout *to = &out->frame.scene.layout;
     const WideArray geometry[] = {{STRUCT_Vec3, from.positions, &to->positions},
                                   {STRUCT_Vec3, from.normals, &to->normals},
                                   {STRUCT_Vec2, from.uvs, &to->uvs},
@@ -239,7 +246,7 @@ void *kernel_frame(const KernelScene *scene, FrameParams *frame, void *storage)
 {
     FrameParams *out = storage;
     struct_widen(STRUCT_FrameParams, (const uint *)(const void *)frame, storage);
-    out->layout = scene->frame.layout;
+    out->scene.layout = scene->frame.scene.layout;
     return out;
 }
 

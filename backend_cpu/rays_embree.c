@@ -242,7 +242,7 @@ static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *erro
 {
     (void)scene;
     (void)error;
-    rays->reach = rays->view.frame->ray_reach;
+    rays->reach = rays->view.frame->scene.ray_reach;
     return true;
 }
 
@@ -258,7 +258,7 @@ static Hit outer_walk(const RaysEmbree *rays, const Ray *ray, bool any)
 static bool outer_build(RaysEmbree *rays, const BackendScene *scene, Error *error)
 {
     rays->reach = ray_reach_inner(&rays->view, (uint)rays->instance_count);
-    return !(rays->reach < rays->view.frame->ray_reach) || bvh_build(scene, &rays->outer, error);
+    return !(rays->reach < rays->view.frame->scene.ray_reach) || bvh_build(scene, &rays->outer, error);
 }
 
 static Hit outer_walk(const RaysEmbree *rays, const Ray *ray, bool any)

@@ -180,11 +180,11 @@ static bool worker_run_steps(Worker *worker, const Job *job, uint count)
 bool worker_run_chunk(Worker *worker, const Job *job, uint first, uint count)
 {
     worker->frame = *job->frame;
-    worker->frame.first_item = job->frame->first_item + first;
-    worker->frame.item_count = count;
-    worker->frame.stride = CHUNK_STRIDE;
-    worker->frame.pass_first = 0;
-    worker->frame.pass_stride = job->list->pass_stride;
+    worker->frame.pass.first_item = job->frame->pass.first_item + first;
+    worker->frame.pass.item_count = count;
+    worker->frame.pass.stride = CHUNK_STRIDE;
+    worker->frame.pass.data_first = 0;
+    worker->frame.pass.data_stride = job->list->pass_stride;
     if (job->inspect)
         worker_clear_state(worker, job->list);
     bool done = worker_run_steps(worker, job, count);

@@ -116,7 +116,7 @@ static bool backend_build(Backend *backend, const BackendScene *scene, const Bac
     if (!timeline_init(&backend->timeline, options->record_spans, error) || !queues_make(backend, error))
         return false;
     launcher_init(backend, options);
-    if (!ocl_program_init(&backend->launcher.program, backend->context, &backend->device, scene->frame->features,
+    if (!ocl_program_init(&backend->launcher.program, backend->context, &backend->device, scene->frame->scene.features,
                           error) ||
         !scene_build(backend, scene, options, error))
         return false;
@@ -167,11 +167,11 @@ static Batch *batch_prepare(Backend *backend, int slot, const FrameParams *frame
     batch->memory = &backend->memory.batches[slot];
     batch->number = backend->next_batch++;
     batch->frame = *frame;
-    batch->frame.first_item = frame->first_item + first;
-    batch->frame.item_count = count;
-    batch->frame.stride = device_memory_stride(count);
-    batch->frame.pass_first = frame->first_item;
-    batch->frame.pass_stride = frame->item_count;
+    batch->frame.pass.first_item = frame->pass.first_item + first;
+    batch->frame.pass.item_count = count;
+    batch->frame.pass.stride = device_memory_stride(count);
+    batch->frame.pass.data_first = frame->pass.first_item;
+    batch->frame.pass.data_stride = frame->pass.item_count;
     return batch;
 }
 
@@ -200,8 +200,8 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
                         bool *dropped, Error *error)
 {
     uint batch = backend->memory.batch;
-    for (uint first = 0; first < frame->item_count && !*stop && !*dropped;) {
-        uint left = frame->item_count - first, count = left < batch ? left : batch;
+    for (uint first = 0; first < frame->pass.item_count && !*stop && !*dropped;) {
+        uint left = frame->pass.item_count - first, count = left < batch ? left : batch;
         int slot = (int)(backend->next_batch % (uint64_t)backend->slots);
         adders_wait(backend->adders, slot);
         if (device_failed(backend, error) || !batch_start(backend, slot, frame, list, first, count, dropped, error))
@@ -265,8 +265,8 @@ static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, cons
     bool done =
         device_memory_reserve(&backend->memory, list, error) && pass_data_begin(&backend->memory, frame, list, error);
     uint size = backend->memory.batch;
-    for (uint first = 0; done && first < frame->item_count; first += size) {
-        uint left = frame->item_count - first;
+    for (uint first = 0; done && first < frame->pass.item_count; first += size) {
+        uint left = frame->pass.item_count - first;
         Batch *batch = batch_prepare(backend, 0, frame, first, left < size ? left : size);
         done = inspect_batch(&backend->launcher, batch, list, first, sink, context, error);
         batch_drop(batch);

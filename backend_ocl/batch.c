@@ -119,7 +119,7 @@ static bool trace_enqueue(Launch *launch, unsigned number)
         return false;
     *place = launch->batch->event_count;
     ++launch->traced;
-    return kernel_enqueue(launch, number, launch->batch->frame.item_count, true);
+    return kernel_enqueue(launch, number, launch->batch->frame.pass.item_count, true);
 }
 
 /* ---- steps ------------------------------------------------------------------------------------------------------- */
@@ -155,7 +155,7 @@ static void counted_release(Launch *launch)
 static bool trace_closest(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
-    uint items = launch->batch->frame.item_count;
+    uint items = launch->batch->frame.pass.item_count;
     ++launch->turn;
     counted_release(launch);
     if (!kernel_enqueue(launch, KERNEL_count_closest, (items + COUNT_RAYS - 1) / COUNT_RAYS, false))
@@ -172,14 +172,14 @@ static bool trace_closest(Launch *launch)
 
 static bool trace_shadow(Launch *launch)
 {
-    uint items = launch->batch->frame.item_count;
+    uint items = launch->batch->frame.pass.item_count;
     return kernel_enqueue(launch, KERNEL_count_shadow, (items + COUNT_RAYS - 1) / COUNT_RAYS, false) &&
            trace_enqueue(launch, KERNEL_trace_shadow);
 }
 
 static bool splats_add(Launch *launch)
 {
-    return kernel_enqueue(launch, KERNEL_film_add, launch->batch->frame.item_count, false);
+    return kernel_enqueue(launch, KERNEL_film_add, launch->batch->frame.pass.item_count, false);
 }
 
 /* Appends the splats to those of earlier STEP_SPLATs, in the same buffer. */
@@ -187,7 +187,7 @@ static bool splats_put_aside(Launch *launch)
 {
     Batch *batch = launch->batch;
     cl_mem splats = batch->memory->splats;
-    size_t bytes = (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
+    size_t bytes = (size_t)batch->frame.pass.stride * launch->list->words_per_item[BUFFER_SPLATS] * sizeof(uint);
     size_t to = batch->splat_sections++ * bytes;
     cl_event *event;
     return event_slot(launch, "put splats aside", false, &event) &&
@@ -230,7 +230,7 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
         const Step *step = &list->steps[i];
         switch (step->kind) {
         case STEP_KERNEL:
-            done = kernel_enqueue(launch, step->kernel, launch->batch->frame.item_count, false);
+            done = kernel_enqueue(launch, step->kernel, launch->batch->frame.pass.item_count, false);
             break;
         case STEP_TRACE_CLOSEST:
             done = trace_closest(launch);
@@ -281,7 +281,7 @@ static bool results_read(Launch *launch)
     BatchResults *results = batch->memory->results;
     cl_event computed = NULL;
     size_t bytes = launcher->adds ? 0
-                                  : (size_t)batch->frame.stride * launch->list->words_per_item[BUFFER_SPLATS] *
+                                  : (size_t)batch->frame.pass.stride * launch->list->words_per_item[BUFFER_SPLATS] *
                                         sizeof(uint) * batch->splat_sections;
     bool done = check(launch,
                       clEnqueueReadBuffer(launcher->compute, memory->state[BUFFER_DIAGNOSTICS], CL_FALSE, 0,

@@ -19,7 +19,8 @@ typedef struct Batch {
     BatchMemory *memory;
     FrameParams frame; /* the pass's, with first_item, item_count and stride of the batch */
     uint64_t number; /* counted from the opening of the backend */
-    uint splat_sections; /* sections of frame.stride items in memory->host: one per STEP_SPLAT, then the final one */
+    /* Sections of frame.pass.stride items in memory->host: one per STEP_SPLAT, then the final one. */
+    uint splat_sections;
     BatchEvent *events;
     size_t event_count, event_capacity;
     cl_event copied; /* done when results are in memory->results and splats in memory->host */

@@ -75,7 +75,7 @@ static void slot_await(FilmAdders *adders, Slot *slot)
     }
     batch_account(adders, slot->batch, nanoseconds);
     if (!adders->sink) {
-        adders->total.items += slot->batch->frame.item_count;
+        adders->total.items += slot->batch->frame.pass.item_count;
         slot_free(adders, slot);
         return;
     }
@@ -88,14 +88,14 @@ static void slot_await(FilmAdders *adders, Slot *slot)
 static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
 {
     Batch *batch = slot->batch;
-    uint first = slot->next, left = batch->frame.item_count - first, count = left < ADD_ITEMS ? left : ADD_ITEMS;
+    uint first = slot->next, left = batch->frame.pass.item_count - first, count = left < ADD_ITEMS ? left : ADD_ITEMS;
     slot->next += count;
     pthread_mutex_unlock(&adders->mutex);
     uint64_t begin = timeline_now();
     for (uint section = 0; section < batch->splat_sections; ++section)
         adders->sink->splats(adders->sink->context,
-                             batch->memory->host + (size_t)section * SPLAT_WORDS * batch->frame.stride + first, count,
-                             batch->frame.stride);
+                             batch->memory->host + (size_t)section * SPLAT_WORDS * batch->frame.pass.stride + first,
+                             count, batch->frame.pass.stride);
     timeline_add(adders->timeline, (BackendSpan){.name = "add to film",
                                                  .track = SPAN_FILM,
                                                  .lane = lane,
@@ -104,7 +104,7 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
                                                  .end = timeline_now()});
     pthread_mutex_lock(&adders->mutex);
     slot->added += count;
-    if (slot->added == batch->frame.item_count) {
+    if (slot->added == batch->frame.pass.item_count) {
         adders->total.items += slot->added;
         slot_free(adders, slot);
     }
@@ -114,7 +114,8 @@ static void slot_add(FilmAdders *adders, Slot *slot, uint lane)
 static Slot *slot_find(FilmAdders *adders)
 {
     for (int i = 0; i < BATCH_SLOTS; ++i)
-        if (adders->slots[i].state == SLOT_COPIED && adders->slots[i].next < adders->slots[i].batch->frame.item_count)
+        if (adders->slots[i].state == SLOT_COPIED &&
+            adders->slots[i].next < adders->slots[i].batch->frame.pass.item_count)
             return &adders->slots[i];
     Slot *oldest = NULL;
     for (int i = 0; i < BATCH_SLOTS; ++i)

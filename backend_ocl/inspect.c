@@ -14,7 +14,7 @@ static cl_mem state_buffer(const Launcher *launcher, const Batch *batch, int id)
 
 static size_t state_bytes(const Batch *batch, const StepList *list, int id)
 {
-    return (size_t)batch->frame.stride * list->words_per_item[id] * sizeof(uint);
+    return (size_t)batch->frame.pass.stride * list->words_per_item[id] * sizeof(uint);
 }
 
 static bool state_clear(Launcher *launcher, const Batch *batch, const StepList *list, Error *error)
@@ -42,7 +42,7 @@ static bool state_show(Launcher *launcher, const Batch *batch, const StepList *l
                                           words, 0, NULL, NULL),
                       "reading state", error);
     if (done)
-        sink(context, (BufferId)id, words, first, batch->frame.item_count, batch->frame.stride);
+        sink(context, (BufferId)id, words, first, batch->frame.pass.item_count, batch->frame.pass.stride);
     free(words);
     return done;
 }

@@ -10,9 +10,9 @@ typedef struct Region {
 
 static Region region_of(const FrameParams *frame, const StepList *list)
 {
-    return (Region){.host = {frame->first_item * sizeof(uint), 0, 0},
-                    .size = {frame->item_count * sizeof(uint), list->pass_fields, 1},
-                    .device_row = frame->item_count * sizeof(uint),
+    return (Region){.host = {frame->pass.first_item * sizeof(uint), 0, 0},
+                    .size = {frame->pass.item_count * sizeof(uint), list->pass_fields, 1},
+                    .device_row = frame->pass.item_count * sizeof(uint),
                     .host_row = list->pass_stride * sizeof(uint)};
 }
 
@@ -22,7 +22,7 @@ bool pass_data_begin(DeviceMemory *memory, const FrameParams *frame, const StepL
     if (list->guide)
         status = clEnqueueWriteBuffer(memory->queue, memory->guide, CL_TRUE, 0, sizeof *list->guide, list->guide, 0,
                                       NULL, NULL);
-    if (status != CL_SUCCESS || !list->pass_words || frame->item_count == 0)
+    if (status != CL_SUCCESS || !list->pass_words || frame->pass.item_count == 0)
         return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's guide", status);
     Region region = region_of(frame, list);
     cl_mem *buffer = &memory->state[BUFFER_PASS];

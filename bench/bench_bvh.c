@@ -57,7 +57,7 @@ static void device_open(Bench *bench, const char *shared)
     bool absent;
     snprintf(options, sizeof options,
              "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DTWINLIGHT_FEATURES=0x%xu -I%s",
-             bench->frame.features, shared);
+             bench->frame.scene.features, shared);
     bench->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!bench->probe) {
         printf("# no OpenCL: %s\n", message);
@@ -86,11 +86,11 @@ static void bench_open(Bench *bench, const char *path)
         bench_fail(error.message);
     FrameParams *frame = &bench->frame;
     *frame = *bench->backend.frame;
-    uint pixels = (frame->crop_x1 - frame->crop_x0) * (frame->crop_y1 - frame->crop_y0);
-    frame->max_depth = MAX_DEPTH;
-    frame->stride = STRIDE;
-    frame->item_count = ITEMS;
-    frame->pixel_stride = pixels / ITEMS < 1u ? 1u : pixels / ITEMS;
+    uint pixels = (frame->film.crop_x1 - frame->film.crop_x0) * (frame->film.crop_y1 - frame->film.crop_y0);
+    frame->path.max_depth = MAX_DEPTH;
+    frame->pass.stride = STRIDE;
+    frame->pass.item_count = ITEMS;
+    frame->pass.pixel_stride = pixels / ITEMS < 1u ? 1u : pixels / ITEMS;
     for (int i = 0; i < BUFFER_COUNT; ++i)
         if (BUFFER_WORDS[i] > 0 && !(bench->buffers[i] = calloc((size_t)BUFFER_WORDS[i] * STRIDE, sizeof(uint))))
             bench_fail("out of memory");

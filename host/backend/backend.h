@@ -8,7 +8,7 @@
 #define TWINLIGHT_BACKEND_BACKEND_H
 
 #include "base/error.h"
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 
 #include <stdatomic.h>
 #include <stddef.h>

@@ -89,7 +89,7 @@ static void shares_make(const Group *group, uint items, uint shares[BACKEND_GROU
 
 static void member_learn(GroupMember *member)
 {
-    if (!member->done || member->delivered < member->frame.item_count || member->delivered == 0)
+    if (!member->done || member->delivered < member->frame.pass.item_count || member->delivered == 0)
         return; /* stopped or failed, so its speed is unknown */
     double speed = (double)member->delivered / fmax(member->seconds, 1e-6);
     member->speed = member->speed > 0.0 ? member->speed + SPEED_BLEND * (speed - member->speed) : speed;
@@ -102,15 +102,15 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
 {
     Group *group = group_of(backend);
     const GroupRun run = {list, sink, stop};
-    uint shares[BACKEND_GROUP_MAX] = {0}, first = frame->first_item;
+    uint shares[BACKEND_GROUP_MAX] = {0}, first = frame->pass.first_item;
     pthread_t threads[BACKEND_GROUP_MAX];
     bool started[BACKEND_GROUP_MAX] = {false};
-    shares_make(group, frame->item_count, shares);
+    shares_make(group, frame->pass.item_count, shares);
     for (size_t i = 0; i < group->count; ++i) {
         GroupMember *member = &group->members[i];
         member->frame = *frame;
-        member->frame.first_item = first;
-        member->frame.item_count = shares[i];
+        member->frame.pass.first_item = first;
+        member->frame.pass.item_count = shares[i];
         member->run = &run;
         member->delivered = 0;
         member->done = true;

@@ -50,7 +50,7 @@ static float camera_place_reach(const Camera *camera)
 
 float ray_reach_inner(const SceneView *view, uint instance_count)
 {
-    float all = view->frame->ray_reach, reaches[SAMPLES], sizes[SAMPLES];
+    float all = view->frame->scene.ray_reach, reaches[SAMPLES], sizes[SAMPLES];
     uint items = view->objects[0].primitive_count + instance_count, count = items < SAMPLES ? items : SAMPLES;
     if (count == 0u)
         return all;

@@ -322,7 +322,7 @@ static int memory_print(const RenderJob *job)
 {
     const ChainOptions *options = &job->command->chains;
     FrameParams frame = job->scene.frame;
-    frame.max_depth = (uint)job->scene.settings.max_depth;
+    frame.path.max_depth = (uint)job->scene.settings.max_depth;
     unsigned usual = mmlt_scheme(options->paper)->chains;
     chain_memory_print(&frame, options->chains ? options->chains : usual);
     return EXIT_OK;

@@ -42,7 +42,7 @@ static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t i
     bool whole = true, same = mmlt_init(&mmlt, run, error);
     uint count = items < CHAINS_COMPARED ? (uint)items : CHAINS_COMPARED;
     same = same && list_verify(sides, "path tracing, ", &mmlt.paths.frame, &mmlt.paths.own.list, items, stop, error);
-    if (same && run->frame.max_depth >= CHAIN_DEPTH_MIN) {
+    if (same && run->frame.path.max_depth >= CHAIN_DEPTH_MIN) {
         mmlt.options.pool = count;
         same = mmlt_pilot_run(&mmlt, count, &whole, error) && (!whole || mmlt_seeds_run(&mmlt, count, &whole, error));
         FrameParams pool = pool_estimator_frame(&mmlt.pool, &mmlt.generation),

@@ -45,7 +45,7 @@ bool film_light_reserve(Film *film, Error *error);
  * film_merge adds them only if both films have them. */
 bool film_rare_reserve(Film *film, Error *error);
 
-/* Allocates separate sums per depth up to `last`, for splats that store their depth (FrameParams.split_depths =
+/* Allocates separate sums per depth up to `last`, for splats that store their depth (FrameParams.film.split_depths =
  * depth_kinds): of splats from the light only or, if rare sums are already reserved, of all kinds. film_init_like does
  * not copy them, and film_merge adds those that both films have. Only while the film is empty. */
 bool film_depths_reserve(Film *film, uint last, Error *error);

@@ -30,12 +30,12 @@ static const StateField CHAIN_FIELDS[] = {
 
 static uint number_count(const FrameParams *frame)
 {
-    return NUMBER_VERTICES + (frame->max_depth - 1) * chain_vertex_numbers(frame);
+    return NUMBER_VERTICES + (frame->path.max_depth - 1) * chain_vertex_numbers(frame);
 }
 
 uint chain_pass_fields(const FrameParams *frame)
 {
-    return CHAIN_PASS_NUMBERS + (frame->keep_chains ? number_count(frame) : 0);
+    return CHAIN_PASS_NUMBERS + (frame->chains.keep ? number_count(frame) : 0);
 }
 
 /* Records one proposal. The light subpath has up to max_depth - 1 segments (s = d), the camera subpath up to max_depth
@@ -55,7 +55,7 @@ static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
 
 ChainWords chain_words(const FrameParams *frame)
 {
-    uint paths = CHAIN_NUMBERS + number_count(frame), densities = 2 * frame->max_depth;
+    uint paths = CHAIN_NUMBERS + number_count(frame), densities = 2 * frame->path.max_depth;
     return (ChainWords){.state = paths - BD_HEADER_WORDS,
                         .densities = densities,
                         .all = paths + densities + CHAIN_VERTEX_WORDS + RAY_WORDS + HIT_WORDS + SHADOW_WORDS +
@@ -72,7 +72,7 @@ void chain_memory_print(const FrameParams *frame, unsigned chains)
                 {"densities", words.densities},
                 {"walk, vertices, rays", words.all - words.state - words.densities},
                 {"all", words.all}};
-    printf("%u chains of up to %u segments\n", chains, frame->max_depth);
+    printf("%u chains of up to %u segments\n", chains, frame->path.max_depth);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i)
         printf("%-22s %5zu bytes a chain %10.1f MB\n", rows[i].what, rows[i].words * sizeof(uint),
                1e-6 * (double)chains * (double)(rows[i].words * sizeof(uint)));
@@ -80,18 +80,18 @@ void chain_memory_print(const FrameParams *frame, unsigned chains)
 
 bool chain_list(const FrameParams *frame, uint steps, StepList *list, Error *error)
 {
-    size_t per_step = 5 + 3 * (2 * (size_t)frame->max_depth - 1), capacity = (steps + 1) * per_step + 2;
+    size_t per_step = 5 + 3 * (2 * (size_t)frame->path.max_depth - 1), capacity = (steps + 1) * per_step + 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;
     recorder_kernel(&recorder, KERNEL_mlt_begin, false);
     for (uint i = 0; i <= steps; ++i)
-        record_proposal(&recorder, frame->max_depth, i > 0);
+        record_proposal(&recorder, frame->path.max_depth, i > 0);
     recorder_kernel(&recorder, KERNEL_mlt_end, false);
     *list = recorder_list(&recorder, CHAIN_NUMBERS + number_count(frame), CHAIN_FIELDS,
                           sizeof CHAIN_FIELDS / sizeof CHAIN_FIELDS[0]);
     list->pass_fields = chain_pass_fields(frame);
     list->words_per_item[BUFFER_VERTICES] = CHAIN_VERTEX_WORDS;
-    list->words_per_item[BUFFER_DENSITIES] = 2 * frame->max_depth;
+    list->words_per_item[BUFFER_DENSITIES] = 2 * frame->path.max_depth;
     return true;
 }

@@ -63,9 +63,9 @@ FrameParams chains_estimator_frame(const ChainsEstimator *chains, const Generati
 {
     FrameParams frame = generation->run->frame;
     pool_estimator_share(pool, generation, &frame);
-    frame.brightness = (float)chains->populations[generation->replica].brightness;
-    frame.roulette_depth = NONE;
-    estimator_frame(&chains->own, &frame);
+    frame.chains.brightness = (float)chains->populations[generation->replica].brightness;
+    frame.path.roulette_depth = NONE;
+    estimator_film_params(&chains->own, &frame.film);
     return frame;
 }
 
@@ -89,7 +89,7 @@ bool chains_estimator_run(ChainsEstimator *chains, const Generation *generation,
     if (!chains_estimator_alive(chains, generation))
         return true;
     FrameParams frame = chains_estimator_frame(chains, generation, pool);
-    frame.item_count = count;
+    frame.pass.item_count = count;
     if (run->options->bad_chains && !begun_keep(chains, count, error))
         return false;
     bool done = estimator_pass(&chains->own, run, &frame, false, &delivered, error);

@@ -25,7 +25,7 @@ bool estimator_init(Estimator *estimator, const RenderRun *run, bool rare, bool 
     return film_init_like(&estimator->film, run->film, error) &&
            (!rare || film_rare_reserve(&estimator->film, error)) &&
            (!depths || run->film->depth_kinds == 0 ||
-            film_depths_reserve(&estimator->film, run->frame.max_depth, error));
+            film_depths_reserve(&estimator->film, run->frame.path.max_depth, error));
 }
 
 void estimator_destroy(Estimator *estimator)
@@ -34,10 +34,10 @@ void estimator_destroy(Estimator *estimator)
     film_destroy(&estimator->film);
 }
 
-void estimator_frame(const Estimator *estimator, FrameParams *frame)
+void estimator_film_params(const Estimator *estimator, FilmParams *params)
 {
-    frame->film_exponent = estimator->film.quantum_exponent;
-    frame->split_depths = estimator->film.depth_kinds;
+    params->exponent = estimator->film.quantum_exponent;
+    params->split_depths = estimator->film.depth_kinds;
 }
 
 bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *frame, bool parts, uint64_t *delivered,

@@ -23,11 +23,11 @@ typedef struct Estimator {
 bool estimator_init(Estimator *estimator, const RenderRun *run, bool rare, bool depths, Error *error);
 void estimator_destroy(Estimator *estimator);
 
-/* Prepares the frame of a pass whose splats go to the estimator's film. */
-void estimator_frame(const Estimator *estimator, FrameParams *frame);
+/* Sets what passes whose splats go to the estimator's film know of it. */
+void estimator_film_params(const Estimator *estimator, FilmParams *params);
 
 /* Runs such a pass. parts: a stopped pass leaves the splats of the items that were finished. *delivered: receives their
- * number, frame->item_count unless stopped. */
+ * number, frame->pass.item_count unless stopped. */
 bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *frame, bool parts, uint64_t *delivered,
                     Error *error);
 

@@ -10,7 +10,7 @@
 #ifndef TWINLIGHT_MMLT_IMPORTANCE_H
 #define TWINLIGHT_MMLT_IMPORTANCE_H
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "mmlt/combination.h"
 
 /* Sets all target importances to 1. */

@@ -21,19 +21,19 @@ static void options_complete(ChainOptions *options, const MmltScheme *scheme, ui
 /* Sets what passes of chains and pools share. */
 static void frame_complete(const Mmlt *mmlt, FrameParams *frame)
 {
-    frame->min_depth = CHAIN_DEPTH_MIN;
-    frame->mis_exponent = 1;
-    frame->mutations = mmlt->options.mutations;
-    frame->group_mutations = !mmlt->options.ungrouped;
-    frame->large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
-    frame->shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
-    frame->keep_chains = 1;
+    frame->path.min_depth = CHAIN_DEPTH_MIN;
+    frame->path.mis_exponent = 1;
+    frame->chains.mutations = mmlt->options.mutations;
+    frame->chains.group_mutations = !mmlt->options.ungrouped;
+    frame->chains.large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
+    frame->chains.shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
+    frame->chains.keep = 1;
 }
 
 /* Whether paths are long enough for chains. */
 static bool chains_needed(const Mmlt *mmlt)
 {
-    return mmlt->run->frame.max_depth >= CHAIN_DEPTH_MIN;
+    return mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN;
 }
 
 static bool estimators_init(Mmlt *mmlt, Error *error)
@@ -43,7 +43,7 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
     bool alone = mmlt->options.chains_only;
     const Guide *guide = &mmlt->guide.shown;
     if (layers && (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0 &&
-        !film_depths_reserve(run->film, run->frame.max_depth, error))
+        !film_depths_reserve(run->film, run->frame.path.max_depth, error))
         return false;
     if (!paths_estimator_init(&mmlt->paths, run, alone, guide, error))
         return false;
@@ -58,7 +58,7 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
 {
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .scheme = mmlt_scheme(run->options->chains.paper)};
-    options_complete(&mmlt->options, mmlt->scheme, run->frame.max_depth);
+    options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
     plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
     if (!estimators_init(mmlt, error))

@@ -10,13 +10,13 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool dire
                           Error *error)
 {
     *paths = (PathsEstimator){.frame = run->frame};
-    paths->frame.strategies = integrator_pt()->strategies;
-    paths->frame.split_direct = !direct_only;
-    if (direct_only && paths->frame.max_depth >= CHAIN_DEPTH_MIN)
-        paths->frame.max_depth = CHAIN_DEPTH_MIN - 1;
+    paths->frame.path.strategies = integrator_pt()->strategies;
+    paths->frame.partition.split_direct = !direct_only;
+    if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
+        paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
     if (!estimator_init(&paths->own, run, false, !direct_only, error))
         return false;
-    estimator_frame(&paths->own, &paths->frame);
+    estimator_film_params(&paths->own, &paths->frame.film);
     bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);
     paths->own.list.guide = guide;
     return made;
@@ -38,17 +38,17 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
         target = first;
     film_clear(&paths->own.film);
     paths->delivered = 0;
-    frame->clamp_threshold = generation->clamp_threshold;
+    frame->partition.clamp_threshold = generation->clamp_threshold;
     uint64_t items = target > paths->done ? (target - paths->done) * run->crop_pixels : 0;
-    for (uint64_t next = 0; next < items && *whole; next += frame->item_count) {
+    for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
-        frame->sample_index = run->options->first_sample + (uint)(paths->done + next / run->crop_pixels);
-        frame->first_item = (uint)(next % run->crop_pixels);
-        frame->item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
+        frame->pass.sample_index = run->options->first_sample + (uint)(paths->done + next / run->crop_pixels);
+        frame->pass.first_item = (uint)(next % run->crop_pixels);
+        frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
         if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
             return false;
         paths->delivered += delivered;
-        *whole = delivered == frame->item_count;
+        *whole = delivered == frame->pass.item_count;
     }
     paths->done = target > paths->done ? target : paths->done;
     paths->own.film.light_samples = items;

@@ -25,8 +25,8 @@ void pool_estimator_destroy(PoolEstimator *pool)
 bool pool_estimator_list(PoolEstimator *pool, const RenderRun *run, Error *error)
 {
     FrameParams frame = run->frame;
-    frame.pool = 1;
-    estimator_frame(&pool->own, &frame);
+    frame.pool.enabled = 1;
+    estimator_film_params(&pool->own, &frame.film);
     bool made = bdpt_list(&frame, &pool->own.list, error);
     pool->own.list.guide = pool->guide;
     return made;
@@ -94,26 +94,26 @@ void pool_estimator_restart(PoolEstimator *pool, const Generation *generation)
 
 void pool_estimator_share(const PoolEstimator *pool, const Generation *generation, FrameParams *frame)
 {
-    frame->clamp_threshold = generation->clamp_threshold;
-    frame->sample_index = pool->sample;
-    frame->pixel_first = pool->pixel;
-    frame->pool_visits = pool->guide->visits[IMPORTANCE_CELLS];
-    frame->pixel_stride = frame->pool_visits > 0
-                              ? pixel_order_stride_of(frame->pool_visits)
-                              : pixel_order_stride(frame->crop_x1 - frame->crop_x0, frame->crop_y1 - frame->crop_y0);
+    frame->partition.clamp_threshold = generation->clamp_threshold;
+    frame->pass.sample_index = pool->sample;
+    frame->pass.pixel_first = pool->pixel;
+    frame->pool.visits = pool->guide->visits[IMPORTANCE_CELLS];
+    frame->pass.pixel_stride = frame->pool.visits > 0 ? pixel_order_stride_of(frame->pool.visits)
+                                                      : pixel_order_stride(frame->film.crop_x1 - frame->film.crop_x0,
+                                                                           frame->film.crop_y1 - frame->film.crop_y0);
 }
 
 FrameParams pool_estimator_frame(const PoolEstimator *pool, const Generation *generation)
 {
     FrameParams frame = generation->run->frame;
-    frame.item_count = pool->count;
-    frame.pool = 1;
-    frame.pool_lights = pool->lights_all ? pool->count : (uint)ceil(POOL_LIGHTS * pool->count);
-    frame.pool_items = pool->count;
-    frame.pool_lights_first = pool->lights_first;
-    frame.pool_lights_weight = (float)((double)pool->count / frame.pool_lights);
+    frame.pass.item_count = pool->count;
+    frame.pool.enabled = 1;
+    frame.pool.lights = pool->lights_all ? pool->count : (uint)ceil(POOL_LIGHTS * pool->count);
+    frame.pool.items = pool->count;
+    frame.pool.lights_first = pool->lights_first;
+    frame.pool.lights_weight = (float)((double)pool->count / frame.pool.lights);
     pool_estimator_share(pool, generation, &frame);
-    estimator_frame(&pool->own, &frame);
+    estimator_film_params(&pool->own, &frame.film);
     return frame;
 }
 

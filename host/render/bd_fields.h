@@ -41,8 +41,8 @@
 #define IB_FIELD_COUNT (BD_FIELD_COUNT + 6)
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 
-/* Records BDPT, or with frame->pool a pool for chains, whose samples end in BUFFER_PASS (chain/pool.h). Free `list`
- * with step_list_destroy. */
+/* Records BDPT, or with frame->pool.enabled a pool for chains, whose samples end in BUFFER_PASS (chain/pool.h). Free
+ * `list` with step_list_destroy. */
 bool bdpt_list(FrameParams *frame, StepList *list, Error *error);
 
 #endif

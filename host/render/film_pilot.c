@@ -53,16 +53,16 @@ static const Integrator *pilot_integrator(const Integrator *integrator)
 static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator)
 {
     FrameParams frame = run->frame;
-    frame.strategies = integrator->strategies;
-    frame.only_s = frame.only_t = NONE;
-    frame.unweighted = 0;
-    frame.crop_x0 = frame.crop_y0 = 0;
-    frame.crop_x1 = frame.width;
-    frame.crop_y1 = frame.height;
-    frame.first_item = 0;
-    frame.item_count = PILOT_ITEMS;
-    frame.sample_index = PILOT_SAMPLE;
-    frame.pixel_stride = pixel_order_stride(frame.width, frame.height);
+    frame.path.strategies = integrator->strategies;
+    frame.path.only_s = frame.path.only_t = NONE;
+    frame.path.unweighted = 0;
+    frame.film.crop_x0 = frame.film.crop_y0 = 0;
+    frame.film.crop_x1 = frame.film.width;
+    frame.film.crop_y1 = frame.film.height;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = PILOT_ITEMS;
+    frame.pass.sample_index = PILOT_SAMPLE;
+    frame.pass.pixel_stride = pixel_order_stride(frame.film.width, frame.film.height);
     return frame;
 }
 
@@ -70,7 +70,7 @@ static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrato
  * directions. */
 static double radiance_of_power(const Scene *scene)
 {
-    double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
+    double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
     return scene->light_power / (4.0 * M_PI * radius * radius) / M_PI;
 }
 

@@ -14,8 +14,8 @@ typedef struct Integrator {
     int depth_limit; /* most segments of a path */
     uint strategies; /* STRATEGIES_* */
     bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
-    /* Records the steps for paths of up to frame->max_depth segments; free with step_list_destroy. NULL if `render` is
-     * set. */
+    /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
+     * is set. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
     /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h); may be NULL. */
     bool (*render)(struct RenderRun *run, Error *error);

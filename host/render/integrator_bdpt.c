@@ -50,8 +50,8 @@ static void record_connections(Recorder *recorder, uint max_depth, bool split)
 
 bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
 {
-    uint max_depth = frame->max_depth;
-    bool split = frame->split_depths != 0;
+    uint max_depth = frame->path.max_depth;
+    bool split = frame->film.split_depths != 0;
     /* Two walks, their starts, the last splat, and up to five steps per connection. */
     size_t capacity = 9 * (size_t)max_depth + 9 + 5 * (size_t)max_depth * (max_depth + 1) / 2;
     Recorder recorder;
@@ -66,7 +66,7 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     else
         recorder_walk(&recorder, max_depth, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
     record_connections(&recorder, max_depth, split);
-    if (frame->pool)
+    if (frame->pool.enabled)
         recorder_kernel(&recorder, KERNEL_pool_end, false);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
     *list = recorder_list(&recorder, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);

@@ -54,7 +54,7 @@ static void record_camera(Recorder *recorder, uint segments)
 
 static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
 {
-    uint max_depth = frame->max_depth;
+    uint max_depth = frame->path.max_depth;
     size_t capacity = 4 + 2 * (size_t)max_depth * SEGMENT_STEPS_MAX;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))

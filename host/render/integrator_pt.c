@@ -75,9 +75,9 @@ static const StateField PATH_FIELDS[] = {
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 6 + (size_t)frame->max_depth * 9, error))
+    if (!recorder_init(&recorder, 6 + (size_t)frame->path.max_depth * 9, error))
         return false;
-    steps_record(&recorder, frame->max_depth, frame->split_direct != 0, frame->split_depths != 0);
+    steps_record(&recorder, frame->path.max_depth, frame->partition.split_direct != 0, frame->film.split_depths != 0);
     *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
     return true;
 }

@@ -109,11 +109,11 @@ static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const
 {
     FrameParams frame = run->frame;
     const SplatSink sink = render_run_sink(film);
-    frame.aov = aov;
-    frame.film_exponent = film->quantum_exponent;
-    frame.sample_index = run->options->first_sample + sample;
-    frame.first_item = 0;
-    frame.item_count = (uint)run->crop_pixels;
+    frame.pass.aov = aov;
+    frame.film.exponent = film->quantum_exponent;
+    frame.pass.sample_index = run->options->first_sample + sample;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = (uint)run->crop_pixels;
     return run->interface->run(run->backend, &frame, list, &sink, render_run_stop(run), NULL, error);
 }
 

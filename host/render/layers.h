@@ -4,7 +4,7 @@
 
 #include "film/film.h"
 #include "film/pixel_series.h"
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "render/run.h"
 
 typedef enum Layer {

@@ -38,10 +38,10 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
 {
     RenderRun *run = loop->run;
     uint64_t delivered = 0;
-    run->frame.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
-    run->frame.first_item = (uint)(loop->next % run->crop_pixels);
-    run->frame.item_count = items;
-    run->frame.film_exponent = run->film->quantum_exponent;
+    run->frame.pass.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
+    run->frame.pass.first_item = (uint)(loop->next % run->crop_pixels);
+    run->frame.pass.item_count = items;
+    run->frame.film.exponent = run->film->quantum_exponent;
     const SplatSink sink = render_run_sink(run->film);
     if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop(run), &delivered, error)) {
         run->done += delivered; /* these are in the film all the same */
@@ -114,22 +114,22 @@ static void result_fill(const RenderRun *run, RenderResult *result)
 void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame)
 {
     *frame = scene->frame;
-    frame->max_depth =
+    frame->path.max_depth =
         (uint)(options->max_depth < integrator->depth_limit ? options->max_depth : integrator->depth_limit);
-    frame->strategies = integrator->strategies;
-    frame->mis_exponent = options->balance ? 1 : 2;
-    frame->only_s = options->only_strategy ? options->strategy[0] : NONE;
-    frame->only_t = options->only_strategy ? options->strategy[1] : NONE;
-    frame->unweighted = options->unweighted;
-    frame->seed_low = (uint)options->seed;
-    frame->seed_high = (uint)(options->seed >> 32);
-    frame->sample_index = options->first_sample;
-    frame->first_item = 0;
-    frame->pixel_stride = 1;
-    frame->min_depth = 1;
-    frame->roulette_depth = ROULETTE_DEPTH;
+    frame->path.strategies = integrator->strategies;
+    frame->path.mis_exponent = options->balance ? 1 : 2;
+    frame->path.only_s = options->only_strategy ? options->strategy[0] : NONE;
+    frame->path.only_t = options->only_strategy ? options->strategy[1] : NONE;
+    frame->path.unweighted = options->unweighted;
+    frame->pass.seed_low = (uint)options->seed;
+    frame->pass.seed_high = (uint)(options->seed >> 32);
+    frame->pass.sample_index = options->first_sample;
+    frame->pass.first_item = 0;
+    frame->pass.pixel_stride = 1;
+    frame->path.min_depth = 1;
+    frame->path.roulette_depth = ROULETTE_DEPTH;
     if (!integrator->guides || options->chains.paper || options->chains.unguided)
-        frame->guide_count = 0;
+        frame->scene.guide_count = 0;
 }
 
 bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
@@ -152,7 +152,7 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
     RenderLayers *layers = options->layers;
     bool done =
         (keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
-        (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.world_radius, error)) &&
+        (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.scene.world_radius, error)) &&
         (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     return done;

@@ -24,7 +24,7 @@ typedef struct RenderRun {
 /* The flag that becomes 1 if the rendering is to end at once (options->stop); a constant 0 if there is none. */
 const atomic_int *render_run_stop(const RenderRun *run);
 
-/* A sink that adds splats to the film. Passes that use it must set frame.film_exponent to the film's
+/* A sink that adds splats to the film. Passes that use it must set frame.film.exponent to the film's
  * quantum_exponent. */
 SplatSink render_run_sink(Film *film);
 

@@ -139,7 +139,8 @@ static bool block_difference(const Verifier *verifier, Difference *difference)
         for (uint field = 0; field < verifier->list->words_per_item[id]; ++field) {
             size_t offset = verifier->state[0].offset[id] + (size_t)field * BLOCK_ITEMS;
             const uint *a = verifier->state[0].words + offset, *b = verifier->state[1].words + offset;
-            uint limit = difference->item < verifier->frame.item_count ? difference->item : verifier->frame.item_count;
+            uint limit =
+                difference->item < verifier->frame.pass.item_count ? difference->item : verifier->frame.pass.item_count;
             if (memcmp(a, b, limit * sizeof(uint)) == 0)
                 continue;
             uint item = 0;
@@ -207,7 +208,7 @@ static bool difference_report(const Verifier *verifier, size_t step, const Diffe
                  statistics.device);
     }
     return error_set(error, "%s, item %llu: %s is %s on %s but %s on %s", where,
-                     (unsigned long long)verifier->frame.first_item + difference->item, what, values[0], device[0],
+                     (unsigned long long)verifier->frame.pass.first_item + difference->item, what, values[0], device[0],
                      values[1], device[1]);
 }
 
@@ -218,7 +219,7 @@ static bool block_is_idle(const Verifier *verifier)
 {
     const BlockState *state = &verifier->state[0];
     const uint *t_max = state->words + state->offset[BUFFER_RAYS] + (size_t)RAY_T_MAX * BLOCK_ITEMS;
-    for (uint item = 0; item < verifier->frame.item_count; ++item)
+    for (uint item = 0; item < verifier->frame.pass.item_count; ++item)
         if (bits_float(t_max[item]) > 0.0f)
             return false;
     return true;
@@ -270,11 +271,11 @@ bool verify_run(const BackendMember sides[2], const FrameParams *frame, const St
     *report = (VerifyReport){.words = verifier.words_per_item};
     for (uint64_t first = 0; same && first < items && !*stop; first += BLOCK_ITEMS) {
         uint64_t left = items - first;
-        verifier.frame.first_item = (uint)(frame->first_item + first);
-        verifier.frame.item_count = left < BLOCK_ITEMS ? (uint)left : BLOCK_ITEMS;
+        verifier.frame.pass.first_item = (uint)(frame->pass.first_item + first);
+        verifier.frame.pass.item_count = left < BLOCK_ITEMS ? (uint)left : BLOCK_ITEMS;
         same = first == 0 ? block_verify_steps(&verifier, stop, &report->prefixes, error)
                           : block_verify_end(&verifier, error);
-        report->items += same && (first > 0 || !*stop) ? verifier.frame.item_count : 0;
+        report->items += same && (first > 0 || !*stop) ? verifier.frame.pass.item_count : 0;
     }
     verifier_destroy(&verifier);
     return same;

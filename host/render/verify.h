@@ -11,8 +11,8 @@ typedef struct VerifyReport {
     uint words; /* compared per item */
 } VerifyReport;
 
-/* Runs `items` items, from frame->first_item on, through both sides in blocks. The first block is compared after every
- * step until all paths have ended. The others are compared after the last step, and after every step only if that
+/* Runs `items` items, from frame->pass.first_item on, through both sides in blocks. The first block is compared after
+ * every step until all paths have ended. The others are compared after the last step, and after every step only if that
  * differs, to find the first difference. Returns false with an error naming the first step, item and field that differ
  * and both values. *stop ends it between two runs of the first block or between blocks. */
 bool verify_run(const BackendMember sides[2], const FrameParams *frame, const StepList *list, uint64_t items,

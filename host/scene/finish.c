@@ -122,7 +122,7 @@ static bool world_box(const Scene *scene, Box *world, float *largest, Error *err
     return true;
 }
 
-static void world_sphere_set(FrameParams *frame, const Box *world)
+static void world_sphere_set(SceneParams *params, const Box *world)
 {
     double square = 0.0, center[3];
     for (int i = 0; i < 3; ++i) {
@@ -130,8 +130,8 @@ static void world_sphere_set(FrameParams *frame, const Box *world)
         center[i] = 0.5 * ((double)world->low[i] + (double)world->high[i]);
         square += half * half;
     }
-    frame->world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
-    frame->world_radius = (float)(sqrt(square) * 1.0001);
+    params->world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
+    params->world_radius = (float)(sqrt(square) * 1.0001);
 }
 
 static bool scene_bounds(Scene *scene, Error *error)
@@ -156,7 +156,7 @@ static bool scene_bounds(Scene *scene, Error *error)
         error_set(error, "the scene reaches to %g, where float32 arithmetic overflows", (double)largest);
         return error_fix(error, "scale the scene down, or remove the stray vertices");
     }
-    world_sphere_set(&scene->frame, &world);
+    world_sphere_set(&scene->frame.scene, &world);
     scene->ray_reach = box_largest(&world);
     return true;
 }
@@ -174,13 +174,13 @@ static float camera_reach(const Camera *camera)
 
 /* The same for rays from a light: those from infinity start on a disk of the bounding sphere's radius, tangent to
  * it. */
-static float light_reach(const FrameParams *frame, const Light *light)
+static float light_reach(const SceneParams *params, const Light *light)
 {
     if (light->kind == LIGHT_AREA)
         return 0.0f;
     if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
         return vec3_max_abs(light->position);
-    return vec3_max_abs(frame->world_center) + 1.5f * frame->world_radius;
+    return vec3_max_abs(params->world_center) + 1.5f * params->world_radius;
 }
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
@@ -324,7 +324,7 @@ static bool scene_coat_tables(Scene *scene, Error *error)
 
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
 {
-    FrameParams *frame = &scene->frame;
+    FilmParams *film = &scene->frame.film;
     if (width < 1 || height < 1 || (int64_t)width * height > INT32_MAX) {
         error_set(error, "the film size %d x %d is not between 1 and 2^31 pixels", width, height);
         return error_fix(error, "choose another --resolution");
@@ -337,17 +337,17 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
     scene->settings.width = width;
     scene->settings.height = height;
     memcpy(scene->settings.crop, crop, 4 * sizeof *crop);
-    frame->width = (uint)width;
-    frame->height = (uint)height;
-    frame->crop_x0 = (uint)crop[0];
-    frame->crop_y0 = (uint)crop[1];
-    frame->crop_x1 = (uint)crop[2];
-    frame->crop_y1 = (uint)crop[3];
-    if (!camera_setup(&scene->camera_settings, width, height, &frame->camera, error))
+    film->width = (uint)width;
+    film->height = (uint)height;
+    film->crop_x0 = (uint)crop[0];
+    film->crop_y0 = (uint)crop[1];
+    film->crop_x1 = (uint)crop[2];
+    film->crop_y1 = (uint)crop[3];
+    if (!camera_setup(&scene->camera_settings, width, height, &scene->frame.camera, error))
         return false;
     /* the factor covers ray_offset and other rounding */
-    frame->ray_reach = (1.0f + 64.0f * FLOAT_EPSILON) * fmaxf(scene->ray_reach, camera_reach(&frame->camera));
-    frame->ray_reach = fminf(frame->ray_reach, RAY_COMPONENT_MAX);
+    float reach = (1.0f + 64.0f * FLOAT_EPSILON) * fmaxf(scene->ray_reach, camera_reach(&scene->frame.camera));
+    scene->frame.scene.ray_reach = fminf(reach, RAY_COMPONENT_MAX);
     return true;
 }
 
@@ -357,19 +357,20 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     if (!primitives_group_by_object(scene, error) || !scene_bounds(scene, error))
         return false;
-    scene->features = scene->frame.features = scene_features(scene);
+    scene->features = scene->frame.scene.features = scene_features(scene);
     scene->primitive_count = scene->primitives.count;
     if (!scene_coat_tables(scene, error) ||
-        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.filter, error) ||
+        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error) ||
         !light_setup(scene, error))
         return false;
     for (size_t i = 0; i < scene->lights.count; ++i)
-        scene->ray_reach = fmaxf(scene->ray_reach, light_reach(&scene->frame, &ARRAY_AT(&scene->lights, Light, i)));
+        scene->ray_reach =
+            fmaxf(scene->ray_reach, light_reach(&scene->frame.scene, &ARRAY_AT(&scene->lights, Light, i)));
     light_guide_setup(scene);
-    scene->frame.light_count = (uint)scene->lights.count;
-    scene->frame.infinite_light_count = (uint)scene->infinite_lights.count;
-    scene->frame.pixel_stride = 1;
-    scene->frame.max_depth = (uint)scene->settings.max_depth;
+    scene->frame.scene.light_count = (uint)scene->lights.count;
+    scene->frame.scene.infinite_light_count = (uint)scene->infinite_lights.count;
+    scene->frame.pass.pixel_stride = 1;
+    scene->frame.path.max_depth = (uint)scene->settings.max_depth;
     return scene_pack(scene, error) &&
            scene_film_set(scene, scene->settings.width, scene->settings.height, scene->settings.crop, error);
 }

@@ -16,14 +16,14 @@ static void guide_add(Scene *scene, const LightGuide *added)
 {
     FrameParams *frame = &scene->frame;
     Guide *guide = &scene->guide;
-    uint place = frame->guide_count;
+    uint place = frame->scene.guide_count;
     float power = (float)added->power;
     while (place > 0 && guide->lights_power[place - 1] < power)
         --place;
     if (!(power > 0.0f) || place == LIGHT_GUIDES_MAX)
         return;
-    frame->guide_count += frame->guide_count < LIGHT_GUIDES_MAX;
-    for (uint i = frame->guide_count - 1; i > place; --i) {
+    frame->scene.guide_count += frame->scene.guide_count < LIGHT_GUIDES_MAX;
+    for (uint i = frame->scene.guide_count - 1; i > place; --i) {
         guide->lights[i] = guide->lights[i - 1];
         guide->lights_near[i] = guide->lights_near[i - 1];
         guide->lights_power[i] = guide->lights_power[i - 1];
@@ -90,8 +90,8 @@ void light_guide_setup(Scene *scene)
                       .lights = scene->lights.data,
                       .distributions2d = scene->distributions2d.data,
                       .lookup = scene->lookup.data};
-    double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
-    scene->frame.guide_count = 0;
+    double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
+    scene->frame.scene.guide_count = 0;
     for (size_t i = 0, next; i < scene->lights.count; i = next) {
         const Light *light = &view.lights[i];
         LightGuide guide = {.power = 0.0};

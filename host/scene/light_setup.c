@@ -129,7 +129,7 @@ double light_spot_solid_angle(double cos_total, double cos_falloff)
  * bounding sphere. */
 static bool light_power(Scene *scene, Light *light, double *power, Error *error)
 {
-    double radius = scene->frame.world_radius > 0.0f ? (double)scene->frame.world_radius : 1.0;
+    double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
     double disk = M_PI * radius * radius, mean = luminance(light->emission);
     switch (light->kind) {
     case LIGHT_AREA:

@@ -23,7 +23,7 @@ static bool words_append(Array *words, const Array *array, uint *first, Error *e
 
 static bool tables_pack(Scene *scene, Error *error)
 {
-    SceneLayout *layout = &scene->frame.layout;
+    SceneLayout *layout = &scene->frame.scene.layout;
     Array *words = &scene->tables_words;
     words->count = 0;
     return words_append(words, &scene->materials, &layout->materials, error) &&
@@ -50,7 +50,7 @@ size_t scene_geometry_words(const Scene *scene)
 /* Frees the unpacked vertex and primitive arrays on the way, so that a large scene is in memory only once. */
 static bool geometry_pack(Scene *scene, Error *error)
 {
-    SceneLayout *layout = &scene->frame.layout;
+    SceneLayout *layout = &scene->frame.scene.layout;
     struct {
         Array *array;
         uint *first;

@@ -82,7 +82,7 @@ typedef struct Scene {
 
     /* set by scene_finish */
     float bounds_min[3], bounds_max[3]; /* bounds of everything in the file's world space, see scene/center.h */
-    float ray_reach; /* largest coordinate of ray origins on surfaces and lights; frame.ray_reach: also on the camera */
+    float ray_reach; /* largest coordinate of ray origins on surfaces and lights; SceneParams: also on the camera */
     uint features;
     size_t primitive_count; /* the array itself is freed by packing */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are set by the integrator */

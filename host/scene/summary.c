@@ -18,7 +18,7 @@ void scene_summary(const Scene *scene, SceneSummary *summary)
     memset(summary, 0, sizeof *summary);
     /* The importer's array is already freed; the packed buffer holds the same primitives. */
     const uint *words = scene->geometry_words.data;
-    const Primitive *primitives = (const Primitive *)(words + scene->frame.layout.primitives);
+    const Primitive *primitives = (const Primitive *)(words + scene->frame.scene.layout.primitives);
     for (size_t i = 0; i < scene->primitive_count; ++i)
         ++summary->primitives[(primitives[i].shape_and_kind >> PRIMITIVE_KIND_SHIFT) % PRIMITIVE_KINDS];
     for (size_t i = 0; i < scene->materials.count; ++i)

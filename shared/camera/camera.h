@@ -4,7 +4,7 @@
 #define TWINLIGHT_CAMERA_CAMERA_H
 
 #include "layout/path_types.h"
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "math/warp.h"
 
 /* From film position (pixels) to screen window (on the plane z = 1, or in camera units if orthographic). */
@@ -69,9 +69,10 @@ SHARED_FUNCTION Ray camera_ray(const Camera *camera, Vec2 film, float width, flo
 SHARED_FUNCTION float camera_screen_pdf(__global const FrameParams *frame)
 {
     __global const Camera *camera = &frame->camera;
-    float x = (camera->screen[1] - camera->screen[0]) / (float)frame->width;
-    float y = (camera->screen[3] - camera->screen[2]) / (float)frame->height;
-    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
+    float x = (camera->screen[1] - camera->screen[0]) / (float)frame->film.width;
+    float y = (camera->screen[3] - camera->screen[2]) / (float)frame->film.height;
+    float pixels =
+        (float)(frame->film.crop_x1 - frame->film.crop_x0) * (float)(frame->film.crop_y1 - frame->film.crop_y0);
     return 1.0f / float_abs(pixels * x * y);
 }
 
@@ -120,9 +121,9 @@ typedef struct CameraConnection {
  * leaves gaps between pixels; film_splat_pixel finds those.) */
 SHARED_FUNCTION bool camera_film_covered(__global const FrameParams *frame, Vec2 film)
 {
-    float x = frame->filter.radius_x - 0.5f, y = frame->filter.radius_y - 0.5f;
-    return film.x >= (float)frame->crop_x0 - x && film.x < (float)frame->crop_x1 + x &&
-           film.y >= (float)frame->crop_y0 - y && film.y < (float)frame->crop_y1 + y;
+    float x = frame->film.filter.radius_x - 0.5f, y = frame->film.filter.radius_y - 0.5f;
+    return film.x >= (float)frame->film.crop_x0 - x && film.x < (float)frame->film.crop_x1 + x &&
+           film.y >= (float)frame->film.crop_y0 - y && film.y < (float)frame->film.crop_y1 + y;
 }
 
 /* Connects the world point p to the lens point of u_lens: the inverse of camera_ray. False if p is behind the camera or
@@ -147,7 +148,7 @@ SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, V
         screen = vec2(screen.x / q.z, screen.y / q.z);
         o = lens;
     }
-    connection->film = camera_film(&camera, screen, (float)frame->width, (float)frame->height);
+    connection->film = camera_film(&camera, screen, (float)frame->film.width, (float)frame->film.height);
     connection->p = affine_point(camera.world_from_camera, vec3(o.x, o.y, 0.0f));
     Vec3 d = vec3_sub(connection->p, p);
     float distance = vec3_length(d);

@@ -10,7 +10,7 @@
  * pixel_filter_sample. table: that of the axis, in `lookup`. *sign: of f. */
 SHARED_FUNCTION float film_splat_density(const SceneView *scene, uint table, float radius, float offset, float *sign)
 {
-    uint kind = scene->frame->filter.kind;
+    uint kind = scene->frame->film.filter.kind;
     *sign = 1.0f;
     if (kind == PIXEL_FILTER_BOX)
         return 0.5f / radius;
@@ -83,14 +83,14 @@ SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float r
 SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u, float *weight)
 {
     __global const FrameParams *frame = scene->frame;
-    __global const PixelFilter *filter = &frame->filter;
+    __global const PixelFilter *filter = &frame->film.filter;
     float weight_x, weight_y;
-    uint x = film_splat_axis(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x, u.x,
-                             &weight_x);
-    uint y = film_splat_axis(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y, u.y,
-                             &weight_y);
+    uint x = film_splat_axis(scene, filter->table_x, filter->radius_x, frame->film.crop_x0, frame->film.crop_x1, film.x,
+                             u.x, &weight_x);
+    uint y = film_splat_axis(scene, filter->table_y, filter->radius_y, frame->film.crop_y0, frame->film.crop_y1, film.y,
+                             u.y, &weight_y);
     *weight = weight_x * weight_y * filter->weight;
-    return x == NONE || y == NONE ? NONE : y * frame->width + x;
+    return x == NONE || y == NONE ? NONE : y * frame->film.width + x;
 }
 
 /* Coverage of the film position by all filters: the sum over pixels c of |f(film - c)| / (integral of |f|). 1 except
@@ -98,9 +98,9 @@ SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u,
 SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
 {
     __global const FrameParams *frame = scene->frame;
-    __global const PixelFilter *filter = &frame->filter;
-    return film_splat_sum(scene, filter->table_x, filter->radius_x, frame->crop_x0, frame->crop_x1, film.x) *
-           film_splat_sum(scene, filter->table_y, filter->radius_y, frame->crop_y0, frame->crop_y1, film.y);
+    __global const PixelFilter *filter = &frame->film.filter;
+    return film_splat_sum(scene, filter->table_x, filter->radius_x, frame->film.crop_x0, frame->film.crop_x1, film.x) *
+           film_splat_sum(scene, filter->table_y, filter->radius_y, frame->film.crop_y0, frame->film.crop_y1, film.y);
 }
 
 /* The cell of an axis of `pixels` pixels, beginning at pixel `first`, that contains `film` or is nearest to it. */
@@ -113,8 +113,8 @@ SHARED_FUNCTION uint importance_axis(float film, uint first, uint pixels)
 /* The cell of the target importance that contains a film position. */
 SHARED_FUNCTION uint importance_cell(__global const FrameParams *frame, Vec2 film)
 {
-    uint x = importance_axis(film.x, frame->crop_x0, frame->crop_x1 - frame->crop_x0);
-    uint y = importance_axis(film.y, frame->crop_y0, frame->crop_y1 - frame->crop_y0);
+    uint x = importance_axis(film.x, frame->film.crop_x0, frame->film.crop_x1 - frame->film.crop_x0);
+    uint y = importance_axis(film.y, frame->film.crop_y0, frame->film.crop_y1 - frame->film.crop_y0);
     return y * IMPORTANCE_SIDE + x;
 }
 

@@ -28,7 +28,7 @@ SHARED_FUNCTION float pixel_filter_invert(const SceneView *scene, uint table, fl
  * (integral of f), so that its expectation is 1 and the expectation of weight times radiance is the filtered image. */
 SHARED_FUNCTION Vec2 pixel_filter_sample(const SceneView *scene, Vec2 u, float *weight)
 {
-    __global const PixelFilter *filter = &scene->frame->filter;
+    __global const PixelFilter *filter = &scene->frame->film.filter;
     float x, y;
     float sign = 1.0f;
     if (filter->kind == PIXEL_FILTER_BOX) {

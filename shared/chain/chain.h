@@ -99,13 +99,13 @@ SHARED_FUNCTION uint chain_vertex_base(uint side, uint bank)
 /* BUFFER_DENSITIES: one word per vertex, the compact form of path/strategy.h, d words in each of two banks. */
 SHARED_FUNCTION uint chain_density(__global const FrameParams *frame, uint side, uint bank, uint s, uint i)
 {
-    return bank * frame->max_depth + (side == SIDE_LIGHT ? i : s + i - 1u);
+    return bank * frame->path.max_depth + (side == SIDE_LIGHT ? i : s + i - 1u);
 }
 
 SHARED_FUNCTION DensityView chain_density_view(__global const FrameParams *frame, __global const uint *paths,
                                                __global const uint *densities, uint item, uint s, uint camera)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
          camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     DensityView view;

@@ -9,7 +9,7 @@
 SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint item, Vec2 film,
                                  Vec3 color, float path_tracing)
 {
-    uint stride = scene->frame->stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
+    uint stride = scene->frame->pass.stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM, item, film.x);
     state_store_float(paths, stride, CHAIN_PROPOSED_FILM + 1u, item, film.y);
     state_store(paths, stride, CHAIN_PROPOSED_KEY, item, chain_key_shown(scene, key, film, color, path_tracing));
@@ -25,7 +25,7 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
 {
     Vec3 one = vec3_splat(0.0f);
     float all = 0.0f, luminance = 1.0f, scale = 1.0f;
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+    for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
         if (vec3_is_zero(color))
@@ -58,7 +58,7 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
                                      const WalkHit *walk_hit)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA);
+    uint stride = frame->pass.stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, item,
                 state_load(paths, stride, BD_CAMERA_DELTA, item));
     DensityView view = chain_density_view(frame, paths, densities, item, 0u, d + 1u);

@@ -23,7 +23,7 @@
 /* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them. */
 SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
 {
-    return (frame->features & FEATURE_MIX) != 0u ? 4u : 3u;
+    return (frame->scene.features & FEATURE_MIX) != 0u ? 4u : 3u;
 }
 
 /* The slot of a vertex's coordinates. A path has d - 1 vertices between its ends, in this order: y_1, y_2 ..., from the
@@ -60,8 +60,8 @@ SHARED_FUNCTION uint chain_slot_subpath(uint s, uint slot)
 
 SHARED_FUNCTION Random4 chain_random(__global const FrameParams *frame, uint item, uint step, uint block)
 {
-    return random_four(frame->first_item + item, step << 8 | block, frame->sample_index, PATH_STREAM_CHAIN,
-                       frame->seed_low, frame->seed_high);
+    return random_four(frame->pass.first_item + item, step << 8 | block, frame->pass.sample_index, PATH_STREAM_CHAIN,
+                       frame->pass.seed_low, frame->pass.seed_high);
 }
 
 /* Small steps of film and lens coordinates are up to 2^-4 of the range, those of all others, which bend the whole rest
@@ -129,7 +129,8 @@ SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global
     for (uint first = 0u; first < numbers.count; first += 4u) {
         Random4 random = chain_random(frame, item, step, CHAIN_BLOCK_LARGE + first / 4u);
         for (uint i = 0u; i < 4u; ++i)
-            chain_number_add(paths, frame->stride, item, numbers, first + i, back ? 0u - random.x[i] : random.x[i]);
+            chain_number_add(paths, frame->pass.stride, item, numbers, first + i,
+                             back ? 0u - random.x[i] : random.x[i]);
     }
 }
 
@@ -143,7 +144,7 @@ SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global
         for (uint i = 0u; i < 8u; ++i) {
             uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
             uint bits = mutation_subpath_bits(random.x[i / 2u], i % 2u) ^ turn;
-            chain_number_add(paths, frame->stride, item, numbers, first + i, mutation_offset(bits, shift, length));
+            chain_number_add(paths, frame->pass.stride, item, numbers, first + i, mutation_offset(bits, shift, length));
         }
     }
 }
@@ -165,7 +166,7 @@ SHARED_FUNCTION uint shift_number(__global const FrameParams *frame, uint d, uin
 SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __global uint *paths, uint item, uint d,
                                         uint s, bool back)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     for (uint i = 1u; shift_draws(i, d, s); ++i)
         for (uint k = 0u; k < 2u; ++k) {
             uint kept = BD_SHIFT_NUMBERS + 2u * (i - 1u) + k, number = shift_number(frame, d, i, k);
@@ -177,7 +178,7 @@ SHARED_FUNCTION void shift_numbers_keep(__global const FrameParams *frame, __glo
 /* Turns the current coordinates into the proposal's; back: the reverse. */
 SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __global uint *paths, uint item, bool back)
 {
-    uint stride = frame->stride, move = state_load(paths, stride, CHAIN_MOVE, item);
+    uint stride = frame->pass.stride, move = state_load(paths, stride, CHAIN_MOVE, item);
     uint step = state_load(paths, stride, CHAIN_STEP, item), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
     uint d = chain_key_depth(key), s = chain_key_s(key);
     ChangedNumbers numbers = chain_changed(frame, move >> MOVE_CHANGED & 0xfu, d, s);
@@ -197,7 +198,7 @@ SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __globa
 {
     Random4 numbers;
     for (uint i = 0u; i < 4u; ++i)
-        numbers.x[i] = i < count ? state_load(paths, frame->stride, CHAIN_NUMBERS + first + i, item) : 0u;
+        numbers.x[i] = i < count ? state_load(paths, frame->pass.stride, CHAIN_NUMBERS + first + i, item) : 0u;
     return numbers;
 }
 
@@ -238,7 +239,8 @@ SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint
                                            uint pool_item)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key), s = chain_key_s(key);
+    uint stride = frame->pass.stride, count = chain_vertex_numbers(frame), d = chain_key_depth(key),
+         s = chain_key_s(key);
     ItemPlace place = pool_item_place(frame, scene->guide, pool_item);
     state_store(paths, stride, BD_PIXEL, item, place.pixel);
     state_store(paths, stride, BD_SAMPLE, item, place.sample);

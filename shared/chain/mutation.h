@@ -11,16 +11,17 @@
  * subpath that does not change have nothing to do. */
 SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint item, uint step)
 {
-    uint who = frame->group_mutations != 0u ? NONE : frame->first_item + item;
-    return random_four(who, step, frame->sample_index, PATH_STREAM_MUTATION, frame->seed_low, frame->seed_high);
+    uint who = frame->chains.group_mutations != 0u ? NONE : frame->pass.first_item + item;
+    return random_four(who, step, frame->pass.sample_index, PATH_STREAM_MUTATION, frame->pass.seed_low,
+                       frame->pass.seed_high);
 }
 
 /* The kind of mutation. random: mutation_random. */
 SHARED_FUNCTION uint mutation_choose(__global const FrameParams *frame, Random4 random)
 {
-    if (random_float(random.x[0]) < frame->large_step)
+    if (random_float(random.x[0]) < frame->chains.large_step)
         return MUTATION_LARGE;
-    uint chances = 0u, set = frame->mutations;
+    uint chances = 0u, set = frame->chains.mutations;
     for (uint kind = 0u; kind < MUTATION_LARGE; ++kind)
         chances += (set >> kind & 1u) * MUTATION_CHANCE(kind);
     uint rest = (uint)((ulong)random.x[1] * chances >> 32);
@@ -54,7 +55,7 @@ SHARED_FUNCTION uint mutation_subpaths(uint mutation, uint d, uint s)
 SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global uint *restrict paths,
                                    __global const uint *restrict vertices, uint item)
 {
-    uint stride = frame->stride, key = state_load(paths, stride, CHAIN_KEY, item), d = chain_key_depth(key);
+    uint stride = frame->pass.stride, key = state_load(paths, stride, CHAIN_KEY, item), d = chain_key_depth(key);
     uint step = state_load(paths, stride, CHAIN_STEP, item), mutation = MUTATION_REPLAY, changed = SUBPATH_BOTH,
          scale = 0u;
     uint shift = 0u;
@@ -64,7 +65,7 @@ SHARED_FUNCTION void chain_propose(__global const FrameParams *frame, __global u
         mutation = mutation_choose(frame, random);
         scale = mutation_scale(random);
         changed = mutation_subpaths(mutation, d, chain_key_s(key));
-        if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->shifts)
+        if (mutation == MUTATION_CAMERA && random_float(random.x[3]) < frame->chains.shifts)
             shift = shift_kind(paths, vertices, stride, item);
     }
     if (mutation == MUTATION_LARGE) {
@@ -121,7 +122,7 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
                                  Vec3 color, float visits, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, pixel = NONE;
+    uint stride = frame->pass.stride, pixel = NONE;
     float weight = 0.0f;
     if (visits > 0.0f)
         pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
@@ -130,8 +131,8 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
     else
         splat_store(splats, diagnostics, stride, item,
                     chain_splat_layers(frame, key, f, random_float(random.x[3])) | pixel |
-                        splat_depth(frame->split_depths, chain_key_depth(key)),
-                    vec3_scale(color, visits * (weight * frame->brightness)));
+                        splat_depth(frame->film.split_depths, chain_key_depth(key)),
+                    vec3_scale(color, visits * (weight * frame->chains.brightness)));
 }
 
 SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint item)
@@ -143,7 +144,7 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
                                          __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
                                          float visits, Random4 random)
 {
-    uint stride = scene->frame->stride;
+    uint stride = scene->frame->pass.stride;
     chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_KEY, item),
                 chain_film_load(paths, stride, CHAIN_FILM, item),
                 state_load_float(paths, stride, CHAIN_LUMINANCE, item),
@@ -157,7 +158,7 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
 SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint item, float f,
                                 Vec3 color, float visits)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     Vec2 film = chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item);
     state_store(paths, stride, CHAIN_KEY, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item));
     chain_move_set(paths, stride, item, MOVE_BANKS,
@@ -187,7 +188,7 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
                                   __global uint *restrict diagnostics, uint item, Vec3 color, float change)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, mutation = chain_move(paths, stride, item, MOVE_MUTATION);
+    uint stride = frame->pass.stride, mutation = chain_move(paths, stride, item, MOVE_MUTATION);
     float f = chain_target(scene, chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), color);
     float current = state_load_float(paths, stride, CHAIN_LUMINANCE, item);
     if (!float_finite(f)) {

@@ -1,6 +1,6 @@
 /* The pool from which chains start: independent bidirectional samples, each a pair of walks with all connections
  * between them, of which one path is kept with probability proportional to what it carries (reservoir sampling). Only
- * frame->pool_lights of them have a light walk; the others have a camera walk with the lights that it hits and is
+ * frame->pool.lights of them have a light walk; the others have a camera walk with the lights that it hits and is
  * connected to.
  *
  * The random numbers of a sample are coordinates of a chain: all connections share one light and one point on the lens,
@@ -45,8 +45,8 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
 {
     __global const FrameParams *frame = scene->frame;
     Random4 random = pool_random(frame, paths, item, BD_RANDOM_CAMERA);
-    uint pixel = state_load(paths, frame->stride, BD_PIXEL, item);
-    uint row = pixel / frame->width, column = pixel % frame->width;
+    uint pixel = state_load(paths, frame->pass.stride, BD_PIXEL, item);
+    uint row = pixel / frame->film.width, column = pixel % frame->film.width;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), weight);
     FilmReach reach = film_reach(frame);
     random.x[0] = film_number((float)column + 0.5f + offset.x - reach.x, reach.width, random.x[0]);
@@ -58,8 +58,8 @@ SHARED_FUNCTION Random4 pool_camera(const SceneView *scene, __global const uint 
  * pool's end. */
 SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item)
 {
-    uint first = frame->pool_lights_first, behind = frame->pool_items - first; /* samples from `first` to the end */
-    return (item < first ? item + behind : item - first) < frame->pool_lights;
+    uint first = frame->pool.lights_first, behind = frame->pool.items - first; /* samples from `first` to the end */
+    return (item < first ? item + behind : item - first) < frame->pool.lights;
 }
 
 /* Multiplies what Russian roulette goes by with what the sample's paths count for (density ratio, weight of light
@@ -67,9 +67,9 @@ SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item
 SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                          float density_ratio)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     float counts = float_max(density_ratio, 1.0f) *
-                   (pool_has_light(frame, frame->first_item + item) ? frame->pool_lights_weight : 1.0f);
+                   (pool_has_light(frame, frame->pass.first_item + item) ? frame->pool.lights_weight : 1.0f);
     state_store_float(paths, stride, BD_ROULETTE_SCALE, item,
                       counts * state_load_float(paths, stride, BD_ROULETTE_SCALE, item));
 }
@@ -79,7 +79,7 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint item)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     float weight;
     Random4 random = pool_camera(scene, paths, item, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
@@ -99,10 +99,10 @@ SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __globa
                                       __global uint *restrict paths, uint item, uint s, uint t, float survival,
                                       float cover, float importance, Vec3 contribution)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     float luminance = rgb_luminance(contribution) * importance;
     float f = luminance * cover * survival; /* as a chain has it: without roulette */
-    float weight = s > 1u ? frame->pool_lights_weight : 1.0f; /* fewer items have a light walk */
+    float weight = s > 1u ? frame->pool.lights_weight : 1.0f; /* fewer items have a light walk */
     if (!(f > 0.0f) || !float_finite(luminance))
         return vec3_scale(contribution, weight);
     /* Divided by the density of the random numbers. A path with t = 1 does not use the film's two, which are

@@ -74,7 +74,7 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
                                  const Vertex *vertex, Random4 *numbers)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride, point = shift_point(shift_bank(paths, stride, item), i + 1u);
+    uint stride = frame->pass.stride, point = shift_point(shift_bank(paths, stride, item), i + 1u);
     Vec3 to = vec3_sub(state_load_vec3(vertices, stride, point, item), vertex->p);
     float square = vec3_length_squared(to);
     BsdfInverse inverse;
@@ -84,7 +84,7 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
     if (!bsdf_invert(scene, &vertex->bsdf, vertex->wo, wi, random_float(numbers->x[0]), &inverse))
         return false;
     Random4 origin = {{0u, 0u, 0u, 0u}};
-    if (inverse.base && frame->guide_count > 0u)
+    if (inverse.base && frame->scene.guide_count > 0u)
         origin = light_guide_numbers(scene, vertex->p, vertex->frame, origin);
     numbers->x[1] = light_guide_bits(inverse.u.x) - origin.x[1];
     numbers->x[2] = light_guide_bits(inverse.u.y) - origin.x[2];
@@ -100,7 +100,7 @@ SHARED_FUNCTION void shift_drawn(const SceneView *scene, __global uint *restrict
     BsdfInverse inverse;
     bool found = bsdf_invert(scene, &vertex->bsdf, vertex->wo, frame_to_local(vertex->frame, d),
                              random_float(numbers.x[0]), &inverse);
-    state_store_float(paths, scene->frame->stride, BD_SHIFT_DENSITY, item, found ? inverse.pdf_w : 0.0f);
+    state_store_float(paths, scene->frame->pass.stride, BD_SHIFT_DENSITY, item, found ? inverse.pdf_w : 0.0f);
 }
 
 /* Whether the walk has hit the kept vertex at field `point` again. pdf_w: density of the direction that led there. */
@@ -124,7 +124,8 @@ SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uin
 SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const uint *restrict paths,
                                __global uint *restrict vertices, uint item, uint depth, const WalkHit *walk_hit)
 {
-    uint stride = frame->stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA), point = shift_point(bank, depth);
+    uint stride = frame->pass.stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA),
+         point = shift_point(bank, depth);
     float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, item), density = 0.0f;
     float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, item);
     if (!walk_hit->missed) {

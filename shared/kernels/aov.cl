@@ -36,15 +36,15 @@ SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, 
     __global const FrameParams *frame = scene->frame;
     Surface surface = surface_from_hit(scene, &ray, hit);
     Vec3 back = vec3_negate(ray.d);
-    if (frame->aov == AOV_DEPTH)
+    if (frame->pass.aov == AOV_DEPTH)
         return vec3_splat(vec3_length(vec3_sub(surface.p, ray.o)));
-    if (frame->aov == AOV_ALBEDO && aov_lamp(scene, &surface, hit.primitive, back))
+    if (frame->pass.aov == AOV_ALBEDO && aov_lamp(scene, &surface, hit.primitive, back))
         return vec3_splat(1.0f);
     Random4 mix = path_random(frame, pixel, sample, path_random_block(1u, RANDOM_MIX));
     Bsdf bsdf;
     Frame shading;
     material_resolve(scene, random_float(mix.x[0]), &surface, &bsdf, &shading);
-    if (frame->aov == AOV_NORMAL)
+    if (frame->pass.aov == AOV_NORMAL)
         return vec3_face_forward(shading.n, back);
     return aov_albedo(scene, path_random(frame, pixel, sample, path_random_block(1u, RANDOM_SCATTER)), &bsdf, shading,
                       back);
@@ -57,8 +57,8 @@ __kernel void aov_splat(__global const FrameParams *restrict frame, __global con
                         __global const uint *restrict paths, __global const uint *restrict rays,
                         __global const uint *restrict hits, __global uint *restrict splats)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint pixel = state_load(paths, stride, PATH_PIXEL, item), sample = state_load(paths, stride, PATH_SAMPLE, item);
     Hit hit = hit_load(hits, stride, item);
@@ -68,9 +68,9 @@ __kernel void aov_splat(__global const FrameParams *restrict frame, __global con
         KERNEL_SCENE(frame, geometry, tables, texels);
         value = aov_value(scene, pixel, sample, ray_load(rays, stride, item), hit);
     }
-    if (frame->aov != AOV_DEPTH)
+    if (frame->pass.aov != AOV_DEPTH)
         value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
-    state_store(splats, stride, SPLAT_PIXEL, item, met || frame->aov != AOV_DEPTH ? pixel : NONE);
+    state_store(splats, stride, SPLAT_PIXEL, item, met || frame->pass.aov != AOV_DEPTH ? pixel : NONE);
     state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
 }
 

@@ -12,9 +12,9 @@
 SHARED_FUNCTION float vertex_survival(__global const FrameParams *frame, __global const uint *vertices, uint item,
                                       uint side, uint count)
 {
-    return count > 1u
-               ? state_load_float(vertices, frame->stride, vertex_base(frame, side, count - 1u) + VERTEX_SURVIVAL, item)
-               : 1.0f;
+    return count > 1u ? state_load_float(vertices, frame->pass.stride,
+                                         vertex_base(frame, side, count - 1u) + VERTEX_SURVIVAL, item)
+                      : 1.0f;
 }
 
 /* From: both walks. To: the connection (BD_S, BD_T), weighted, and its shadow ray. */
@@ -24,8 +24,8 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
                          __global uint *restrict shadows, __global const uint *restrict vertices,
                          __global const uint *restrict densities)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     uint lengths = state_load(paths, stride, BD_LENGTHS, item);
@@ -53,7 +53,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     DensityView view = bd_density_view(frame, paths, densities, item);
     float weight = bd_weight(frame, s, t, &view, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weight);
-    if (frame->pool == 0u)
+    if (frame->pool.enabled == 0u)
         return;
     state_store_float(paths, stride, BD_CONNECTION_SURVIVAL, item,
                       vertex_survival(frame, vertices, item, SIDE_LIGHT, s) *
@@ -80,13 +80,13 @@ SHARED_FUNCTION void connection_advance(__global uint *restrict paths, uint stri
 SHARED_FUNCTION void connection_depth_set(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                           uint segments)
 {
-    uint stride = frame->stride;
-    if (frame->split_depths == 0u)
+    uint stride = frame->pass.stride;
+    if (frame->film.split_depths == 0u)
         return;
     uint target = state_load(paths, stride, BD_TARGET, item);
     state_store(paths, stride, BD_GATHERED, item, segments);
     if (target != NONE)
-        state_store(paths, stride, BD_TARGET, item, target | splat_depth(frame->split_depths, segments));
+        state_store(paths, stride, BD_TARGET, item, target | splat_depth(frame->film.split_depths, segments));
 }
 
 /* From: traced shadow rays. To: visible connections gathered, or (t = 1) splatted; the next pair. */
@@ -94,16 +94,16 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
                                  __global uint *restrict paths, __global uint *restrict shadows,
                                  __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint s = state_load(paths, stride, BD_S, item), t = state_load(paths, stride, BD_T, item);
     bool visible = shadow_take(shadows, stride, item);
-    if (frame->pool != 0u && visible) {
+    if (frame->pool.enabled != 0u && visible) {
         /* The weight of a splat is its cover times the filter's own weight and a sign. */
-        float cover = t == 1u
-                          ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->filter.weight)
-                          : state_load_float(paths, stride, BD_COVER, item);
+        float cover =
+            t == 1u ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->film.filter.weight)
+                    : state_load_float(paths, stride, BD_COVER, item);
         Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
         float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
         contribution = reservoir_update(frame, guide, paths, item, s, t,
@@ -114,22 +114,22 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     if (visible)
         connection_depth_set(frame, paths, item, s + t - 1u);
     connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
-    connection_advance(paths, stride, item, frame->max_depth);
+    connection_advance(paths, stride, item, frame->path.max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat. With frame->split_depths also in the course of a path; what was
- * gathered is cleared then. */
+/* From: what was gathered for the pixel. To: its splat. With frame->film.split_depths also in the course of a path; what
+ * was gathered is cleared then. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     Vec3 radiance =
         vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
-    uint flags = frame->pool != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
-    if (frame->split_depths != 0u) {
-        flags |= splat_depth(frame->split_depths, state_load(paths, stride, BD_GATHERED, item));
+    uint flags = frame->pool.enabled != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
+    if (frame->film.split_depths != 0u) {
+        flags |= splat_depth(frame->film.split_depths, state_load(paths, stride, BD_GATHERED, item));
         state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
     }
     splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item), radiance);

@@ -17,24 +17,25 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict vertices, __global uint *restrict densities,
                              __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    bd_header_begin(frame, paths, rays, shadows, item, pool_item_place(frame, guide, frame->first_item + item));
+    bd_header_begin(frame, paths, rays, shadows, item, pool_item_place(frame, guide, frame->pass.first_item + item));
     state_store(paths, stride, BD_LENGTHS, item, 0u);
     state_store(paths, stride, BD_LIGHT_DELTA, item, 0u);
     state_store(paths, stride, BD_CAMERA_DELTA, item, 0u);
     state_store(paths, stride, BD_S, item, 2u);
     state_store(paths, stride, BD_T, item, 1u);
-    if (frame->max_depth < 2u || (frame->pool != 0u && !pool_has_light(frame, frame->first_item + item)))
+    if (frame->path.max_depth < 2u ||
+        (frame->pool.enabled != 0u && !pool_has_light(frame, frame->pass.first_item + item)))
         return;
     float own;
     if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, vertex_base(frame, SIDE_LIGHT, 0u),
                           bd_random(frame, paths, item, BD_RANDOM_LIGHT), bd_random(frame, paths, item, BD_RANDOM_EMIT),
                           &own))
         return;
-    if (frame->pool != 0u)
+    if (frame->pool.enabled != 0u)
         pool_roulette_weigh(frame, paths, item, 1.0f);
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, item, own);
     state_store(paths, stride, BD_LENGTHS, item, 1u);
@@ -46,11 +47,11 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
                               __global const uint *restrict texels, __global uint *restrict paths,
                               __global uint *restrict rays, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    if (frame->pool != 0u)
+    if (frame->pool.enabled != 0u)
         pool_start_camera(scene, paths, rays, diagnostics, item);
     else
         walk_start_camera(scene, paths, rays, diagnostics, stride, item);
@@ -61,13 +62,13 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
                                 Vec3 contribution)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride;
-    if (frame->pool != 0u)
+    uint stride = frame->pass.stride;
+    if (frame->pool.enabled != 0u)
         contribution = reservoir_update(frame, scene->guide, paths, item, 0u, depth + 1u,
                                         state_load_float(paths, stride, BD_SURVIVAL, item),
                                         state_load_float(paths, stride, BD_COVER, item),
                                         state_load_float(paths, stride, BD_IMPORTANCE, item), contribution);
-    if (frame->split_depths != 0u)
+    if (frame->film.split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, item, depth);
     bd_add_radiance(paths, stride, item, contribution);
 }
@@ -80,8 +81,8 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
                             __global uint *restrict rays, __global const uint *restrict hits,
                             __global uint *restrict vertices, __global uint *restrict densities)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item);
     if (depth == 0u)
@@ -124,8 +125,8 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict rays, __global const uint *restrict vertices,
                               __global uint *restrict densities, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)

@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_COUNT_CL
 #define TWINLIGHT_COUNT_CL
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "layout/state.h"
 
 /* Adds the live rays among those of counting item g: rays g, g + groups, g + 2 groups ..., so that neighbouring items
@@ -10,11 +10,11 @@
 SHARED_FUNCTION void rays_count(__global const FrameParams *frame, __global const uint *rays, __global uint *counter,
                                 uint g)
 {
-    uint count = frame->item_count, groups = (count + COUNT_RAYS - 1u) / COUNT_RAYS, live = 0u;
+    uint count = frame->pass.item_count, groups = (count + COUNT_RAYS - 1u) / COUNT_RAYS, live = 0u;
     if (g >= groups)
         return;
     for (uint item = g; item < count; item += groups)
-        live += state_load_float(rays, frame->stride, RAY_T_MAX, item) > 0.0f ? 1u : 0u;
+        live += state_load_float(rays, frame->pass.stride, RAY_T_MAX, item) > 0.0f ? 1u : 0u;
     if (live != 0u)
         counter_add(counter, live);
 }

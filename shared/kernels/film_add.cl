@@ -3,7 +3,7 @@
 #define TWINLIGHT_FILM_ADD_CL
 
 #include "camera/film_sum.h"
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 
 #ifdef atomic_sum_add
 
@@ -11,19 +11,19 @@
 __kernel void film_add(__global const FrameParams *frame, __global const uint *splats, __global ulong *words)
 {
     uint item = (uint)get_global_id(0);
-    if (item >= frame->item_count)
+    if (item >= frame->pass.item_count)
         return;
     FilmView film;
-    film.width = frame->width;
-    film.x0 = frame->crop_x0;
-    film.y0 = frame->crop_y0;
-    film.x1 = frame->crop_x1;
-    film.y1 = frame->crop_y1;
-    film.exponent = frame->film_exponent;
-    film.depth_kinds = frame->split_depths;
-    film.depth_last = frame->max_depth;
+    film.width = frame->film.width;
+    film.x0 = frame->film.crop_x0;
+    film.y0 = frame->film.crop_y0;
+    film.x1 = frame->film.crop_x1;
+    film.y1 = frame->film.crop_y1;
+    film.exponent = frame->film.exponent;
+    film.depth_kinds = frame->film.split_depths;
+    film.depth_last = frame->path.max_depth;
     film_view_words(&film, words, (film.x1 - film.x0) * (film.y1 - film.y0));
-    film_splat_add(&film, splats, frame->stride, item);
+    film_splat_add(&film, splats, frame->pass.stride, item);
 }
 
 #endif

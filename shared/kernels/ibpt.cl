@@ -17,15 +17,15 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict shadows, __global uint *restrict vertices,
                              __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
     bd_header_begin(frame, paths, rays, shadows, item, item_place(frame, item));
-    if (frame->max_depth >= 2u && walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, 0u,
-                                                   bd_random(frame, paths, item, BD_RANDOM_LIGHT),
-                                                   bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
+    if (frame->path.max_depth >= 2u && walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, 0u,
+                                                        bd_random(frame, paths, item, BD_RANDOM_LIGHT),
+                                                        bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, item, own);
 }
 
@@ -33,18 +33,18 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
 SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item, uint depth,
                                 Vec3 radiance, const StrategyEnds *ends)
 {
-    bool delta = (state_load(paths, frame->stride, BD_WALK_FLAGS, item) & WALK_DELTA) != 0u;
+    bool delta = (state_load(paths, frame->pass.stride, BD_WALK_FLAGS, item) & WALK_DELTA) != 0u;
     if (vec3_is_zero(radiance) || !strategy_wanted(frame, 0u, depth + 1u))
         return;
-    float weight = frame->unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, item, depth, delta, ends);
-    Vec3 beta = state_load_vec3(paths, frame->stride, BD_BETA, item);
-    bd_add_radiance(paths, frame->stride, item, vec3_scale(vec3_mul(beta, radiance), weight));
+    float weight = frame->path.unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, item, depth, delta, ends);
+    Vec3 beta = state_load_vec3(paths, frame->pass.stride, BD_BETA, item);
+    bd_add_radiance(paths, frame->pass.stride, item, vec3_scale(vec3_mul(beta, radiance), weight));
 }
 
 SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
                                         Vec3 d, Vec3 ng)
 {
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+    for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
         ib_add_met(scene->frame, paths, item, depth, radiance, &ends);
@@ -58,8 +58,8 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
                             __global uint *restrict paths, __global uint *restrict rays,
                             __global const uint *restrict hits, __global uint *restrict vertices)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item);
     if (depth == 0u)
@@ -91,8 +91,8 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
                          __global uint *restrict paths, __global uint *restrict shadows,
                          __global const uint *restrict vertices)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     uint s = side == SIDE_LIGHT ? depth + 1u : 1u, t = side == SIDE_LIGHT ? 1u : depth + 1u;
@@ -111,7 +111,7 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     if (side == SIDE_LIGHT)
         connection_light_end(paths, stride, item, &connection.ends);
     float weight = 1.0f;
-    if (frame->unweighted == 0u)
+    if (frame->path.unweighted == 0u)
         weight = side == SIDE_LIGHT ? ib_weight_seen(frame, paths, item, depth + 1u, &connection.ends)
                                     : ib_weight_drawn(frame, paths, item, depth + 1u, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weight);
@@ -122,8 +122,8 @@ __kernel void ib_add_connections(__global const FrameParams *restrict frame, __g
                                  __global uint *restrict shadows, __global uint *restrict splats,
                                  __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     bool visible = shadow_take(shadows, stride, item);
     connection_add(paths, splats, diagnostics, stride, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
@@ -136,8 +136,8 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict paths, __global uint *restrict rays,
                               __global const uint *restrict vertices, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)

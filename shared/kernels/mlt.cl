@@ -15,7 +15,7 @@
 /* Index of a field of an item in BUFFER_PASS, which has its own stride. */
 SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint item)
 {
-    return (size_t)field * frame->pass_stride + (frame->first_item + item - frame->pass_first);
+    return (size_t)field * frame->pass.data_stride + (frame->pass.first_item + item - frame->pass.data_first);
 }
 
 SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint item)
@@ -33,8 +33,8 @@ SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint
 __kernel void pool_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
                        __global uint *restrict pass)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     pass_store(frame, pass, POOL_WEIGHT, item, state_load(paths, stride, BD_CANDIDATE_SUM, item));
     pass_store(frame, pass, POOL_KEY, item, state_load(paths, stride, BD_CANDIDATE, item));
@@ -47,8 +47,8 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
                         __global const uint *restrict texels, __global const uint *restrict pass,
                         __global uint *restrict paths, __global uint *restrict rays, __global uint *restrict shadows)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint key = pass_load(frame, pass, CHAIN_PASS_KEY, item), pool_item = pass_load(frame, pass, CHAIN_PASS_ITEM, item);
     uint words = NUMBER_VERTICES + (chain_key_depth(key) - 1u) * chain_vertex_numbers(frame);
@@ -79,13 +79,13 @@ __kernel void mlt_begin(__global const FrameParams *restrict frame, __global con
 SHARED_FUNCTION void chain_banks_join(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                       __global uint *restrict vertices, __global uint *restrict densities, uint item)
 {
-    uint stride = frame->stride, banks = chain_move(paths, stride, item, MOVE_BANKS);
+    uint stride = frame->pass.stride, banks = chain_move(paths, stride, item, MOVE_BANKS);
     uint light = banks & 1u, camera = banks >> 1 & 1u, key = state_load(paths, stride, CHAIN_KEY, item);
     if (light == camera)
         return;
     for (uint i = chain_key_s(key); i < chain_key_depth(key); ++i)
-        state_store_float(densities, stride, light * frame->max_depth + i, item,
-                          state_load_float(densities, stride, camera * frame->max_depth + i, item));
+        state_store_float(densities, stride, light * frame->path.max_depth + i, item,
+                          state_load_float(densities, stride, camera * frame->path.max_depth + i, item));
     uint to = chain_subpath(SIDE_CAMERA, light), from = chain_subpath(SIDE_CAMERA, camera);
     for (uint i = 0u; i < CHAIN_CAMERA_SUBPATH_WORDS; ++i)
         state_store(paths, stride, to + i, item, state_load(paths, stride, from + i, item));
@@ -107,8 +107,8 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
                           __global uint *restrict rays, __global uint *restrict vertices,
                           __global uint *restrict densities, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     chain_propose(frame, paths, vertices, item);
     if (chain_move(paths, stride, item, MOVE_MUTATION) == MUTATION_LARGE)
@@ -136,8 +136,8 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
                                __global uint *restrict rays, __global uint *restrict vertices,
                                __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
          reached = chain_move(paths, stride, item, MOVE_REACHED);
@@ -174,8 +174,8 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
                                    uint s, uint bank, Random4 numbers, Vertex *vertex)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride;
-    bool shifts = frame->shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
+    uint stride = frame->pass.stride;
+    bool shifts = frame->chains.shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
     WalkStep step = {0};
     vertex_place_store(vertices, stride, chain_vertex_base(side, bank), item, vertex);
     vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as frame_load makes it of the pool's vertex */
@@ -207,8 +207,8 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
                        __global uint *restrict vertices, __global uint *restrict densities,
                        __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
@@ -220,7 +220,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     WalkHit walk_hit = {0};
     walk_hit_make(scene, paths, rays, hits, vertices, item, base, &walk_hit);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), item, walk_hit.own);
-    if (frame->shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
+    if (frame->chains.shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
         !shift_hit(frame, paths, vertices, item, depth, &walk_hit)) {
         walk_end(paths, rays, stride, item);
         return;
@@ -254,7 +254,7 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
                                    Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
          camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     uint light_half = chain_subpath(SIDE_LIGHT, light_bank);
@@ -284,8 +284,8 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
                           __global uint *restrict shadows, __global const uint *restrict vertices,
                           __global const uint *restrict densities)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), s = chain_key_s(key);
     uint camera = chain_key_depth(key) + 1u - s;
@@ -310,8 +310,8 @@ __kernel void mlt_accept(__global const FrameParams *restrict frame, __global co
                          __global uint *restrict shadows, __global const uint *restrict vertices,
                          __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     bool cast = state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f;
     bool visible = shadow_take(shadows, stride, item);
@@ -328,8 +328,8 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
                       __global const uint *restrict texels, __global uint *restrict paths,
                       __global uint *restrict splats, __global uint *restrict pass, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     chain_splat_current(scene, paths, splats, diagnostics, item, state_load_float(paths, stride, CHAIN_PENDING, item),
@@ -344,7 +344,7 @@ __kernel void mlt_end(__global const FrameParams *restrict frame, __global const
                importance_cell(frame, chain_film_load(paths, stride, CHAIN_FILM, item)));
     for (uint i = 0u; i < MUTATION_COUNT; ++i)
         pass_store(frame, pass, CHAIN_PASS_TALLY + i, item, state_load(paths, stride, CHAIN_TALLY + i, item));
-    if (frame->keep_chains == 0u)
+    if (frame->chains.keep == 0u)
         return;
     uint words = NUMBER_VERTICES + (d - 1u) * chain_vertex_numbers(frame);
     for (uint i = 0u; i < words; ++i)

@@ -21,7 +21,7 @@
 /* Vertices before this one always survive Russian roulette. */
 #define ROULETTE_FIRST_DEPTH 2u
 
-/* With frame->split_direct, path tracing clamps the light of paths that are deeper than this. */
+/* With frame->partition.split_direct, path tracing clamps the light of paths that are deeper than this. */
 #define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
 
 /* Minimum probability of such a path to survive roulette; below it, reweighted survivors would exceed the clamp. */
@@ -40,8 +40,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
                              __global uint *restrict rays, __global uint *restrict shadows,
                              __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     ItemPlace place = item_place(frame, item);
@@ -49,10 +49,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     Random4 random = path_random(frame, pixel, sample, RANDOM_CAMERA);
     float weight;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
-    uint row = pixel / frame->width, column = pixel % frame->width;
+    uint row = pixel / frame->film.width, column = pixel % frame->film.width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+    Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     ray_store(rays, stride, item, ray);
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
@@ -65,9 +65,9 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
     state_store_float(paths, stride, PATH_PDF_W, item, 1.0f);
     state_store_float(paths, stride, PATH_ETA_SCALE, item, 1.0f);
-    if (frame->split_depths != 0u)
+    if (frame->film.split_depths != 0u)
         state_store(paths, stride, PATH_GATHERED, item, 0u);
-    if (frame->split_direct != 0u) {
+    if (frame->partition.split_direct != 0u) {
         state_store_float(paths, stride, PATH_LIMIT, item,
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
@@ -83,23 +83,23 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
 SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                        uint segments, Vec3 radiance)
 {
-    uint stride = frame->stride;
-    if (frame->split_depths != 0u)
+    uint stride = frame->pass.stride;
+    if (frame->film.split_depths != 0u)
         state_store(paths, stride, PATH_GATHERED, item, segments);
     Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, item);
     state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_add(sum, radiance));
 }
 
 /* The part of its contribution that a path of `segments` segments shows. path_tracing: the luminance of f over the sum
- * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->split_direct what is below the
- * clamping threshold is shown; chains show the rest (chain/mutation.h). */
+ * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->partition.split_direct what is
+ * below the clamping threshold is shown; chains show the rest (chain/mutation.h). */
 SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint item,
                                  uint segments, float path_tracing)
 {
-    if (frame->split_direct == 0u || segments <= DIRECT_DEPTH)
+    if (frame->partition.split_direct == 0u || segments <= DIRECT_DEPTH)
         return 1.0f;
-    float limit = state_load_float(paths, frame->stride, PATH_LIMIT, item);
-    path_tracing *= state_load_float(paths, frame->stride, PATH_SURVIVED, item); /* chains have no roulette */
+    float limit = state_load_float(paths, frame->pass.stride, PATH_LIMIT, item);
+    path_tracing *= state_load_float(paths, frame->pass.stride, PATH_SURVIVED, item); /* chains have no roulette */
     return partition_shown(path_tracing, limit);
 }
 
@@ -108,7 +108,7 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                   Vec3 radiance, float pdf_other)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     float weight = 1.0f, balance = 1.0f;
     if (pdf_other > 0.0f) {
         float pdf = state_load_float(paths, stride, PATH_PDF_W, item);
@@ -125,8 +125,8 @@ SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global ui
  * sampling. */
 SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 d)
 {
-    uint flags = state_load(paths, scene->frame->stride, PATH_FLAGS, item);
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+    uint flags = state_load(paths, scene->frame->pass.stride, PATH_FLAGS, item);
+    for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
         float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
@@ -139,7 +139,7 @@ SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint 
 SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *restrict paths, uint item, uint light,
                                        const Surface *surface, Vec3 d)
 {
-    uint stride = scene->frame->stride, flags = state_load(paths, stride, PATH_FLAGS, item);
+    uint stride = scene->frame->pass.stride, flags = state_load(paths, stride, PATH_FLAGS, item);
     Vec3 radiance = light_emitted(scene, light, surface->ng, vec3_negate(d));
     float pdf_light = 0.0f;
     if (vec3_is_zero(radiance))
@@ -157,8 +157,8 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
                             __global uint *restrict paths, __global uint *restrict rays,
                             __global const uint *restrict hits)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u)
@@ -178,7 +178,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
         uint light = first_light + hit.primitive - scene->shapes[surface.shape].first_primitive;
         path_add_emission(scene, paths, item, light, &surface, ray.d);
     }
-    if (depth >= frame->max_depth) {
+    if (depth >= frame->path.max_depth) {
         path_end(paths, rays, stride, item);
         return;
     }
@@ -208,8 +208,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
                                __global const uint *restrict tables, __global const uint *restrict texels,
                                __global uint *restrict paths, __global uint *restrict shadows)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u || (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u)
@@ -246,8 +246,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
 __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
                             __global uint *restrict shadows)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     if (!(state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f))
         return;
@@ -262,11 +262,11 @@ SHARED_FUNCTION float path_survival(__global const FrameParams *frame, __global 
                                     Vec3 beta, float eta_scale)
 {
     float survival = vec3_max_component(beta) * eta_scale;
-    if (frame->split_direct == 0u || !(survival > 0.0f))
+    if (frame->partition.split_direct == 0u || !(survival > 0.0f))
         return survival;
-    float before = state_load_float(paths, frame->stride, PATH_SURVIVED, item);
+    float before = state_load_float(paths, frame->pass.stride, PATH_SURVIVED, item);
     survival = float_clamp(survival, SURVIVED_LEAST / before, 1.0f);
-    state_store_float(paths, frame->stride, PATH_SURVIVED, item, before * survival);
+    state_store_float(paths, frame->pass.stride, PATH_SURVIVED, item, before * survival);
     return survival;
 }
 
@@ -276,8 +276,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
                               __global uint *restrict paths, __global uint *restrict rays,
                               __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u)
@@ -335,26 +335,26 @@ SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *re
     state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
 }
 
-/* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->split_direct. */
+/* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->partition.split_direct. */
 __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
                               __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0);
-    if (item < frame->item_count)
-        path_splat(paths, splats, diagnostics, frame->stride, item, 0u);
+    if (item < frame->pass.item_count)
+        path_splat(paths, splats, diagnostics, frame->pass.stride, item, 0u);
 }
 
 /* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's
- * sample before. With frame->split_depths also in the course of a path: what its latest segment has brought. */
+ * sample before. With frame->film.split_depths also in the course of a path: what its latest segment has brought. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
-    uint item = (uint)get_global_id(0), flags = frame->split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), flags = frame->partition.split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
+    if (item >= frame->pass.item_count)
         return;
-    if (frame->split_depths != 0u)
-        flags |= splat_depth(frame->split_depths, state_load(paths, frame->stride, PATH_GATHERED, item));
-    path_splat(paths, splats, diagnostics, frame->stride, item, flags);
+    if (frame->film.split_depths != 0u)
+        flags |= splat_depth(frame->film.split_depths, state_load(paths, frame->pass.stride, PATH_GATHERED, item));
+    path_splat(paths, splats, diagnostics, frame->pass.stride, item, flags);
 }
 
 #endif

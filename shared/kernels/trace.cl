@@ -11,8 +11,8 @@ __kernel void trace_closest(__global const FrameParams *restrict frame, __global
                             __global const uint *restrict bvh, __global const uint *restrict rays,
                             __global uint *restrict hits)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     Ray ray = ray_load(rays, stride, item);
     if (!(ray.t_max > 0.0f))
@@ -25,8 +25,8 @@ __kernel void trace_shadow(__global const FrameParams *restrict frame, __global 
                            __global const uint *restrict tables, __global const uint *restrict texels,
                            __global const uint *restrict bvh, __global uint *restrict shadows)
 {
-    uint item = (uint)get_global_id(0), stride = frame->stride;
-    if (item >= frame->item_count)
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
         return;
     Ray ray = ray_load(shadows, stride, item);
     if (!(ray.t_max > 0.0f))

@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_LAYOUT_ITEM_H
 #define TWINLIGHT_LAYOUT_ITEM_H
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 
 typedef struct ItemPlace {
     uint pixel; /* y * width + x of the whole film */
@@ -33,8 +33,8 @@ SHARED_FUNCTION uint visits_cell(__global const Guide *guide, uint slot)
  * visits of one pixel are consecutive, and each is another sample. */
 SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, __global const Guide *guide, uint item)
 {
-    uint width = frame->crop_x1 - frame->crop_x0, height = frame->crop_y1 - frame->crop_y0;
-    uint all = frame->pool_visits, slot = (uint)((ulong)(item % all) * frame->pixel_stride % all);
+    uint width = frame->film.crop_x1 - frame->film.crop_x0, height = frame->film.crop_y1 - frame->film.crop_y0;
+    uint all = frame->pool.visits, slot = (uint)((ulong)(item % all) * frame->pass.pixel_stride % all);
     uint cell = visits_cell(guide, slot), column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE;
     uint x = cell_begin(column, width), y = cell_begin(row, height);
     uint columns = cell_begin(column + 1u, width) - x, rows = cell_begin(row + 1u, height) - y;
@@ -42,8 +42,8 @@ SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, 
     slot -= guide->visits[cell];
     uint at = slot / each;
     ItemPlace place;
-    place.pixel = (frame->crop_y0 + y + at / columns) * frame->width + frame->crop_x0 + x + at % columns;
-    place.sample = frame->sample_index + item / all * VISITS_MOST + slot % each;
+    place.pixel = (frame->film.crop_y0 + y + at / columns) * frame->film.width + frame->film.crop_x0 + x + at % columns;
+    place.sample = frame->pass.sample_index + item / all * VISITS_MOST + slot % each;
     return place;
 }
 
@@ -51,12 +51,12 @@ SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, 
  * sample there counts for as much more. */
 SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __global const Guide *guide, uint pixel)
 {
-    uint all = frame->pool_visits;
+    uint all = frame->pool.visits;
     if (all == 0u)
         return 1.0f;
-    uint width = frame->crop_x1 - frame->crop_x0, height = frame->crop_y1 - frame->crop_y0;
-    uint column = (pixel % frame->width - frame->crop_x0) * IMPORTANCE_SIDE / width;
-    uint row = (pixel / frame->width - frame->crop_y0) * IMPORTANCE_SIDE / height;
+    uint width = frame->film.crop_x1 - frame->film.crop_x0, height = frame->film.crop_y1 - frame->film.crop_y0;
+    uint column = (pixel % frame->film.width - frame->film.crop_x0) * IMPORTANCE_SIDE / width;
+    uint row = (pixel / frame->film.width - frame->film.crop_y0) * IMPORTANCE_SIDE / height;
     uint cell = row * IMPORTANCE_SIDE + column;
     uint pixels = (cell_begin(column + 1u, width) - cell_begin(column, width)) *
                   (cell_begin(row + 1u, height) - cell_begin(row, height));
@@ -67,26 +67,27 @@ SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __gl
 /* The place of item `item`, counted from the beginning of the pixels' order, if all pixels are visited alike. */
 SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uint item)
 {
-    uint crop_width = frame->crop_x1 - frame->crop_x0, crop_height = frame->crop_y1 - frame->crop_y0;
+    uint crop_width = frame->film.crop_x1 - frame->film.crop_x0,
+         crop_height = frame->film.crop_y1 - frame->film.crop_y0;
     uint crop_pixels = crop_width * crop_height;
-    uint at = (uint)((ulong)(item % crop_pixels) * frame->pixel_stride % crop_pixels);
+    uint at = (uint)((ulong)(item % crop_pixels) * frame->pass.pixel_stride % crop_pixels);
     ItemPlace place;
-    place.pixel = (frame->crop_y0 + at / crop_width) * frame->width + frame->crop_x0 + at % crop_width;
-    place.sample = frame->sample_index + item / crop_pixels;
+    place.pixel = (frame->film.crop_y0 + at / crop_width) * frame->film.width + frame->film.crop_x0 + at % crop_width;
+    place.sample = frame->pass.sample_index + item / crop_pixels;
     return place;
 }
 
 /* The place of item `item` of a pass: a pool's, or one that visits all pixels alike. */
 SHARED_FUNCTION ItemPlace pool_item_place(__global const FrameParams *frame, __global const Guide *guide, uint item)
 {
-    item += frame->pixel_first;
-    return frame->pool_visits != 0u ? item_place_visited(frame, guide, item) : item_place_even(frame, item);
+    item += frame->pass.pixel_first;
+    return frame->pool.visits != 0u ? item_place_visited(frame, guide, item) : item_place_even(frame, item);
 }
 
 /* The place of item `item` of a launch, in a pass that is no pool's. */
 SHARED_FUNCTION ItemPlace item_place(__global const FrameParams *frame, uint item)
 {
-    return item_place_even(frame, frame->first_item + item + frame->pixel_first);
+    return item_place_even(frame, frame->pass.first_item + item + frame->pass.pixel_first);
 }
 
 #endif

@@ -290,7 +290,7 @@ typedef struct PixelFilter {
     float weight; /* (integral of |f|) / (integral of f) over the plane: the weight of a splat of sign +1 */
 } PixelFilter;
 
-/* ---- what a kernel gets ---------------------------------------------------------------------------------------- */
+/* ---- the packed arrays ------------------------------------------------------------------------------------------ */
 
 /* Index of the first word of every array in its buffer. */
 typedef struct SceneLayout {
@@ -299,93 +299,5 @@ typedef struct SceneLayout {
     /* tables */
     uint materials, texture_ops, images, lights, light_alias, infinite_lights, distributions2d, lookup;
 } SceneLayout;
-
-/* Which integrator a random number is for (math/rng.h, counter word 3). */
-#define PATH_STREAM_PT 0u
-#define PATH_STREAM_BD 1u
-#define PATH_STREAM_POOL 2u /* samples that chains start from */
-#define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
-#define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
-
-/* Auxiliary variables of a pixel, besides light (kernels/aov.cl). */
-#define AOV_ALBEDO 0u
-#define AOV_NORMAL 1u
-#define AOV_DEPTH 2u
-#define AOV_COUNT 3u
-
-/* Largest number of light guides. */
-#define LIGHT_GUIDES_MAX 8u
-
-/* Cells of the target importance, per side. */
-#define IMPORTANCE_SIDE 32u
-#define IMPORTANCE_CELLS (IMPORTANCE_SIDE * IMPORTANCE_SIDE)
-
-/* A pool visits any pixel at most this many times as often as the one that it visits least. */
-#define VISITS_MOST 32u
-
-typedef struct FrameParams {
-    /* The scene. */
-    SceneLayout layout;
-    uint features;
-    uint light_count;
-    uint infinite_light_count;
-    Camera camera;
-    PixelFilter filter;
-    Vec3 world_center; /* bounding sphere of the scene */
-    float world_radius;
-    float ray_reach; /* no coordinate of a ray's origin is larger: boxes are widened for it (geometry/box.h) */
-
-    /* The film. */
-    uint width, height; /* of the whole film, pixels */
-    uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
-    int film_exponent; /* one unit of the film's sums is 2^film_exponent (camera/film_sum.h) */
-    uint split_depths; /* kinds of sums that the film has per depth (camera/film_sum.h); 0: splats carry no depth */
-    uint split_direct; /* 1: path tracing splats light of up to two segments apart (kernels/pt.cl) */
-    uint aov; /* AOV_*: the variable that a pass of kernels/aov.cl is for */
-
-    /* Paths of any integrator, and MIS. */
-    uint max_depth; /* largest depth of a path, >= 1 */
-    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths are left to another */
-    uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
-    uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */
-    uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
-    uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
-    uint unweighted; /* 1: all MIS weights are 1 */
-
-    /* MMLT: pools, chains, and what is common to both (Guide). */
-    uint pool; /* 1: bidirectional samples are a pool for chains (chain/pool.h) */
-    uint pool_items; /* of a pool: number of its items */
-    uint pool_lights, pool_lights_first; /* this many of them, from pool_lights_first on, have a light walk */
-    float pool_lights_weight; /* pool_items over pool_lights */
-    uint pool_visits; /* of a pool: visits to all pixels together (Guide.visits); 0: one to each pixel */
-    uint guide_count; /* light guides of chains and their pools (light/light_guide.h) */
-    float clamp_threshold; /* of a path's luminance times importance: pools show up to it, chains the excess */
-    uint mutations; /* bit MUTATION_*: the kinds of small steps that chains make (chain/chain_numbers.h) */
-    uint group_mutations; /* 1: all chains make the same kind of mutation at a step */
-    float shifts; /* fraction of the camera subpath's mutations that are shifts (chain/shift.h) */
-    float large_step; /* probability of a large step */
-    uint keep_chains; /* 1: a pass hands the chains' coordinates on to the next */
-    float brightness; /* what a chain's step brings to the film: mean contribution weight of the pool's samples */
-
-    /* The pass. */
-    uint seed_low, seed_high;
-    uint sample_index; /* item k of the pass is sample sample_index + k / (crop pixels) ... */
-    uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 except for pilots and pools */
-    uint pixel_first; /* added to k in both; 0 except for pools */
-    uint first_item; /* item i of a launch is item first_item + i of the pass */
-    uint item_count;
-    uint stride; /* items that the state buffers hold: field f of an item is at f * stride + item */
-    uint pass_first, pass_stride; /* BUFFER_PASS: field f of pass item k is at f * pass_stride + k - pass_first */
-} FrameParams;
-
-/* What guides chains and pools. In a buffer of its own (BUFFER_GUIDE), because FrameParams are copied for every chunk
- * of items. */
-typedef struct Guide {
-    Vec3 lights[LIGHT_GUIDES_MAX]; /* FrameParams.guide_count positions, or directions (light/light_guide.h) */
-    float lights_near[LIGHT_GUIDES_MAX]; /* 1: a position, 0: a direction */
-    float lights_power[LIGHT_GUIDES_MAX]; /* what arrives, times the squared length of the vector to the guide */
-    float importance[IMPORTANCE_CELLS]; /* target importance of the cells of the crop window, row by row */
-    uint visits[IMPORTANCE_CELLS + 1u]; /* of a pool: visits to all pixels before each cell, and to all */
-} Guide;
 
 #endif

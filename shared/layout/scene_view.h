@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_LAYOUT_SCENE_VIEW_H
 #define TWINLIGHT_LAYOUT_SCENE_VIEW_H
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 
 typedef struct SceneView {
     __global const FrameParams *frame;
@@ -41,11 +41,11 @@ typedef struct SceneView {
 SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global const uint *geometry,
                                      __global const uint *tables, __global const uint *texels)
 {
-    __global const SceneLayout *layout = &frame->layout;
+    __global const SceneLayout *layout = &frame->scene.layout;
     SceneView view;
     view.frame = frame;
     view.guide = 0;
-    view.features = frame->features;
+    view.features = frame->scene.features;
     view.positions = (__global const Vec3 *)(geometry + layout->positions);
     view.normals = (__global const Vec3 *)(geometry + layout->normals);
     view.uvs = (__global const Vec2 *)(geometry + layout->uvs);

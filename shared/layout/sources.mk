@@ -1,6 +1,7 @@
 SHARED_FILES += \
 	shared/layout/diagnostics.h \
 	shared/layout/distribution.h \
+	shared/layout/frame_params.h \
 	shared/layout/item.h \
 	shared/layout/kernel_list.h \
 	shared/layout/material_list.h \

@@ -75,7 +75,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define SPLAT_RARE 0x40000000u
 #define SPLAT_LAYERS (SPLAT_LIGHT | SPLAT_RARE)
 
-/* With frame->split_depths the bits between layers and pixel hold the path's depth, from SPLAT_DEPTH_MIN to
+/* With frame->film.split_depths the bits between layers and pixel hold the path's depth, from SPLAT_DEPTH_MIN to
  * SPLAT_DEPTH_MAX. */
 #define SPLAT_DEPTH_SHIFT 25u
 #define SPLAT_DEPTH_MIN 3u

@@ -141,58 +141,72 @@
     MEMBER(SceneLayout, infinite_lights)                                                                               \
     MEMBER(SceneLayout, distributions2d)                                                                               \
     MEMBER(SceneLayout, lookup)                                                                                        \
+    STRUCT(SceneParams)                                                                                                \
+    MEMBER(SceneParams, layout)                                                                                        \
+    MEMBER(SceneParams, features)                                                                                      \
+    MEMBER(SceneParams, light_count)                                                                                   \
+    MEMBER(SceneParams, infinite_light_count)                                                                          \
+    MEMBER(SceneParams, guide_count)                                                                                   \
+    MEMBER(SceneParams, world_center)                                                                                  \
+    MEMBER(SceneParams, world_radius)                                                                                  \
+    MEMBER(SceneParams, ray_reach)                                                                                     \
+    STRUCT(FilmParams)                                                                                                 \
+    MEMBER(FilmParams, width)                                                                                          \
+    MEMBER(FilmParams, height)                                                                                         \
+    MEMBER(FilmParams, crop_x0)                                                                                        \
+    MEMBER(FilmParams, crop_y0)                                                                                        \
+    MEMBER(FilmParams, crop_x1)                                                                                        \
+    MEMBER(FilmParams, crop_y1)                                                                                        \
+    MEMBER(FilmParams, filter)                                                                                         \
+    MEMBER(FilmParams, exponent)                                                                                       \
+    MEMBER(FilmParams, split_depths)                                                                                   \
+    STRUCT(PathParams)                                                                                                 \
+    MEMBER(PathParams, max_depth)                                                                                      \
+    MEMBER(PathParams, min_depth)                                                                                      \
+    MEMBER(PathParams, roulette_depth)                                                                                 \
+    MEMBER(PathParams, strategies)                                                                                     \
+    MEMBER(PathParams, mis_exponent)                                                                                   \
+    MEMBER(PathParams, only_s)                                                                                         \
+    MEMBER(PathParams, only_t)                                                                                         \
+    MEMBER(PathParams, unweighted)                                                                                     \
+    STRUCT(PartitionParams)                                                                                            \
+    MEMBER(PartitionParams, split_direct)                                                                              \
+    MEMBER(PartitionParams, clamp_threshold)                                                                           \
+    STRUCT(PoolParams)                                                                                                 \
+    MEMBER(PoolParams, enabled)                                                                                        \
+    MEMBER(PoolParams, items)                                                                                          \
+    MEMBER(PoolParams, lights)                                                                                         \
+    MEMBER(PoolParams, lights_first)                                                                                   \
+    MEMBER(PoolParams, lights_weight)                                                                                  \
+    MEMBER(PoolParams, visits)                                                                                         \
+    STRUCT(ChainParams)                                                                                                \
+    MEMBER(ChainParams, mutations)                                                                                     \
+    MEMBER(ChainParams, group_mutations)                                                                               \
+    MEMBER(ChainParams, shifts)                                                                                        \
+    MEMBER(ChainParams, large_step)                                                                                    \
+    MEMBER(ChainParams, keep)                                                                                          \
+    MEMBER(ChainParams, brightness)                                                                                    \
+    STRUCT(PassParams)                                                                                                 \
+    MEMBER(PassParams, seed_low)                                                                                       \
+    MEMBER(PassParams, seed_high)                                                                                      \
+    MEMBER(PassParams, aov)                                                                                            \
+    MEMBER(PassParams, sample_index)                                                                                   \
+    MEMBER(PassParams, pixel_stride)                                                                                   \
+    MEMBER(PassParams, pixel_first)                                                                                    \
+    MEMBER(PassParams, first_item)                                                                                     \
+    MEMBER(PassParams, item_count)                                                                                     \
+    MEMBER(PassParams, stride)                                                                                         \
+    MEMBER(PassParams, data_first)                                                                                     \
+    MEMBER(PassParams, data_stride)                                                                                    \
     STRUCT(FrameParams)                                                                                                \
-    MEMBER(FrameParams, layout)                                                                                        \
-    MEMBER(FrameParams, features)                                                                                      \
-    MEMBER(FrameParams, light_count)                                                                                   \
-    MEMBER(FrameParams, infinite_light_count)                                                                          \
+    MEMBER(FrameParams, scene)                                                                                         \
     MEMBER(FrameParams, camera)                                                                                        \
-    MEMBER(FrameParams, filter)                                                                                        \
-    MEMBER(FrameParams, world_center)                                                                                  \
-    MEMBER(FrameParams, world_radius)                                                                                  \
-    MEMBER(FrameParams, ray_reach)                                                                                     \
-    MEMBER(FrameParams, width)                                                                                         \
-    MEMBER(FrameParams, height)                                                                                        \
-    MEMBER(FrameParams, crop_x0)                                                                                       \
-    MEMBER(FrameParams, crop_y0)                                                                                       \
-    MEMBER(FrameParams, crop_x1)                                                                                       \
-    MEMBER(FrameParams, crop_y1)                                                                                       \
-    MEMBER(FrameParams, film_exponent)                                                                                 \
-    MEMBER(FrameParams, split_depths)                                                                                  \
-    MEMBER(FrameParams, split_direct)                                                                                  \
-    MEMBER(FrameParams, aov)                                                                                           \
-    MEMBER(FrameParams, max_depth)                                                                                     \
-    MEMBER(FrameParams, min_depth)                                                                                     \
-    MEMBER(FrameParams, roulette_depth)                                                                                \
-    MEMBER(FrameParams, strategies)                                                                                    \
-    MEMBER(FrameParams, mis_exponent)                                                                                  \
-    MEMBER(FrameParams, only_s)                                                                                        \
-    MEMBER(FrameParams, only_t)                                                                                        \
-    MEMBER(FrameParams, unweighted)                                                                                    \
+    MEMBER(FrameParams, film)                                                                                          \
+    MEMBER(FrameParams, path)                                                                                          \
+    MEMBER(FrameParams, partition)                                                                                     \
     MEMBER(FrameParams, pool)                                                                                          \
-    MEMBER(FrameParams, pool_items)                                                                                    \
-    MEMBER(FrameParams, pool_lights)                                                                                   \
-    MEMBER(FrameParams, pool_lights_first)                                                                             \
-    MEMBER(FrameParams, pool_lights_weight)                                                                            \
-    MEMBER(FrameParams, pool_visits)                                                                                   \
-    MEMBER(FrameParams, guide_count)                                                                                   \
-    MEMBER(FrameParams, clamp_threshold)                                                                               \
-    MEMBER(FrameParams, mutations)                                                                                     \
-    MEMBER(FrameParams, group_mutations)                                                                               \
-    MEMBER(FrameParams, shifts)                                                                                        \
-    MEMBER(FrameParams, large_step)                                                                                    \
-    MEMBER(FrameParams, keep_chains)                                                                                   \
-    MEMBER(FrameParams, brightness)                                                                                    \
-    MEMBER(FrameParams, seed_low)                                                                                      \
-    MEMBER(FrameParams, seed_high)                                                                                     \
-    MEMBER(FrameParams, sample_index)                                                                                  \
-    MEMBER(FrameParams, pixel_stride)                                                                                  \
-    MEMBER(FrameParams, pixel_first)                                                                                   \
-    MEMBER(FrameParams, first_item)                                                                                    \
-    MEMBER(FrameParams, item_count)                                                                                    \
-    MEMBER(FrameParams, stride)                                                                                        \
-    MEMBER(FrameParams, pass_first)                                                                                    \
-    MEMBER(FrameParams, pass_stride)                                                                                   \
+    MEMBER(FrameParams, chains)                                                                                        \
+    MEMBER(FrameParams, pass)                                                                                          \
     STRUCT(Guide)                                                                                                      \
     MEMBER(Guide, lights)                                                                                              \
     MEMBER(Guide, lights_near)                                                                                         \

@@ -25,8 +25,8 @@ typedef struct LightEmission {
  * may take away in a small scene far from (0,0,0). 0 if there is nothing to light. */
 SHARED_FUNCTION float light_emit_disc_radius(const SceneView *scene)
 {
-    float radius = scene->frame->world_radius;
-    float size = vec3_max_abs(scene->frame->world_center) + radius;
+    float radius = scene->frame->scene.world_radius;
+    float size = vec3_max_abs(scene->frame->scene.world_center) + radius;
     return radius > 0.0f ? radius + 4.0f * FLOAT_EPSILON * size : 0.0f;
 }
 
@@ -44,7 +44,7 @@ SHARED_FUNCTION bool light_emit_from_disc(const SceneView *scene, Vec2 u, LightE
     float radius = light_emit_disc_radius(scene);
     Vec2 disc = warp_disk_concentric(u);
     Vec3 offset = frame_to_world(frame_from_normal(emission->w), vec3(disc.x, disc.y, -1.0f));
-    emission->p = vec3_mad(scene->frame->world_center, radius, offset);
+    emission->p = vec3_mad(scene->frame->scene.world_center, radius, offset);
     emission->pdf_p = light_emit_pdf_disc(scene);
     emission->infinite = 1u;
     return emission->pdf_p > 0.0f && float_finite(emission->pdf_p);

@@ -58,7 +58,7 @@ SHARED_FUNCTION Vec3 environment_radiance(const SceneView *scene, Vec3 d)
     Vec3 sum = vec3_splat(0.0f);
     if (!SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
         return sum;
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i)
+    for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i)
         sum = vec3_add(sum, environment_light_radiance(scene, scene->infinite_lights[i], d));
     return sum;
 }

@@ -11,7 +11,7 @@
 /* Draws a light with probability lights[i].select_pdf (proportional to power). The scene must have at least one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
 {
-    return alias_sample(scene->light_alias, scene->frame->light_count, bits0, bits1);
+    return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);
 }
 
 /* Draws light that arrives at `ref` from `light`, occlusion ignored. False: no contribution; *sample is then

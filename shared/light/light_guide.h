@@ -42,7 +42,7 @@ SHARED_FUNCTION uint light_guide_bits(float x)
  * the light rises. */
 SHARED_FUNCTION Random4 light_guide_numbers(const SceneView *scene, Vec3 p, Frame shading, Random4 random)
 {
-    Vec3 d = light_guide_from(scene->frame->guide_count, scene->guide, p);
+    Vec3 d = light_guide_from(scene->frame->scene.guide_count, scene->guide, p);
     float square = vec3_length_squared(d);
     if (!(square > 0.0f))
         return random;

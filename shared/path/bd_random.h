@@ -25,14 +25,14 @@
 SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint item,
                                      uint block, uint stream)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     return random_four(state_load(paths, stride, BD_PIXEL, item), state_load(paths, stride, BD_SAMPLE, item), block,
-                       stream, frame->seed_low, frame->seed_high);
+                       stream, frame->pass.seed_low, frame->pass.seed_high);
 }
 
 SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint item, uint block)
 {
-    return bd_random_of(frame, paths, item, block, frame->pool != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
+    return bd_random_of(frame, paths, item, block, frame->pool.enabled != 0u ? PATH_STREAM_POOL : PATH_STREAM_BD);
 }
 
 /* bd_random of the pool sample whose pixel and sample number the item holds. */
@@ -80,9 +80,9 @@ SHARED_FUNCTION Random4 bd_random_connection(__global const FrameParams *frame, 
                                              uint s, uint t)
 {
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CONNECTIONS + s * 64u + t);
-    if (frame->pool != 0u && t == 1u)
+    if (frame->pool.enabled != 0u && t == 1u)
         return connection_random_lens(random, bd_random(frame, paths, item, BD_RANDOM_CAMERA));
-    if (frame->pool != 0u && s == 1u)
+    if (frame->pool.enabled != 0u && s == 1u)
         return connection_random_light(bd_random(frame, paths, item, BD_RANDOM_LIGHT),
                                        bd_random(frame, paths, item, BD_RANDOM_EMIT));
     return random;

@@ -12,7 +12,7 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
                                      __global uint *restrict rays, __global uint *restrict shadows, uint item,
                                      ItemPlace place)
 {
-    uint stride = frame->stride;
+    uint stride = frame->pass.stride;
     state_store(paths, stride, BD_PIXEL, item, place.pixel);
     state_store(paths, stride, BD_SAMPLE, item, place.sample);
     state_store(paths, stride, BD_SIDE, item, SIDE_LIGHT);
@@ -63,10 +63,10 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *re
     float weight;
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     uint pixel = state_load(paths, stride, BD_PIXEL, item);
-    uint row = pixel / frame->width, column = pixel % frame->width;
+    uint row = pixel / frame->film.width, column = pixel % frame->film.width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
     Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->width, (float)frame->height,
+    Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     state_store_float(paths, stride, BD_WEIGHT, item, weight);
     walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
@@ -79,12 +79,12 @@ typedef struct FilmReach {
 
 SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
 {
-    float more_x = frame->filter.radius_x - 0.5f, more_y = frame->filter.radius_y - 0.5f;
+    float more_x = frame->film.filter.radius_x - 0.5f, more_y = frame->film.filter.radius_y - 0.5f;
     FilmReach reach;
-    reach.x = (float)frame->crop_x0 - more_x;
-    reach.y = (float)frame->crop_y0 - more_y;
-    reach.width = (float)(frame->crop_x1 - frame->crop_x0) + 2.0f * more_x;
-    reach.height = (float)(frame->crop_y1 - frame->crop_y0) + 2.0f * more_y;
+    reach.x = (float)frame->film.crop_x0 - more_x;
+    reach.y = (float)frame->film.crop_y0 - more_y;
+    reach.width = (float)(frame->film.crop_x1 - frame->film.crop_x0) + 2.0f * more_x;
+    reach.height = (float)(frame->film.crop_y1 - frame->film.crop_y0) + 2.0f * more_y;
     return reach;
 }
 
@@ -92,7 +92,8 @@ SHARED_FUNCTION FilmReach film_reach(__global const FrameParams *frame)
 SHARED_FUNCTION float film_reach_factor(__global const FrameParams *frame)
 {
     FilmReach reach = film_reach(frame);
-    float pixels = (float)(frame->crop_x1 - frame->crop_x0) * (float)(frame->crop_y1 - frame->crop_y0);
+    float pixels =
+        (float)(frame->film.crop_x1 - frame->film.crop_x0) * (float)(frame->film.crop_y1 - frame->film.crop_y0);
     return reach.width * reach.height / pixels;
 }
 
@@ -119,8 +120,8 @@ SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *rest
 {
     __global const FrameParams *frame = scene->frame;
     Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->width,
-                         (float)frame->height, vec2(random_float(random.x[2]), random_float(random.x[3])));
+    Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->film.width,
+                         (float)frame->film.height, vec2(random_float(random.x[2]), random_float(random.x[3])));
     walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
                WALK_DELTA);
 }

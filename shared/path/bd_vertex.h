@@ -13,12 +13,12 @@
 /* First field of vertex i of a side: first y_0, y_1 ..., then z_1, z_2 ... */
 SHARED_FUNCTION uint vertex_base(__global const FrameParams *frame, uint side, uint i)
 {
-    return (side == SIDE_LIGHT ? i : frame->max_depth + i - 1u) * VERTEX_WORDS;
+    return (side == SIDE_LIGHT ? i : frame->path.max_depth + i - 1u) * VERTEX_WORDS;
 }
 
 SHARED_FUNCTION uint density_base(__global const FrameParams *frame, uint side, uint i)
 {
-    return (side == SIDE_LIGHT ? i : frame->max_depth + i - 1u) * DENSITY_WORDS;
+    return (side == SIDE_LIGHT ? i : frame->path.max_depth + i - 1u) * DENSITY_WORDS;
 }
 
 /* A stored vertex as connections need it. */

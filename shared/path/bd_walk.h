@@ -77,7 +77,9 @@ typedef struct WalkStep {
 /* The minimum probability with which roulette lets the walk continue. */
 SHARED_FUNCTION float walk_survival_least(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return frame->pool != 0u ? POOL_SURVIVED_LEAST / state_load_float(paths, frame->stride, BD_SURVIVAL, item) : 0.0f;
+    return frame->pool.enabled != 0u
+               ? POOL_SURVIVED_LEAST / state_load_float(paths, frame->pass.stride, BD_SURVIVAL, item)
+               : 0.0f;
 }
 
 /* The point that draws the direction within a lobe. */
@@ -91,11 +93,11 @@ SHARED_FUNCTION Vec2 scatter_point(Random4 random)
 SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth,
                                   float roulette_scale, float least, Random4 random, WalkStep *step)
 {
-    bool roulette = depth >= scene->frame->roulette_depth;
+    bool roulette = depth >= scene->frame->path.roulette_depth;
     BsdfSample sample;
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     Vec2 u = scatter_point(random), u_base = u;
-    if (side == SIDE_CAMERA && scene->frame->guide_count > 0u && bsdf_has_base(&vertex->bsdf))
+    if (side == SIDE_CAMERA && scene->frame->scene.guide_count > 0u && bsdf_has_base(&vertex->bsdf))
         u_base = scatter_point(light_guide_numbers(scene, vertex->p, vertex->frame, random));
     if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
         return false;
@@ -166,7 +168,7 @@ SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *
                                    __global const uint *restrict rays, __global const uint *restrict hits,
                                    __global const uint *restrict vertices, uint item, uint before, WalkHit *walk_hit)
 {
-    uint stride = scene->frame->stride;
+    uint stride = scene->frame->pass.stride;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, item);
     bool first = side == SIDE_CAMERA && depth == 1u;
@@ -199,9 +201,9 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
                                       __global uint *restrict rays, __global const uint *restrict vertices, uint item,
                                       uint before, float u_mix, WalkHit *walk_hit, Vertex *vertex)
 {
-    uint stride = scene->frame->stride;
+    uint stride = scene->frame->pass.stride;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
-    if ((side == SIDE_CAMERA && depth >= scene->frame->max_depth) ||
+    if ((side == SIDE_CAMERA && depth >= scene->frame->path.max_depth) ||
         !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, item), u_mix,
                      vertex)) {
         walk_end(paths, rays, stride, item);
@@ -220,7 +222,7 @@ SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict
                                  __global uint *restrict vertices, uint item, uint before, uint base, float u_mix,
                                  WalkHit *walk_hit)
 {
-    uint stride = scene->frame->stride;
+    uint stride = scene->frame->pass.stride;
     Vertex vertex;
     if (!walk_vertex_make(scene, paths, rays, vertices, item, before, u_mix, walk_hit, &vertex))
         return false;
@@ -234,7 +236,7 @@ SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, __global uint *re
                                        __global uint *restrict rays, __global uint *restrict diagnostics, uint item,
                                        const Vertex *vertex, Random4 random, WalkStep *step)
 {
-    uint stride = scene->frame->stride;
+    uint stride = scene->frame->pass.stride;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, item);
     float least = walk_survival_least(scene->frame, paths, item);
@@ -252,7 +254,7 @@ SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict 
                                 __global const uint *restrict vertices, __global uint *restrict diagnostics, uint item,
                                 uint base, Random4 random, WalkStep *step)
 {
-    Vertex vertex = vertex_load(scene, vertices, scene->frame->stride, base, item);
+    Vertex vertex = vertex_load(scene, vertices, scene->frame->pass.stride, base, item);
     return walk_leave_vertex(scene, paths, rays, diagnostics, item, &vertex, random, step);
 }
 

@@ -10,22 +10,22 @@ SHARED_FUNCTION DensityView bd_density_view(__global const FrameParams *frame, _
 {
     DensityView view;
     view.light = densities;
-    view.camera = densities + (size_t)frame->max_depth * DENSITY_WORDS * frame->stride;
-    view.stride = frame->stride;
+    view.camera = densities + (size_t)frame->path.max_depth * DENSITY_WORDS * frame->pass.stride;
+    view.stride = frame->pass.stride;
     view.item = item;
     view.compact = false;
     view.light_end = 0u;
     view.camera_end = 0u;
-    view.light_delta = state_load(paths, frame->stride, BD_LIGHT_DELTA, item);
-    view.camera_delta = state_load(paths, frame->stride, BD_CAMERA_DELTA, item);
+    view.light_delta = state_load(paths, frame->pass.stride, BD_LIGHT_DELTA, item);
+    view.camera_delta = state_load(paths, frame->pass.stride, BD_CAMERA_DELTA, item);
     return view;
 }
 
 /* Whether the strategy (s, t) contributes: deep enough, in the set, and not excluded by only_s and only_t. */
 SHARED_FUNCTION bool strategy_wanted(__global const FrameParams *frame, uint s, uint t)
 {
-    return s + t > frame->min_depth && strategy_taken(frame->strategies, s, s + t - 1u) &&
-           (frame->only_s == NONE || (frame->only_s == s && frame->only_t == t));
+    return s + t > frame->path.min_depth && strategy_taken(frame->path.strategies, s, s + t - 1u) &&
+           (frame->path.only_s == NONE || (frame->path.only_s == s && frame->path.only_t == t));
 }
 
 /* Factors of a contribution by the strategy (s, t): its MIS weight; 1 if weights are turned off; 0 if the strategy does
@@ -36,8 +36,8 @@ SHARED_FUNCTION StrategyWeights bd_weights(__global const FrameParams *frame, ui
     StrategyWeights weights = {0.0f, 0.0f};
     if (!strategy_wanted(frame, s, t))
         return weights;
-    if (frame->unweighted == 0u)
-        return strategy_weights(frame->strategies, frame->mis_exponent, s, t, view, ends);
+    if (frame->path.unweighted == 0u)
+        return strategy_weights(frame->path.strategies, frame->path.mis_exponent, s, t, view, ends);
     weights.own = 1.0f;
     return weights;
 }
@@ -52,7 +52,7 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
 SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);
-    for (uint i = 0; i < scene->frame->infinite_light_count; ++i) {
+    for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
         if (!vec3_is_zero(radiance))

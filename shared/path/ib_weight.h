@@ -59,13 +59,13 @@ SHARED_FUNCTION void ib_take(MisSum *sum, uint set, uint s, uint k, bool possibl
 SHARED_FUNCTION float ib_weight_met(__global const FrameParams *frame, __global const uint *paths, uint item, uint k,
                                     bool last_delta, const StrategyEnds *ends)
 {
-    uint stride = frame->stride;
-    MisSum sum = mis_sum_begin(frame->mis_exponent);
+    uint stride = frame->pass.stride;
+    MisSum sum = mis_sum_begin(frame->path.mis_exponent);
     Scaled drawn = scaled_multiply(scaled_ratio(ends->light_z1, state_load_float(paths, stride, IB_OWN, item)),
                                    scaled_from(ends->connect));
-    ib_take(&sum, frame->strategies, 1u, k, !last_delta, drawn);
+    ib_take(&sum, frame->path.strategies, 1u, k, !last_delta, drawn);
     if (k >= 2u)
-        ib_take(&sum, frame->strategies, k, k, state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
+        ib_take(&sum, frame->path.strategies, k, k, state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
                 ib_product_to(paths, stride, item, k, ends->light_z1, ends->light_z2));
     return mis_sum_weight(&sum, scaled_from(1.0f));
 }
@@ -74,10 +74,10 @@ SHARED_FUNCTION float ib_weight_met(__global const FrameParams *frame, __global 
 SHARED_FUNCTION float ib_weight_drawn(__global const FrameParams *frame, __global const uint *paths, uint item, uint k,
                                       const StrategyEnds *ends)
 {
-    uint stride = frame->stride;
-    MisSum sum = mis_sum_begin(frame->mis_exponent);
-    ib_take(&sum, frame->strategies, 0u, k, ends->hittable, scaled_ratio(ends->camera_y1, ends->own_y0));
-    ib_take(&sum, frame->strategies, k, k, k == 2u || state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
+    uint stride = frame->pass.stride;
+    MisSum sum = mis_sum_begin(frame->path.mis_exponent);
+    ib_take(&sum, frame->path.strategies, 0u, k, ends->hittable, scaled_ratio(ends->camera_y1, ends->own_y0));
+    ib_take(&sum, frame->path.strategies, k, k, k == 2u || state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
             ib_product_to(paths, stride, item, k - 1u, ends->light_z1, ends->light_z2));
     return mis_sum_weight(&sum, scaled_from(ends->connect));
 }
@@ -86,15 +86,15 @@ SHARED_FUNCTION float ib_weight_drawn(__global const FrameParams *frame, __globa
 SHARED_FUNCTION float ib_weight_seen(__global const FrameParams *frame, __global const uint *paths, uint item, uint k,
                                      const StrategyEnds *ends)
 {
-    uint stride = frame->stride;
-    MisSum sum = mis_sum_begin(frame->mis_exponent);
+    uint stride = frame->pass.stride;
+    MisSum sum = mis_sum_begin(frame->path.mis_exponent);
     Scaled drawn = ib_product_to(paths, stride, item, k - 1u, ends->camera_y1, ends->camera_y2);
     Scaled met = scaled_multiply(
         drawn, k == 2u ? scaled_ratio(ends->camera_y2, state_load_float(paths, stride, IB_OWN_BEFORE, item))
                        : scaled_from(state_load_float(paths, stride, IB_FIRST_RATIO, item)));
-    ib_take(&sum, frame->strategies, 1u, k, k == 2u || state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
+    ib_take(&sum, frame->path.strategies, 1u, k, k == 2u || state_load(paths, stride, IB_FIRST_DELTA, item) == 0u,
             scaled_multiply(drawn, scaled_from(ends->connect)));
-    ib_take(&sum, frame->strategies, 0u, k, ends->hittable, met);
+    ib_take(&sum, frame->path.strategies, 0u, k, ends->hittable, met);
     return mis_sum_weight(&sum, scaled_from(1.0f));
 }
 

@@ -12,7 +12,7 @@
 #ifndef TWINLIGHT_PATH_PARTITION_H
 #define TWINLIGHT_PATH_PARTITION_H
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 
 /* Clamping threshold of path tracing over that of the pool. */
 #define RARE_OVER_CLAMP 4.0f
@@ -23,14 +23,15 @@
 /* Whether anything is left to the chains. */
 SHARED_FUNCTION bool partition_clamps(__global const FrameParams *frame)
 {
-    return frame->clamp_threshold < FLOAT_MAX;
+    return frame->partition.clamp_threshold < FLOAT_MAX;
 }
 
 /* The clamping threshold: what a path may carry before the estimator (PARTITION_*) leaves a part of it to the
  * chains. */
 SHARED_FUNCTION float partition_threshold(__global const FrameParams *frame, uint estimator)
 {
-    return estimator == PARTITION_POOL ? frame->clamp_threshold : RARE_OVER_CLAMP * frame->clamp_threshold;
+    return estimator == PARTITION_POOL ? frame->partition.clamp_threshold
+                                       : RARE_OVER_CLAMP * frame->partition.clamp_threshold;
 }
 
 /* The part shown of a path that carries `carried`; the rest is left. Both arguments may be divided by the same

@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_PATH_PATH_RANDOM_H
 #define TWINLIGHT_PATH_PATH_RANDOM_H
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "math/rng.h"
 
 /* Block 0 is the camera's: filter offset, lens. Three blocks follow for every vertex of the path. */
@@ -15,7 +15,7 @@
 
 SHARED_FUNCTION Random4 path_random(__global const FrameParams *frame, uint pixel, uint sample, uint block)
 {
-    return random_four(pixel, sample, block, PATH_STREAM_PT, frame->seed_low, frame->seed_high);
+    return random_four(pixel, sample, block, PATH_STREAM_PT, frame->pass.seed_low, frame->pass.seed_high);
 }
 
 /* Block of the vertex that ends segment `depth` (1, 2, ...); `what` one of RANDOM_LIGHT, RANDOM_SCATTER, RANDOM_MIX. */

@@ -26,17 +26,17 @@ static bool play_run(Backend *backend, const FrameParams *frame, const StepList 
                      const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     (void)list, (void)sink;
-    uint count = frame->item_count < backend->fails_at ? frame->item_count : backend->fails_at;
-    backend->first = frame->first_item;
-    backend->count = frame->item_count;
+    uint count = frame->pass.item_count < backend->fails_at ? frame->pass.item_count : backend->fails_at;
+    backend->first = frame->pass.first_item;
+    backend->count = frame->pass.item_count;
     ++backend->passes;
     for (uint i = 0; i < count && !*stop; ++i)
-        ++items_seen[frame->first_item + i];
+        ++items_seen[frame->pass.first_item + i];
     *items_done = *stop ? 0 : count;
     double seconds = (double)count / backend->speed;
     struct timespec pause = {(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))};
     nanosleep(&pause, NULL);
-    return count == frame->item_count || error_set(error, "%s is lost", backend->name);
+    return count == frame->pass.item_count || error_set(error, "%s is lost", backend->name);
 }
 
 static void play_close(Backend *backend)
@@ -82,8 +82,8 @@ static bool pass_run(Backend *group, uint first, uint count, const atomic_int *s
     StepList list = {0};
     memset(&frame, 0, sizeof frame);
     memset(items_seen, 0, sizeof items_seen);
-    frame.first_item = first;
-    frame.item_count = count;
+    frame.pass.first_item = first;
+    frame.pass.item_count = count;
     return backend_group_interface()->run(group, &frame, &list, NULL, stop, done, error);
 }
 

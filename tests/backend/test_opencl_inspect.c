@@ -84,8 +84,8 @@ START_TEST(test_inspect_is_run)
     VerifyPair pair;
     pair_open(setup, backend_ocl(), &pair);
     Backend *device = pair.sides[1].backend;
-    pair.frame.first_item = 123;
-    pair.frame.item_count = 357;
+    pair.frame.pass.first_item = 123;
+    pair.frame.pass.item_count = 357;
     ck_assert(backend_ocl()->run(device, &pair.frame, &pair.list, &(SplatSink){.splats = splat_sum, .context = &run},
                                  &NEVER, NULL, &error));
     backend_ocl()->statistics(device, &before);

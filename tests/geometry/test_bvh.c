@@ -43,8 +43,8 @@ static void walk_state_init(WalkState *state, const Comparison *comparison)
     const BackendScene *scene = &comparison->test->backend;
     memset(state, 0, sizeof *state);
     state->frame = *scene->frame;
-    state->frame.stride = BLOCK;
-    state->frame.item_count = BLOCK;
+    state->frame.pass.stride = BLOCK;
+    state->frame.pass.item_count = BLOCK;
     for (int i = 0; i < BUFFER_COUNT; ++i)
         state->buffers[i] = WALK_BUFFER_WORDS[i] > 0 ? calloc(WALK_BUFFER_WORDS[i] * BLOCK, sizeof(uint)) : NULL;
     state->buffers[BUFFER_FRAME] = &state->frame;
@@ -120,7 +120,7 @@ static void *compare_thread(void *argument)
         uint block = atomic_fetch_add(&comparison->next_block, 1);
         if (block >= comparison->blocks)
             break;
-        state->frame.first_item = block * BLOCK;
+        state->frame.pass.first_item = block * BLOCK;
         kernel_run(KERNEL_walk_start, state->buffers, NULL, BLOCK);
         for (int bounce = 0; bounce < BOUNCES; ++bounce) {
             closest_compare(comparison, state);

@@ -255,7 +255,7 @@ static Ray ray_make(Adversary *adversary)
     const Targets *from = &adversary->targets[random_below(random, adversary->target_count)];
     const Targets *to =
         random_below(random, 4) ? &adversary->targets[random_below(random, adversary->target_count)] : from;
-    float reach = adversary->test.backend.frame->ray_reach;
+    float reach = adversary->test.backend.frame->scene.ray_reach;
     Ray ray;
     ray.o = ulps_moved3(random, target_point(random, from), random_below(random, 3) ? 40 : 1);
     if (random_below(random, 6) == 0) { /* in the plane of `from`, outside of it */
@@ -281,7 +281,7 @@ static Ray ray_make(Adversary *adversary)
 static Ray ray_changed(Adversary *adversary, Ray ray)
 {
     TestRandom *random = &adversary->random;
-    float reach = adversary->test.backend.frame->ray_reach;
+    float reach = adversary->test.backend.frame->scene.ray_reach;
     if (random_below(random, 2))
         ray.o = ulps_moved3(random, ray.o, 8);
     else

@@ -23,8 +23,8 @@ static Bvh bvh_of(const TestScene *test)
 static Ray any_ray(TestRandom *random, const TestScene *test)
 {
     static const float LENGTHS[] = {1.0f, 1.0f, 1e-12f, 1e-30f, 1e6f, 1e-37f};
-    float radius = test->backend.frame->world_radius;
-    Vec3 center = test->backend.frame->world_center, d = random_direction(random);
+    float radius = test->backend.frame->scene.world_radius;
+    Vec3 center = test->backend.frame->scene.world_center, d = random_direction(random);
     Vec3 o = vec3_mad(center, 1.2f * radius * random_unit(random), random_direction(random));
     uint choice = random_below(random, 8);
     if (choice < 3)

@@ -47,7 +47,8 @@ static bool device_open(Twin *twin, bool specialised)
     int used = snprintf(options, sizeof options, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -I%s/shared",
                         test_source_folder());
     if (specialised)
-        snprintf(options + used, sizeof options - (size_t)used, " -DTWINLIGHT_FEATURES=0x%xu", twin->frame.features);
+        snprintf(options + used, sizeof options - (size_t)used, " -DTWINLIGHT_FEATURES=0x%xu",
+                 twin->frame.scene.features);
     setenv("POCL_KERNEL_CACHE", "0", 0); /* the cache does not notice changed include files */
     twin->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!twin->probe) {
@@ -69,8 +70,8 @@ static bool twin_open(Twin *twin, const BvhCase *entry, bool specialised)
     const BackendScene *scene = &twin->test.backend;
     ck_assert_msg(bvh_build(scene, &twin->bvh, &error), "%s", error.message);
     twin->frame = *scene->frame;
-    twin->frame.stride = STRIDE;
-    twin->frame.item_count = WALKS;
+    twin->frame.pass.stride = STRIDE;
+    twin->frame.pass.item_count = WALKS;
     twin_buffer(twin, BUFFER_FRAME, &twin->frame, sizeof twin->frame / sizeof(uint));
     twin_buffer(twin, BUFFER_GEOMETRY, scene->geometry, scene->geometry_words);
     twin_buffer(twin, BUFFER_TABLES, scene->tables, scene->tables_words);

@@ -71,8 +71,8 @@ static void walk_run(const TestScene *test, int threads, uint first, uint end, C
     FrameParams frame = *test->backend.frame;
     StepList list = walk_list();
     uint64_t done = 0;
-    frame.first_item = first;
-    frame.item_count = end - first;
+    frame.pass.first_item = first;
+    frame.pass.item_count = end - first;
     ck_assert(interface->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = collector}, &never,
                              &done, &error));
     ck_assert_uint_eq(done, end - first);
@@ -133,15 +133,15 @@ START_TEST(test_stop)
     ck_assert(backend != NULL);
     FrameParams frame = *test.backend.frame;
     StepList list = walk_list();
-    frame.first_item = 0;
-    frame.item_count = 600;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = 600;
     ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector},
                                  &stopped, &done, &error));
     ck_assert_uint_eq(done, 0);
     ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never,
                                  &done, &error));
     ck_assert_uint_eq(done, 600);
-    frame.item_count = 0;
+    frame.pass.item_count = 0;
     ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never,
                                  &done, &error));
     ck_assert_uint_eq(done, 0);
@@ -179,7 +179,7 @@ START_TEST(test_stop_in_chunk)
     StepList list = walk_list();
     list.steps = steps;
     list.count = sizeof steps / sizeof *steps;
-    frame.item_count = ITEMS;
+    frame.pass.item_count = ITEMS;
     for (int whole = 0; whole < 2; ++whole) {
         memset(collector.seen, 0, sizeof collector.seen);
         stop_now = 0;
@@ -213,8 +213,8 @@ START_TEST(test_diagnostics)
     StepList list = walk_list();
     list.steps = steps;
     list.count = 2;
-    frame.first_item = 0;
-    frame.item_count = ITEMS;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = ITEMS;
     for (int i = 0; i < 2; ++i)
         ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = collect, .context = &collector},
                                      &never, NULL, &error));
@@ -260,8 +260,8 @@ START_TEST(test_denormals_kept)
     ck_assert(backend != NULL);
     FrameParams frame = *test.backend.frame;
     StepList list = walk_list();
-    frame.first_item = 0;
-    frame.item_count = ITEMS;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = ITEMS;
     ck_assert(backend_cpu()->run(backend, &frame, &list, &(SplatSink){.splats = denormal_sink, .context = &sum}, &never,
                                  NULL, &error));
     ck_assert_uint_gt(sum.chunks, 4);
@@ -335,8 +335,8 @@ START_TEST(test_group_same_bits)
     for (uint pass = 1; first < ITEMS; ++pass) {
         uint count = pass * 113u < ITEMS - first ? pass * 113u : ITEMS - first;
         uint64_t done = 0;
-        frame.first_item = first;
-        frame.item_count = count;
+        frame.pass.first_item = first;
+        frame.pass.item_count = count;
         ck_assert(interface->run(group, &frame, &list, &(SplatSink){.splats = collect, .context = &together}, &never,
                                  &done, &error));
         ck_assert_uint_eq(done, count);
@@ -378,8 +378,8 @@ START_TEST(test_group_member_fails)
     StepList list = walk_list();
     FrameParams frame = *test.backend.frame;
     uint64_t done = 0, seen = 0;
-    frame.first_item = 0;
-    frame.item_count = ITEMS;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = ITEMS;
     ck_assert(!backend_group_interface()->run(
         group, &frame, &list, &(SplatSink){.splats = collect, .context = &collector}, &never, &done, &error));
     ck_assert_str_eq(error.message, "error: the device is lost");

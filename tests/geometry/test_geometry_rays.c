@@ -117,7 +117,8 @@ START_TEST(test_same_bits_far_camera)
         test.scene.camera_settings.world_from_camera[3] = (double)distances[k];
         test_scene_mesh(&test, &mesh, 0);
         test_scene_finish(&test);
-        ck_assert(test.scene.frame.ray_reach >= distances[k] && test.scene.frame.ray_reach < 1.001f * distances[k]);
+        ck_assert(test.scene.frame.scene.ray_reach >= distances[k] &&
+                  test.scene.frame.scene.ray_reach < 1.001f * distances[k]);
         RaysEmbree *rays = rays_open(&test);
         for (uint i = 0; i < 60000; ++i) {
             Vec3 target = vec3_scale(random_direction(&random), 1.0f + 0.2f * random_unit(&random));

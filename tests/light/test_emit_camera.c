@@ -44,27 +44,27 @@ static FrameParams setup(const CameraCase *c)
     for (int i = 0; i < 12; ++i)
         settings.world_from_camera[i] *= c->transform == 1 && i % 4 < 3 ? 2.5 : 1.0;
     test_matrix_inverse(settings.world_from_camera, settings.camera_from_world);
-    FrameParams frame = {.width = (uint)c->width,
-                         .height = (uint)c->height,
-                         .crop_x0 = (uint)c->crop[0],
-                         .crop_y0 = (uint)c->crop[1],
-                         .crop_x1 = (uint)c->crop[2],
-                         .crop_y1 = (uint)c->crop[3],
-                         .filter = {.radius_x = c->filter_radius, .radius_y = c->filter_radius}};
+    FrameParams frame = {.film.width = (uint)c->width,
+                         .film.height = (uint)c->height,
+                         .film.crop_x0 = (uint)c->crop[0],
+                         .film.crop_y0 = (uint)c->crop[1],
+                         .film.crop_x1 = (uint)c->crop[2],
+                         .film.crop_y1 = (uint)c->crop[3],
+                         .film.filter = {.radius_x = c->filter_radius, .radius_y = c->filter_radius}};
     ck_assert_msg(camera_setup(&settings, c->width, c->height, &frame.camera, &error), "%s", error.message);
     return frame;
 }
 
 static Ray ray_at(const FrameParams *frame, Vec2 film, Vec2 u_lens)
 {
-    return camera_ray(&frame->camera, film, (float)frame->width, (float)frame->height, u_lens);
+    return camera_ray(&frame->camera, film, (float)frame->film.width, (float)frame->film.height, u_lens);
 }
 
 /* A film position uniform over the crop window. */
 static Vec2 crop_point(const FrameParams *frame, Vec2 u)
 {
-    return vec2((float)frame->crop_x0 + u.x * (float)(frame->crop_x1 - frame->crop_x0),
-                (float)frame->crop_y0 + u.y * (float)(frame->crop_y1 - frame->crop_y0));
+    return vec2((float)frame->film.crop_x0 + u.x * (float)(frame->film.crop_x1 - frame->film.crop_x0),
+                (float)frame->film.crop_y0 + u.y * (float)(frame->film.crop_y1 - frame->film.crop_y0));
 }
 
 START_TEST(test_inverse)
@@ -110,9 +110,9 @@ static void meet(const FrameParams *frame, Vec2 film, Vec2 u, Vec3 p, Vec3 d, do
  * axis; negative outside. */
 static double reach_margin(const FrameParams *frame, Vec2 film)
 {
-    double rx = (double)frame->filter.radius_x, ry = (double)frame->filter.radius_y;
-    double x = fmin((double)film.x - (frame->crop_x0 + 0.5 - rx), frame->crop_x1 - 0.5 + rx - (double)film.x);
-    double y = fmin((double)film.y - (frame->crop_y0 + 0.5 - ry), frame->crop_y1 - 0.5 + ry - (double)film.y);
+    double rx = (double)frame->film.filter.radius_x, ry = (double)frame->film.filter.radius_y;
+    double x = fmin((double)film.x - (frame->film.crop_x0 + 0.5 - rx), frame->film.crop_x1 - 0.5 + rx - (double)film.x);
+    double y = fmin((double)film.y - (frame->film.crop_y0 + 0.5 - ry), frame->film.crop_y1 - 0.5 + ry - (double)film.y);
     return fmin(x, y);
 }
 
@@ -121,7 +121,8 @@ static double reach_margin(const FrameParams *frame, Vec2 film)
 START_TEST(test_density)
 {
     FrameParams frame = setup(&CASES[_i]);
-    double pixels = (double)(frame.crop_x1 - frame.crop_x0) * (double)(frame.crop_y1 - frame.crop_y0);
+    double pixels =
+        (double)(frame.film.crop_x1 - frame.film.crop_x0) * (double)(frame.film.crop_y1 - frame.film.crop_y0);
     for (uint i = 0; i < 2000; ++i) {
         const float h = 0.25f;
         Vec2 u = fixture_random(2, i), r = fixture_random(1, i);
@@ -174,8 +175,8 @@ START_TEST(test_integral)
         Vec3 local = vec3((float)(low[0] + (high[0] - low[0]) * (double)s.x),
                           (float)(low[1] + (high[1] - low[1]) * (double)s.y), 0.0f);
         camera_connect(&frame, vec3_add(p, frame_to_world(plane, local)), u, &c);
-        if (c.film.x >= (float)frame.crop_x0 && c.film.x < (float)frame.crop_x1 && c.film.y >= (float)frame.crop_y0 &&
-            c.film.y < (float)frame.crop_y1)
+        if (c.film.x >= (float)frame.film.crop_x0 && c.film.x < (float)frame.film.crop_x1 &&
+            c.film.y >= (float)frame.film.crop_y0 && c.film.y < (float)frame.film.crop_y1)
             sum += (double)c.pdf * fabs((double)vec3_dot(c.wi, n));
     }
     sum *= (high[0] - low[0]) * (high[1] - low[1]) / ((double)N * N);
@@ -190,8 +191,8 @@ START_TEST(test_formulas)
         CameraSettings settings = {.kind = kind, .fov = 90.0f, .focal_distance = 1.0f};
         for (int i = 0; i < 4; ++i)
             settings.world_from_camera[5 * i] = settings.camera_from_world[5 * i] = 1.0;
-        FrameParams frame = {.width = 10, .height = 10, .crop_x1 = 10, .crop_y1 = 10};
-        frame.filter.radius_x = frame.filter.radius_y = 0.5f;
+        FrameParams frame = {.film.width = 10, .film.height = 10, .film.crop_x1 = 10, .film.crop_y1 = 10};
+        frame.film.filter.radius_x = frame.film.filter.radius_y = 0.5f;
         Error error = {0};
         ck_assert(camera_setup(&settings, 10, 10, &frame.camera, &error));
         CameraConnection c;

@@ -47,8 +47,8 @@ static void stretch(LightFixture *f)
 static void setup(LightFixture *f, int which)
 {
     fixture_init(f);
-    f->scene.frame.world_radius = 3.0f;
-    f->scene.frame.world_center = vec3(1.0f, -2.0f, 5.0f);
+    f->scene.frame.scene.world_radius = 3.0f;
+    f->scene.frame.scene.world_center = vec3(1.0f, -2.0f, 5.0f);
     switch (which) {
     case POINT:
         fixture_add_light(f, (Light){.kind = LIGHT_POINT, .emission = {2, 2, 2}, .position = {1, 2, 3}});
@@ -184,7 +184,7 @@ START_TEST(test_disc)
     for (uint i = 0; i < SAMPLES; ++i) {
         LightEmission e;
         TEST_TRUE(light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e));
-        Vec3 local = frame_to_local(frame_from_normal(e.w), vec3_sub(e.p, f.scene.frame.world_center));
+        Vec3 local = frame_to_local(frame_from_normal(e.w), vec3_sub(e.p, f.scene.frame.scene.world_center));
         TEST_NEAR(local.z, -3.0, 1e-5);
         double x = (double)local.x / 3.0, y = (double)local.y / 3.0, square = x * x + y * y;
         TEST_TRUE(square < 1.00001);
@@ -217,7 +217,7 @@ START_TEST(test_bounds)
     fixture_destroy(&f);
     for (int which = CONSTANT; which <= DISTANT; ++which) {
         setup(&f, which);
-        f.scene.frame.world_radius = 0.0f;
+        f.scene.frame.scene.world_radius = 0.0f;
         ck_assert(!light_emit(&f.view, 0, vec2(0.5f, 0.5f), vec2(0.3f, 0.4f), &e));
         fixture_destroy(&f);
     }

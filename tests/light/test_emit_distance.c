@@ -24,8 +24,8 @@ static void setup(LightFixture *f, const DistanceCase *c, bool sun, float low[3]
         center[k] = 0.5 * ((double)low[k] + (double)high[k]);
         square += 0.25 * ((double)high[k] - (double)low[k]) * ((double)high[k] - (double)low[k]);
     }
-    f->scene.frame.world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
-    f->scene.frame.world_radius = (float)(sqrt(square) * 1.0001);
+    f->scene.frame.scene.world_center = vec3((float)center[0], (float)center[1], (float)center[2]);
+    f->scene.frame.scene.world_radius = (float)(sqrt(square) * 1.0001);
     if (sun) {
         enum { WIDTH = 512, HEIGHT = 256 };
         float *texels = malloc(sizeof *texels * 3 * WIDTH * HEIGHT);
@@ -98,7 +98,7 @@ enum { RECEIVER_COUNT = sizeof RECEIVERS / sizeof *RECEIVERS };
 /* Where the ray intersects the receivers' plane, which contains the scene's centre. Returns false if from behind. */
 static bool receivers_meet(const LightFixture *f, const LightEmission *e, const Frame *frame, double at[2])
 {
-    const Vec3 axes[3] = {frame->t, frame->b, frame->n}, p = vec3_sub(e->p, f->scene.frame.world_center);
+    const Vec3 axes[3] = {frame->t, frame->b, frame->n}, p = vec3_sub(e->p, f->scene.frame.scene.world_center);
     const double from[3] = {(double)p.x, (double)p.y, (double)p.z};
     const double along[3] = {(double)e->w.x, (double)e->w.y, (double)e->w.z};
     double o[3], d[3];

@@ -123,8 +123,8 @@ static void path_from_light(const SceneView *scene, uint index, uint stream, dou
     uint pixel = film_splat_pixel(scene, connection.film, vec2(random_float(c.x[0]), random_float(c.x[1])), &weight);
     if (pixel == NONE)
         return;
-    uint x = pixel % frame->width - frame->crop_x0, y = pixel / frame->width - frame->crop_y0;
-    image[y * (frame->crop_x1 - frame->crop_x0) + x] +=
+    uint x = pixel % frame->film.width - frame->film.crop_x0, y = pixel / frame->film.width - frame->film.crop_y0;
+    image[y * (frame->film.crop_x1 - frame->film.crop_x0) + x] +=
         beta * f_cos * (double)connection.pdf * (double)weight / LIGHT_PATHS;
 }
 
@@ -134,7 +134,8 @@ static void trace_from_light(const char *text, int *pixels, Batches *batches)
     Scene scene;
     fixture_scene(&setup, &scene);
     SceneView view = scene_view(&scene.frame, scene.geometry_words.data, scene.tables_words.data, scene.texels.data);
-    *pixels = (int)((scene.frame.crop_x1 - scene.frame.crop_x0) * (scene.frame.crop_y1 - scene.frame.crop_y0));
+    *pixels = (int)((scene.frame.film.crop_x1 - scene.frame.film.crop_x0) *
+                    (scene.frame.film.crop_y1 - scene.frame.film.crop_y0));
     for (uint k = 0; k < BATCHES; ++k) {
         double image[PIXELS] = {0.0};
         for (uint i = 0; i < (uint)*pixels * LIGHT_PATHS; ++i)

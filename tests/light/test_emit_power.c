@@ -21,8 +21,8 @@ static double setup(LightFixture *f, int which)
     const double scene = 4.0 * M_PI; /* area of the bounding sphere's disc */
     double power = 0.0, mean = 0.0;
     fixture_init(f);
-    f->scene.frame.world_radius = 2.0f;
-    f->scene.frame.world_center = vec3(0.0f, 0.0f, -2.0f);
+    f->scene.frame.scene.world_radius = 2.0f;
+    f->scene.frame.scene.world_center = vec3(0.0f, 0.0f, -2.0f);
     switch (which) {
     case SQUARE:
         fixture_add_polygon(f, square, 4, NULL, 0, 0);

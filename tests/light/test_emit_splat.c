@@ -10,12 +10,12 @@ static void setup(LightFixture *f, const FilterSettings *settings)
 {
     FrameParams *frame = &f->scene.frame;
     fixture_init_filter(f, settings);
-    frame->width = WIDTH;
-    frame->height = 11;
-    frame->crop_x0 = X0;
-    frame->crop_y0 = Y0;
-    frame->crop_x1 = X1;
-    frame->crop_y1 = Y1;
+    frame->film.width = WIDTH;
+    frame->film.height = 11;
+    frame->film.crop_x0 = X0;
+    frame->film.crop_y0 = Y0;
+    frame->film.crop_x1 = X1;
+    frame->film.crop_y1 = Y1;
 }
 
 /* f over its integral at `offset`; for a tabulated filter the mean over the table's cell. */

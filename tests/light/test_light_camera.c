@@ -138,11 +138,11 @@ END_TEST
 static FrameParams whole_film(const Camera *camera, uint width, uint height)
 {
     return (FrameParams){.camera = *camera,
-                         .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
-                         .width = width,
-                         .height = height,
-                         .crop_x1 = width,
-                         .crop_y1 = height};
+                         .film.filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
+                         .film.width = width,
+                         .film.height = height,
+                         .film.crop_x1 = width,
+                         .film.crop_y1 = height};
 }
 
 START_TEST(test_projection)
@@ -221,17 +221,17 @@ END_TEST
 /* A film position is covered if and only if the filter of some pixel in the crop window reaches it. */
 START_TEST(test_reach)
 {
-    FrameParams frame = {.crop_x0 = 20, .crop_x1 = 26, .crop_y0 = 30, .crop_y1 = 33};
+    FrameParams frame = {.film.crop_x0 = 20, .film.crop_x1 = 26, .film.crop_y0 = 30, .film.crop_y1 = 33};
     for (int narrow = 0; narrow < 2; ++narrow) {
-        frame.filter.radius_x = narrow ? 0.75f : 2.5f;
-        frame.filter.radius_y = narrow ? 3.25f : 0.5f;
+        frame.film.filter.radius_x = narrow ? 0.75f : 2.5f;
+        frame.film.filter.radius_y = narrow ? 3.25f : 0.5f;
         for (int i = 0; i < 200 * 200; ++i) {
             double x = 15.0 + 16.1 * (i % 200 + 0.5) / 200.0, y = 25.0 + 13.0 * (i / 200 + 0.5) / 200.0;
             bool reached_x = false, reached_y = false;
             for (uint pixel = 20; pixel < 26; ++pixel)
-                reached_x = reached_x || fabs(x - pixel - 0.5) < (double)frame.filter.radius_x;
+                reached_x = reached_x || fabs(x - pixel - 0.5) < (double)frame.film.filter.radius_x;
             for (uint pixel = 30; pixel < 33; ++pixel)
-                reached_y = reached_y || fabs(y - pixel - 0.5) < (double)frame.filter.radius_y;
+                reached_y = reached_y || fabs(y - pixel - 0.5) < (double)frame.film.filter.radius_y;
             TEST_TRUE(camera_film_covered(&frame, vec2((float)x, (float)y)) == (reached_x && reached_y));
         }
     }

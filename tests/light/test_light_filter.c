@@ -67,7 +67,7 @@ START_TEST(test_moments)
             float weight, u = ((float)i + 0.5f) / N;
             Vec2 offset = pixel_filter_sample(&f.view, axis == 0 ? vec2(u, 0.5f) : vec2(0.5f, u), &weight);
             double at = axis == 0 ? (double)offset.x : (double)offset.y;
-            double w = (double)weight / (double)f.scene.frame.filter.weight / N * (absolute / moments[0]);
+            double w = (double)weight / (double)f.scene.frame.film.filter.weight / N * (absolute / moments[0]);
             sum += w;
             first += w * at;
             second += w * at * at;
@@ -77,7 +77,7 @@ START_TEST(test_moments)
         ck_assert_msg(fabs(second - moments[1] / moments[0]) < 1e-3, "%s: variance %g, not %g", FILTER_CASES[_i].name,
                       second, moments[1] / moments[0]);
     }
-    ck_assert_double_eq_tol((double)f.scene.frame.filter.weight, weight_of_all, 1e-4);
+    ck_assert_double_eq_tol((double)f.scene.frame.film.filter.weight, weight_of_all, 1e-4);
     fixture_destroy(&f);
 }
 END_TEST
@@ -139,7 +139,7 @@ START_TEST(test_bad_settings)
         LightFixture f;
         Error error = {0};
         fixture_init(&f);
-        ck_assert(!filter_setup(&bad[i], &f.scene.lookup, &f.scene.frame.filter, &error));
+        ck_assert(!filter_setup(&bad[i], &f.scene.lookup, &f.scene.frame.film.filter, &error));
         ck_assert(error.message[0] != '\0' && error.fix[0] != '\0');
         fixture_destroy(&f);
     }

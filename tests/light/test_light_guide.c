@@ -20,7 +20,7 @@ static void guides_of(const char *text, Scene *scene)
 static void guide_require(const Scene *scene, uint i, Vec3 place, float near)
 {
     Vec3 guide = scene->guide.lights[i];
-    ck_assert_uint_lt(i, scene->frame.guide_count);
+    ck_assert_uint_lt(i, scene->frame.scene.guide_count);
     ck_assert_msg(vec3_length(vec3_sub(guide, place)) < 1e-4f, "guide %u is at (%g, %g, %g)", i, (double)guide.x,
                   (double)guide.y, (double)guide.z);
     ck_assert_float_eq(scene->guide.lights_near[i], near);
@@ -38,7 +38,7 @@ START_TEST(test_shapes)
                    "\"integer indices\" [0 1 2 3 4 5] AttributeEnd "
                    "AttributeBegin Translate 5 6 7 " LAMP("100 100 100") "AttributeEnd",
               &scene);
-    ck_assert_uint_eq(scene.frame.guide_count, 2);
+    ck_assert_uint_eq(scene.frame.scene.guide_count, 2);
     guide_require(&scene, 0, vec3(5.0f, 6.0f, 7.0f), 1.0f);
     guide_require(&scene, 1, vec3(0.75f * 1.5f + 0.25f * 0.5f, 1.0f, 1.0f), 1.0f);
     double sphere = 100.0 * 4.0 * M_PI * 0.01, mesh = 4.0;
@@ -54,7 +54,7 @@ START_TEST(test_none)
     guides_of(HEAD "LightSource \"point\" \"point3 from\" [1 2 3] LightSource \"infinite\" \"rgb L\" [1 1 1] "
                    "LightSource \"distant\" Shape \"sphere\"",
               &scene);
-    ck_assert_uint_eq(scene.frame.guide_count, 0);
+    ck_assert_uint_eq(scene.frame.scene.guide_count, 0);
     const Random4 random = {{1, 2, 3, 4}};
     const SceneView view = {.frame = &scene.frame, .guide = &scene.guide};
     Random4 same =
@@ -74,7 +74,7 @@ START_TEST(test_strongest)
                  "AttributeBegin Translate %d 0 0 " LAMP("%d 1 1") "AttributeEnd ", i, 1 + 7 * i % LIGHTS);
     Scene scene;
     guides_of(text, &scene);
-    ck_assert_uint_eq(scene.frame.guide_count, LIGHT_GUIDES_MAX);
+    ck_assert_uint_eq(scene.frame.scene.guide_count, LIGHT_GUIDES_MAX);
     for (uint i = 0; i < LIGHT_GUIDES_MAX; ++i)
         for (int k = 0; k < LIGHTS; ++k)
             if (7 * k % LIGHTS == LIGHTS - 1 - (int)i)
@@ -90,7 +90,7 @@ START_TEST(test_sun)
     char path[4096];
     snprintf(path, sizeof path, "%s/scenes/windows.pbrt", test_source_folder());
     fixture_scene(&(RenderSetup){.path = path}, &scene);
-    ck_assert_uint_eq(scene.frame.guide_count, 1);
+    ck_assert_uint_eq(scene.frame.scene.guide_count, 1);
     ck_assert_float_eq(scene.guide.lights_near[0], 0.0f);
     Vec3 sun = scene.guide.lights[0];
     ck_assert_float_eq_tol(vec3_length(sun), 1.0f, 1e-5f);
@@ -103,14 +103,14 @@ END_TEST
 /* ---- directions -------------------------------------------------------------------------------------------------- */
 
 /* Two guides with a position and one with a direction. */
-static const FrameParams THREE = {.guide_count = 3};
+static const FrameParams THREE = {.scene.guide_count = 3};
 static const Guide THREE_GUIDE = {.lights = {{0.0f, 3.0f, 0.0f}, {10.0f, 3.0f, 0.0f}, {0.0f, 0.0f, 1.0f}},
                                   .lights_near = {1.0f, 1.0f, 0.0f},
                                   .lights_power = {1.0f, 4.0f, 0.01f}};
 
 static Vec3 three_from(Vec3 p)
 {
-    return light_guide_from(THREE.guide_count, &THREE_GUIDE, p);
+    return light_guide_from(THREE.scene.guide_count, &THREE_GUIDE, p);
 }
 
 /* Selects the guide that is strongest at the point, whatever their order. */
@@ -174,16 +174,16 @@ START_TEST(test_users)
     const Integrator *const others[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt()};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         render_frame(others[i], &scene, &options, &frame);
-        ck_assert_uint_eq(frame.guide_count, 0);
+        ck_assert_uint_eq(frame.scene.guide_count, 0);
     }
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.guide_count, 1);
+    ck_assert_uint_eq(frame.scene.guide_count, 1);
     options.chains.unguided = true;
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.guide_count, 0);
+    ck_assert_uint_eq(frame.scene.guide_count, 0);
     options.chains = (ChainOptions){.paper = true};
     render_frame(integrator_mmlt(), &scene, &options, &frame);
-    ck_assert_uint_eq(frame.guide_count, 0);
+    ck_assert_uint_eq(frame.scene.guide_count, 0);
     scene_destroy(&scene);
 }
 END_TEST

@@ -7,7 +7,7 @@ START_TEST(test_powers)
 {
     LightFixture f;
     fixture_init(&f);
-    f.scene.frame.world_radius = 2.0f;
+    f.scene.frame.scene.world_radius = 2.0f;
     static const float square[12] = {0, 0, 0, 2, 0, 0, 0, 1, 0, 2, 1, 0};
     static const float texels[3 * 8] = {1, 1, 1, 1, 1, 1, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 1, 1, 1, 1, 1, 1};
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -3,7 +3,7 @@
  * no such device. */
 #include "math/test_math.h"
 
-#include "layout/scene_types.h"
+#include "layout/frame_params.h"
 #include "scene/distribution_build.h"
 #include "support/opencl_probe.h"
 
@@ -78,11 +78,11 @@ static bool layout_lists(const char *type)
     return false;
 }
 
-/* Every struct of layout/scene_types.h is listed in layout/struct_members.h. */
-START_TEST(test_layout_structs)
+/* Every struct of the header is listed in layout/struct_members.h; returns how many it has. */
+static int header_check(const char *header)
 {
     char path[4096], line[512], type[64];
-    snprintf(path, sizeof path, "%s/shared/layout/scene_types.h", test_source_folder());
+    snprintf(path, sizeof path, "%s/shared/layout/%s", test_source_folder(), header);
     FILE *file = fopen(path, "r");
     ck_assert_msg(file != NULL, "cannot read %s", path);
     int count = 0;
@@ -92,7 +92,13 @@ START_TEST(test_layout_structs)
             ++count;
         }
     fclose(file);
-    ck_assert_int_ge(count, 15);
+    return count;
+}
+
+START_TEST(test_layout_structs)
+{
+    ck_assert_int_ge(header_check("scene_types.h"), 15);
+    ck_assert_int_ge(header_check("frame_params.h"), 9);
 }
 END_TEST
 

@@ -25,19 +25,20 @@ typedef struct Toy {
 static void toy_begin(Toy *toy, uint mutations, float large_step, bool grouped)
 {
     memset(toy, 0, sizeof *toy);
-    toy->frame = (FrameParams){.max_depth = DEPTH,
-                               .width = 2,
-                               .height = 2,
-                               .crop_x1 = 2,
-                               .crop_y1 = 2,
-                               .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
-                               .mutations = mutations,
-                               .large_step = large_step,
-                               .group_mutations = grouped,
-                               .brightness = 1.0f,
-                               .seed_low = 99,
-                               .stride = STRIDE,
-                               .item_count = CHAINS};
+    toy->frame =
+        (FrameParams){.path.max_depth = DEPTH,
+                      .film.width = 2,
+                      .film.height = 2,
+                      .film.crop_x1 = 2,
+                      .film.crop_y1 = 2,
+                      .film.filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
+                      .chains.mutations = mutations,
+                      .chains.large_step = large_step,
+                      .chains.group_mutations = grouped,
+                      .chains.brightness = 1.0f,
+                      .pass.seed_low = 99,
+                      .pass.stride = STRIDE,
+                      .pass.item_count = CHAINS};
     importance_even(toy->guide.importance);
     toy->scene.frame = &toy->frame;
     toy->scene.guide = &toy->guide;
@@ -190,7 +191,7 @@ START_TEST(test_stationary)
     bool any_s = KERNELS[_i].large > 0.0f;
     memset(counts, 0, sizeof counts);
     toy_begin(&toy, KERNELS[_i].mutations, KERNELS[_i].large, KERNELS[_i].grouped);
-    toy.frame.shifts = KERNELS[_i].shifts;
+    toy.frame.chains.shifts = KERNELS[_i].shifts;
     double visits = 0.0;
     for (uint t = 0; t < CHAINS; ++t) {
         draw(&toy, t, any_s);
@@ -282,7 +283,7 @@ START_TEST(test_kinds)
 {
     const uint draws = 1u << 16, set = (uint)_i;
     uint kinds[MUTATION_COUNT] = {0}, scales[STEP_SCALES] = {0};
-    const FrameParams frame = {.mutations = set};
+    const FrameParams frame = {.chains.mutations = set};
     double whole = 0.0;
     for (uint i = 0; i < draws; ++i) {
         Random4 random = mutation_random(&frame, i, 3);
@@ -309,7 +310,7 @@ START_TEST(test_null_mutations)
     Toy toy;
     uint kind = _i == 1 ? MUTATION_LIGHT : MUTATION_CAMERA, before[WORDS], moved = 0;
     toy_begin(&toy, 1u << kind, 0.0f, false);
-    toy.frame.shifts = _i == 2 ? 0.5f : 0.0f;
+    toy.frame.chains.shifts = _i == 2 ? 0.5f : 0.0f;
     draw(&toy, 0, false);
     state_store_float(toy.paths, STRIDE, CHAIN_LUMINANCE, 0, 1.0f);
     for (uint i = 0; i < WORDS; ++i)
@@ -338,7 +339,7 @@ START_TEST(test_zero_never_accepted)
     Toy toy;
     uint before[WORDS];
     toy_begin(&toy, 7u, _i == 1 ? 0.5f : 0.0f, true);
-    toy.frame.shifts = _i == 2 ? 0.5f : 0.0f;
+    toy.frame.chains.shifts = _i == 2 ? 0.5f : 0.0f;
     draw(&toy, 0, false);
     for (uint i = CHAIN_NUMBERS; i < WORDS; ++i)
         before[i] = state_load(toy.paths, STRIDE, i, 0);
@@ -385,7 +386,7 @@ END_TEST
 /* State and densities of 524,288 chains of 10 segments: at most 185 MB (Frolov 2018, section 2). */
 START_TEST(test_memory)
 {
-    const FrameParams frame = {.max_depth = 10};
+    const FrameParams frame = {.path.max_depth = 10};
     ChainWords words = chain_words(&frame);
     double bytes = 524288.0 * sizeof(uint) * (words.state + words.densities);
     printf("state %u words, densities %u, in all %u: %.1f MB of state and densities\n", words.state, words.densities,

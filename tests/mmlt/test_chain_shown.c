@@ -29,18 +29,18 @@ static void shown_init(Shown *shown, unsigned seed)
     memset(shown, 0, sizeof *shown);
     shown->state = seed;
     fixture_init_filter(&shown->light, &triangle);
-    frame->width = WIDTH;
-    frame->height = 8;
-    frame->crop_x0 = X0;
-    frame->crop_x1 = X1;
-    frame->crop_y0 = Y0;
-    frame->crop_y1 = Y1;
-    frame->stride = 1;
-    frame->pool = 1;
-    frame->max_depth = 10;
-    frame->clamp_threshold = LIMIT;
-    frame->brightness = 1.7f;
-    frame->pool_lights_weight = LIGHTS_WEIGHT;
+    frame->film.width = WIDTH;
+    frame->film.height = 8;
+    frame->film.crop_x0 = X0;
+    frame->film.crop_x1 = X1;
+    frame->film.crop_y0 = Y0;
+    frame->film.crop_y1 = Y1;
+    frame->pass.stride = 1;
+    frame->pool.enabled = 1;
+    frame->path.max_depth = 10;
+    frame->partition.clamp_threshold = LIMIT;
+    frame->chains.brightness = 1.7f;
+    frame->pool.lights_weight = LIGHTS_WEIGHT;
     shown->light.view.guide = &shown->light.scene.guide;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
         shown->light.scene.guide.importance[i] = (float)exp2(2.0 * test_random_unit(&shown->state) - 1.0);
@@ -122,7 +122,7 @@ START_TEST(test_key)
         parts += part < 1.0;
     }
     ck_assert_uint_gt(parts, 2000);
-    shown.light.scene.frame.clamp_threshold = FLOAT_MAX;
+    shown.light.scene.frame.partition.clamp_threshold = FLOAT_MAX;
     ck_assert_uint_eq(chain_key_shown(&shown.light.view, chain_key(5, 2), vec2(3.0f, 3.0f), vec3_splat(1e30f), 0.0f),
                       chain_key(5, 2) | KEY_SHOWN_ALL << 16);
     fixture_destroy(&shown.light);
@@ -211,7 +211,7 @@ START_TEST(test_large)
     uint *paths = calloc(CHAIN_NUMBERS + 64, sizeof *paths), vertices[CHAIN_VERTEX_WORDS] = {0};
     ck_assert_ptr_nonnull(paths);
     shown_init(&shown, 4);
-    shown.light.scene.frame.large_step = 1.0f;
+    shown.light.scene.frame.chains.large_step = 1.0f;
     for (uint d = 3; d < 6; ++d) {
         uint counts[8] = {0};
         state_store(paths, 1, CHAIN_KEY, 0, chain_key(d, 1));
@@ -238,8 +238,8 @@ START_TEST(test_shifts)
     Shown shown;
     uint vertices[CHAIN_VERTEX_WORDS] = {0}, camera = 0, shifts = 0;
     shown_init(&shown, 9);
-    shown.light.scene.frame.mutations = 7;
-    shown.light.scene.frame.shifts = 0.5f;
+    shown.light.scene.frame.chains.mutations = 7;
+    shown.light.scene.frame.chains.shifts = 0.5f;
     state_store(shown.paths, 1, CHAIN_KEY, 0, chain_key(4, 2));
     state_store_float(shown.paths, 1, CHAIN_LUMINANCE, 0, 1.0f);
     for (uint i = 0; i < STEPS; ++i) {
@@ -274,13 +274,13 @@ START_TEST(test_environment)
         fixture_add_light(&shown.light, (Light){.kind = LIGHT_INFINITE, .emission = emission});
     }
     fixture_finish(&shown.light);
-    frame->strategies = STRATEGIES_BDPT;
-    frame->mis_exponent = 2;
-    frame->only_s = NONE;
+    frame->path.strategies = STRATEGIES_BDPT;
+    frame->path.mis_exponent = 2;
+    frame->path.only_s = NONE;
     for (size_t i = 0; i < sizeof densities / sizeof densities[0]; ++i)
         densities[i] = float_bits(octaves(&shown, 1.0));
     DensityView view = {.light = densities, .camera = densities, .stride = 1};
-    for (uint i = 0; i < frame->infinite_light_count; ++i) {
+    for (uint i = 0; i < frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], d, ng, &ends);
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, depth + 1, &view, &ends);
@@ -296,7 +296,7 @@ START_TEST(test_environment)
         Vec3 got = chain_environment(&shown.light.view, beta, view, d, ng, depth, ((float)k + 0.5f) / N, &path_tracing);
         bool one = false;
         TEST_NEAR(luminance_of(got) / all, 1.0, 1e-5);
-        for (uint i = 0; i < frame->infinite_light_count; ++i)
+        for (uint i = 0; i < frame->scene.infinite_light_count; ++i)
             one = one || (luminance_of(colors[i]) > 0.0 &&
                           fabsf(got.x / path_tracing / (colors[i].x / by_path_tracing[i]) - 1.0f) < 1e-4f &&
                           fabsf(got.z / path_tracing / (colors[i].z / by_path_tracing[i]) - 1.0f) < 1e-4f);
@@ -325,10 +325,10 @@ START_TEST(test_met_lamp)
     shown_init(&shown, 8);
     fixture_add_polygon(&shown.light, TRIANGLE, 3, NULL, 0, LIGHT_TWO_SIDED);
     fixture_finish(&shown.light);
-    frame->strategies = STRATEGIES_BDPT;
-    frame->mis_exponent = 2;
-    frame->only_s = NONE;
-    frame->clamp_threshold = 0.01f;
+    frame->path.strategies = STRATEGIES_BDPT;
+    frame->path.mis_exponent = 2;
+    frame->path.only_s = NONE;
+    frame->partition.clamp_threshold = 0.01f;
     for (uint delta = 0; delta < 2; ++delta) { /* delta == 1: z_2 scatters by a delta lobe */
         for (uint i = 0; i < D; ++i) {
             float own = octaves(&shown, 0.5), other = octaves(&shown, 0.5);
@@ -382,7 +382,7 @@ static void visits_set(Scene *scene)
         all += (cell_begin(column + 1, COLUMNS) - cell_begin(column, COLUMNS)) *
                (cell_begin(row + 1, ROWS) - cell_begin(row, ROWS)) * (cell_begin(column, COLUMNS) % 2 == 0 ? 1 : 3);
     }
-    scene->guide.visits[IMPORTANCE_CELLS] = scene->frame.pool_visits = all;
+    scene->guide.visits[IMPORTANCE_CELLS] = scene->frame.pool.visits = all;
 }
 
 /* Half of the columns are visited once, the others three times: the mean is two. */
@@ -468,14 +468,14 @@ START_TEST(test_start)
     frame->camera = (Camera){.kind = CAMERA_PERSPECTIVE, .screen = {-1.0f, 1.0f, -1.0f, 1.0f}};
     for (int k = 0; k < 3; ++k)
         frame->camera.world_from_camera.m[5 * k] = frame->camera.camera_from_world.m[5 * k] = 1.0f;
-    frame->pool_items = 8;
-    frame->pool_lights = 3;
-    frame->pool_lights_first = 6; /* items 6, 7 and 0 */
+    frame->pool.items = 8;
+    frame->pool.lights = 3;
+    frame->pool.lights_first = 6; /* items 6, 7 and 0 */
     for (uint item = 0; item < 8; ++item) {
         bool walk = item >= 6 || item < 1;
         uint pixel = 3 * WIDTH + 3 + item % 2;
         double sum[2] = {0.0}, squares[2] = {0.0}, radius[2] = {RADIUS_X, RADIUS_Y};
-        frame->first_item = item;
+        frame->pass.first_item = item;
         for (uint sample = 0; sample < SAMPLES; ++sample) {
             shown.paths[BD_PIXEL] = pixel;
             shown.paths[BD_SAMPLE] = sample;

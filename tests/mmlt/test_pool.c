@@ -24,8 +24,8 @@ struct Backend {
 static void pool_record(Backend *backend, const FrameParams *frame, const Guide *guide)
 {
     uint walks = 0;
-    for (uint first = 0; first < frame->item_count; first += CHUNK) {
-        uint before = walks, end = first + CHUNK < frame->item_count ? first + CHUNK : frame->item_count;
+    for (uint first = 0; first < frame->pass.item_count; first += CHUNK) {
+        uint before = walks, end = first + CHUNK < frame->pass.item_count ? first + CHUNK : frame->pass.item_count;
         for (uint item = first; item < end; ++item) {
             bool walk = pool_has_light(frame, item);
             uint pixel = pool_item_place(frame, guide, item).pixel;
@@ -36,18 +36,19 @@ static void pool_record(Backend *backend, const FrameParams *frame, const Guide 
         backend->begun += walks > before;
         ++backend->chunks;
     }
-    backend->whole += (frame->pool_lights + CHUNK - 1) / CHUNK;
-    backend->wrong += walks != frame->pool_lights;
+    backend->whole += (frame->pool.lights + CHUNK - 1) / CHUNK;
+    backend->wrong += walks != frame->pool.lights;
 }
 
 /* A separate splat for each path-tracing sample; the lower half of the image is a thousand times darker. */
 static void paths_record(const FrameParams *frame, const SplatSink *sink)
 {
     uint words[SPLAT_WORDS];
-    for (uint item = 0; item < frame->item_count; ++item) {
+    for (uint item = 0; item < frame->pass.item_count; ++item) {
         ItemPlace place = item_place(frame, item);
         Random4 random = random_four(place.pixel, place.sample, 1, 2, 3, 4);
-        float value = random_float(random.x[0]) * (place.pixel / frame->width < frame->height / 2 ? 1.0f : 1e-3f);
+        float value =
+            random_float(random.x[0]) * (place.pixel / frame->film.width < frame->film.height / 2 ? 1.0f : 1e-3f);
         words[SPLAT_PIXEL] = place.pixel | SPLAT_LIGHT;
         for (uint k = 0; k < 3; ++k)
             words[SPLAT_COLOR + k] = float_bits(value);
@@ -59,15 +60,15 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
                        const atomic_int *stop, uint64_t *items_done, Error *error)
 {
     (void)stop, (void)error;
-    if (frame->pool != 0) {
-        memset(list->pass_words, 0, (size_t)POOL_WORDS * frame->item_count * sizeof(uint));
+    if (frame->pool.enabled != 0) {
+        memset(list->pass_words, 0, (size_t)POOL_WORDS * frame->pass.item_count * sizeof(uint));
         if (!backend->pilot)
             pool_record(backend, frame, list->guide);
         backend->pilot = false;
     } else if (backend->bright) {
         paths_record(frame, sink);
     }
-    *items_done = frame->item_count;
+    *items_done = frame->pass.item_count;
     return true;
 }
 
@@ -83,19 +84,20 @@ static void generations_record(Backend *backend, int width, int height, uint poo
     ck_assert(film_light_reserve(&film, &error));
     static const Guide guide;
     const RenderOptions options = {.samples = 1, .max_depth = 4, .seed = seed, .chains = {.chains = 16, .pool = pool}};
-    RenderRun run = {.interface = &RECORD,
-                     .backend = backend,
-                     .options = &options,
-                     .film = &film,
-                     .guide = &guide,
-                     .crop_pixels = (uint64_t)width * (uint64_t)height,
-                     .frame = {.max_depth = 4,
-                               .width = (uint)width,
-                               .height = (uint)height,
-                               .crop_x1 = (uint)width,
-                               .crop_y1 = (uint)height,
-                               .filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
-                               .seed_low = (uint)seed}};
+    RenderRun run = {
+        .interface = &RECORD,
+        .backend = backend,
+        .options = &options,
+        .film = &film,
+        .guide = &guide,
+        .crop_pixels = (uint64_t)width * (uint64_t)height,
+        .frame = {.path.max_depth = 4,
+                  .film.width = (uint)width,
+                  .film.height = (uint)height,
+                  .film.crop_x1 = (uint)width,
+                  .film.crop_y1 = (uint)height,
+                  .film.filter = {.kind = PIXEL_FILTER_BOX, .radius_x = 0.5f, .radius_y = 0.5f, .weight = 1.0f},
+                  .pass.seed_low = (uint)seed}};
     ck_assert(mmlt_init(&mmlt, &run, &error));
     backend->pilot = true;
     for (uint i = 0; i < generations; ++i)

@@ -83,7 +83,7 @@ typedef struct Kept {
 static void kept_init(Kept *kept, uint shift)
 {
     memset(kept, 0, sizeof *kept);
-    kept->frame.stride = 1;
+    kept->frame.pass.stride = 1;
     kept->paths[CHAIN_MOVE] = SUBPATH_CAMERA << MOVE_CHANGED | shift << MOVE_SHIFT;
 }
 
@@ -210,12 +210,12 @@ START_TEST(test_kept_numbers)
     static Kept kept;
     unsigned state = 5;
     scene_init(&scene);
-    scene.frame.guide_count = (uint)_i;
+    scene.frame.scene.guide_count = (uint)_i;
     scene.guide.lights[0] = vec3(1.0f, 3.0f, -2.0f);
     scene.guide.lights_near[0] = scene.guide.lights_power[0] = 1.0f;
-    scene.frame.stride = 1;
-    scene.frame.max_depth = 5;
-    scene.frame.roulette_depth = 100;
+    scene.frame.pass.stride = 1;
+    scene.frame.path.max_depth = 5;
+    scene.frame.path.roulette_depth = 100;
     SceneView view = {.frame = &scene.frame, .guide = &scene.guide, .features = ~0u};
     Vertex vertex = {.p = vec3(0.5f, -0.25f, 1.0f), .beta = vec3_splat(1.0f), .back = 1.0f};
     vertex.ng = vec3_normalize(vec3(1.0f, 2.0f, 0.5f));

@@ -39,12 +39,12 @@ END_TEST
 /* The size of a path's state does not depend on its maximum length. */
 START_TEST(test_state_independent_of_depth)
 {
-    FrameParams frame = {.max_depth = 2};
+    FrameParams frame = {.path.max_depth = 2};
     StepList list;
     Error error = {0};
     uint words[2] = {0, 0};
     for (int i = 0; i < 2; ++i) {
-        frame.max_depth = i == 0 ? 2 : 60;
+        frame.path.max_depth = i == 0 ? 2 : 60;
         ck_assert(integrator_ibpt()->list(&frame, &list, &error));
         for (int id = 0; id < BUFFER_COUNT; ++id)
             words[i] += list.words_per_item[id];

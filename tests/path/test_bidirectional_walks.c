@@ -47,8 +47,8 @@ static void walks_open(Walks *walks, VerifyPair *pair, const BidirectionalScene 
     const RenderSetup setups[2] = {setup, setup};
     verify_pair_open(setups, pair);
     *walks = (Walks){.pair = pair, .frame = pair->frame};
-    walks->frame.item_count = ITEMS;
-    walks->frame.stride = ITEMS;
+    walks->frame.pass.item_count = ITEMS;
+    walks->frame.pass.stride = ITEMS;
     walks->packed = scene_backend_view(&pair->scene);
     walks->view = scene_view(&walks->frame, walks->packed.geometry, walks->packed.tables, walks->packed.texels);
     for (int id = BUFFER_PATHS; id < BUFFER_COUNT; ++id) {
@@ -240,7 +240,7 @@ static bool light_met(const Walks *walks, uint item, RealPath *path)
     path->ways[path->k] = vec3_negate(ray.d);
     if (path->infinite) {
         path->light = view->infinite_lights[0];
-        return walks->frame.infinite_light_count == 1;
+        return walks->frame.scene.infinite_light_count == 1;
     }
     path->end = surface_from_hit(view, &ray, hit);
     const Shape *shape = &view->shapes[path->end.shape];
@@ -309,7 +309,7 @@ static void weight_check(const Walks *walks, const char *name, uint item, uint s
 {
     RealPath path;
     const float plain = vec3_max_component(contribution[1]);
-    const uint set = walks->frame.strategies, exponent = walks->frame.mis_exponent;
+    const uint set = walks->frame.path.strategies, exponent = walks->frame.path.mis_exponent;
     if (!(plain > 0.0f) || !path_gather(walks, item, s, t, &path))
         return;
     TEST_TRUE(test_path_possible(&path.densities, set, s));
@@ -331,7 +331,7 @@ static void weight_check(const Walks *walks, const char *name, uint item, uint s
 static void connections_check(Walks *walks, const char *name, Tally *tally)
 {
     uint *paths = walks->words[BUFFER_PATHS], *shadows = walks->words[BUFFER_SHADOWS];
-    walks->frame.only_s = walks->frame.only_t = NONE;
+    walks->frame.path.only_s = walks->frame.path.only_t = NONE;
     walks_run(walks, walks->pair->list.count);
     for (uint item = 0; item < ITEMS; ++item)
         for (uint s = 1; s <= DEPTH; ++s)
@@ -339,7 +339,7 @@ static void connections_check(Walks *walks, const char *name, Tally *tally)
                 Vec3 contribution[2] = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
                 platform_item = item;
                 for (int i = 0; i < 2; ++i) {
-                    walks->frame.unweighted = i == 1;
+                    walks->frame.path.unweighted = i == 1;
                     state_store(paths, ITEMS, BD_S, item, s);
                     state_store(paths, ITEMS, BD_T, item, t);
                     state_store_float(shadows, ITEMS, RAY_T_MAX, item, 0.0f);
@@ -369,13 +369,13 @@ static void hits_check(Walks *walks, const char *name, Tally *tally)
     Vec3 met[ITEMS];
     for (uint k = 2; k <= DEPTH; ++k) {
         const size_t steps = steps_to_segment(&walks->pair->list, k);
-        walks->frame.only_s = 0;
-        walks->frame.only_t = k + 1;
-        walks->frame.unweighted = 0;
+        walks->frame.path.only_s = 0;
+        walks->frame.path.only_t = k + 1;
+        walks->frame.path.unweighted = 0;
         walks_run(walks, steps);
         for (uint item = 0; item < ITEMS; ++item)
             met[item] = state_load_vec3(walks->words[BUFFER_PATHS], ITEMS, BD_RADIANCE, item);
-        walks->frame.unweighted = 1;
+        walks->frame.path.unweighted = 1;
         walks_run(walks, steps);
         for (uint item = 0; item < ITEMS; ++item) {
             const Vec3 contribution[2] = {met[item],

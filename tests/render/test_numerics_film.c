@@ -287,8 +287,8 @@ END_TEST
 static void scene_spoil(Scene *scene, bool lamp, float value)
 {
     uint *words = scene->tables_words.data;
-    Material *materials = (Material *)(void *)(words + scene->frame.layout.materials);
-    Light *lights = (Light *)(void *)(words + scene->frame.layout.lights);
+    Material *materials = (Material *)(void *)(words + scene->frame.scene.layout.materials);
+    Light *lights = (Light *)(void *)(words + scene->frame.scene.layout.lights);
     for (size_t i = 0; i < scene->materials.count; ++i)
         if (!lamp && materials[i].kind == MATERIAL_DIELECTRIC)
             materials[i].eta = value;

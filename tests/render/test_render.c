@@ -57,12 +57,13 @@ START_TEST(test_visits)
     static const uint CROPS[][4] = {{0, 0, 1, 1}, {0, 0, 5, 90}, {3, 2, 36, 40}, {10, 0, 74, 64}, {1, 7, 200, 101}};
     static FrameParams frame;
     static Guide guide;
-    frame = (FrameParams){.width = 210, .height = 120, .sample_index = 7};
-    frame.crop_x0 = CROPS[_i][0];
-    frame.crop_y0 = CROPS[_i][1];
-    frame.crop_x1 = CROPS[_i][2];
-    frame.crop_y1 = CROPS[_i][3];
-    const uint width = frame.crop_x1 - frame.crop_x0, height = frame.crop_y1 - frame.crop_y0, pixels = width * height;
+    frame = (FrameParams){.film.width = 210, .film.height = 120, .pass.sample_index = 7};
+    frame.film.crop_x0 = CROPS[_i][0];
+    frame.film.crop_y0 = CROPS[_i][1];
+    frame.film.crop_x1 = CROPS[_i][2];
+    frame.film.crop_y1 = CROPS[_i][3];
+    const uint width = frame.film.crop_x1 - frame.film.crop_x0, height = frame.film.crop_y1 - frame.film.crop_y0,
+               pixels = width * height;
     for (uint i = 0, all = 0; i <= IMPORTANCE_CELLS; ++i) {
         guide.visits[i] = all;
         if (i < IMPORTANCE_CELLS) {
@@ -71,23 +72,24 @@ START_TEST(test_visits)
                    (cell_begin(y + 1, height) - cell_begin(y, height)) * (1 + i * 7 % VISITS_MOST);
         }
     }
-    const uint all = frame.pool_visits = guide.visits[IMPORTANCE_CELLS], room = 2 * VISITS_MOST;
-    frame.pixel_stride = pixel_order_stride_of(all);
-    frame.pixel_first = all / 3;
-    bool *seen = calloc((size_t)frame.width * frame.height * room, sizeof *seen);
-    uint *counts = calloc((size_t)frame.width * frame.height, sizeof *counts);
+    const uint all = frame.pool.visits = guide.visits[IMPORTANCE_CELLS], room = 2 * VISITS_MOST;
+    frame.pass.pixel_stride = pixel_order_stride_of(all);
+    frame.pass.pixel_first = all / 3;
+    bool *seen = calloc((size_t)frame.film.width * frame.film.height * room, sizeof *seen);
+    uint *counts = calloc((size_t)frame.film.width * frame.film.height, sizeof *counts);
     ck_assert(seen && counts);
     for (uint k = 0; k < all; ++k) {
         ItemPlace place = pool_item_place(&frame, &guide, k);
-        uint x = place.pixel % frame.width, y = place.pixel / frame.width;
-        ck_assert(x >= frame.crop_x0 && x < frame.crop_x1 && y >= frame.crop_y0 && y < frame.crop_y1);
+        uint x = place.pixel % frame.film.width, y = place.pixel / frame.film.width;
+        ck_assert(x >= frame.film.crop_x0 && x < frame.film.crop_x1 && y >= frame.film.crop_y0 &&
+                  y < frame.film.crop_y1);
         ck_assert(place.sample >= 7 && place.sample < 7 + room);
         bool *one = &seen[(size_t)place.pixel * room + place.sample - 7];
         ck_assert(!*one);
         *one = true;
         ++counts[place.pixel];
     }
-    for (uint i = 0; i < frame.width * frame.height; ++i)
+    for (uint i = 0; i < frame.film.width * frame.film.height; ++i)
         if (counts[i] > 0)
             ck_assert_float_eq_tol(pool_density_ratio(&frame, &guide, i) * (float)counts[i], (float)all / (float)pixels,
                                    1e-5f * (float)all / (float)pixels);

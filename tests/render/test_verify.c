@@ -88,7 +88,7 @@ END_TEST
 /* Every word of a path has exactly one name. */
 START_TEST(test_field_names)
 {
-    FrameParams frame = {.max_depth = 1};
+    FrameParams frame = {.path.max_depth = 1};
     Error error = {0};
     StepList list;
     uint named[PATH_WORDS] = {0};

@@ -31,7 +31,7 @@ static inline void fixture_init_filter(LightFixture *f, const FilterSettings *se
 {
     Error error = {0};
     fixture_init(f);
-    ck_assert_msg(filter_setup(settings, &f->scene.lookup, &f->scene.frame.filter, &error), "%s", error.message);
+    ck_assert_msg(filter_setup(settings, &f->scene.lookup, &f->scene.frame.film.filter, &error), "%s", error.message);
     f->view = (SceneView){.frame = &f->scene.frame, .lookup = f->scene.lookup.data};
 }
 

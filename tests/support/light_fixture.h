@@ -18,7 +18,7 @@ typedef struct LightFixture {
 static inline void fixture_init(LightFixture *f)
 {
     scene_init(&f->scene);
-    f->scene.frame.world_radius = 1.0f;
+    f->scene.frame.scene.world_radius = 1.0f;
 }
 
 static inline void fixture_destroy(LightFixture *f)
@@ -32,8 +32,8 @@ static inline void fixture_finish(LightFixture *f)
     Error error = {0};
     Scene *s = &f->scene;
     ck_assert_msg(light_setup(s, &error), "%s", error.message);
-    s->frame.light_count = (uint)s->lights.count;
-    s->frame.infinite_light_count = (uint)s->infinite_lights.count;
+    s->frame.scene.light_count = (uint)s->lights.count;
+    s->frame.scene.infinite_light_count = (uint)s->infinite_lights.count;
     f->view = (SceneView){.frame = &s->frame,
                           .guide = &s->guide,
                           .features = ~(uint)FEATURE_ALPHA,

@@ -44,7 +44,7 @@ typedef struct FaultSink {
 static void fault_sink(void *context, BufferId buffer, const uint *words, uint first, uint count, uint stride)
 {
     const FaultSink *faulty = context;
-    uint item = fault.item - faulty->frame->first_item;
+    uint item = fault.item - faulty->frame->pass.first_item;
     if (buffer == fault.buffer && item >= first && item < first + count)
         ((uint *)(uintptr_t)words)[(size_t)fault.field * stride + item - first] ^= 1u;
     faulty->sink(faulty->context, buffer, words, first, count, stride);
