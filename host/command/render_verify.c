@@ -3,6 +3,7 @@
 #include "backend/step_recorder.h"
 #include "base/log.h"
 #include "film/film.h"
+#include "chain/chain.h"
 #include "mmlt/mmlt.h"
 #include "render/verify.h"
 
@@ -40,14 +41,15 @@ static bool mmlt_verify(const BackendMember sides[2], RenderRun *run, uint64_t i
     Mmlt mmlt;
     bool whole = true, same = mmlt_init(&mmlt, run, error);
     uint count = items < CHAINS_COMPARED ? (uint)items : CHAINS_COMPARED;
-    same = same && list_verify(sides, "path tracing, ", &mmlt.paths_frame, &mmlt.paths, items, stop, error);
+    same = same && list_verify(sides, "path tracing, ", &mmlt.paths.frame, &mmlt.paths.own.list, items, stop, error);
     if (same && run->frame.path.max_depth >= CHAIN_DEPTH_MIN) {
         mmlt.options.pool = count;
         same = mmlt_pilot_run(&mmlt, count, &whole, error) && (!whole || mmlt_seeds_run(&mmlt, count, &whole, error));
-        FrameParams pool = mmlt_pool_frame(&mmlt, mmlt.pool.pass_stride), chains = mmlt_chain_frame(&mmlt);
-        same = same && (!whole || list_verify(sides, "a pool, ", &pool, &mmlt.pool, count, stop, error)) &&
-               (!whole || !(mmlt_population(&mmlt)->brightness > 0.0) ||
-                list_verify(sides, "chains, ", &chains, &mmlt.chains, count, stop, error));
+        FrameParams pool = pool_estimator_frame(&mmlt.pool, &mmlt.generation),
+                    chains = chains_estimator_frame(&mmlt.chains, &mmlt.generation, &mmlt.pool);
+        same = same && (!whole || list_verify(sides, "a pool, ", &pool, &mmlt.pool.own.list, count, stop, error)) &&
+               (!whole || !chains_estimator_alive(&mmlt.chains, &mmlt.generation) ||
+                list_verify(sides, "chains, ", &chains, &mmlt.chains.own.list, count, stop, error));
     }
     mmlt_destroy(&mmlt);
     return same;

@@ -1,8 +1,9 @@
-/* The output file of --dump-bad. */
+/* --dump-bad: chains that met a non-finite contribution, and the file for them. */
 #ifndef TWINLIGHT_MMLT_BAD_CHAINS_H
 #define TWINLIGHT_MMLT_BAD_CHAINS_H
 
 #include "base/output_file.h"
+#include "math/platform.h"
 
 #include <stdio.h>
 
@@ -17,5 +18,17 @@ bool bad_chains_end(BadChains *bad, Error *error);
 
 /* Discards a file that has not been ended; safe at any time after bad_chains_begin, and on zeroed memory. */
 void bad_chains_cancel(BadChains *bad);
+
+/* A finished pass of chains. */
+typedef struct BadChainsPass {
+    const uint *words; /* CHAIN_PASS_* (chain/chain.h), [fields][count] */
+    const uint *begun; /* the same before the pass */
+    uint count, fields;
+    unsigned long long seed;
+    uint generation, pool_sample, pool_pixel;
+} BadChainsPass;
+
+/* Writes what reproduces those of the pass, one JSON object per line. */
+void bad_chains_write(FILE *out, const BadChainsPass *pass);
 
 #endif

@@ -7,20 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cost of a sample of each estimator, in samples of path tracing, on the CPU backend. Constants, so that the image does
- * not depend on the machine; docs/TUNING.md. */
-static const double COSTS[ESTIMATOR_COUNT] = {1.2, 4.0, 1.0};
-
 /* Avoids division by zero in tiles without variance (black ones). */
 #define SPREAD_MIN 1e-30
-
-double combination_work(const double samples[ESTIMATOR_COUNT])
-{
-    double work = 0.0;
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        work += COSTS[s] * samples[s];
-    return work;
-}
 
 bool combination_init(Combination *combination, const Film *film, Error *error)
 {
@@ -111,8 +99,8 @@ static void weights_set(Combination *combination, CombinationTile *tile, const d
         tile->weight[ESTIMATOR_CHAINS] = (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
     } else {
-        double pool = COSTS[ESTIMATOR_POOL] * samples[ESTIMATOR_POOL];
-        double paths = FIRST_PATHS * COSTS[ESTIMATOR_PATHS] * samples[ESTIMATOR_PATHS];
+        double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
+        double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
         tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / (2.0 * pool + paths);
         tile->weight[ESTIMATOR_PATHS] = paths / (2.0 * pool + paths);
     }
@@ -171,7 +159,7 @@ static void films_join(Combination *combination, Film *const films[])
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         samples[s] = (double)films[s]->light_samples;
     bool known = combination_known(combination, samples);
-    double work = fmax(1.0, rint(combination_work(samples)));
+    double work = fmax(1.0, rint(estimators_work(samples)));
     /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
     uint64_t full = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
@@ -223,7 +211,7 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 static double step_variance(double pool_per_step)
 {
     const double root = POOL_PART / (1.0 - POOL_PART);
-    return 1.0 + root * root * COSTS[ESTIMATOR_CHAINS] / (COSTS[ESTIMATOR_POOL] * pool_per_step);
+    return 1.0 + root * root * estimator_cost(ESTIMATOR_CHAINS) / (estimator_cost(ESTIMATOR_POOL) * pool_per_step);
 }
 
 /* Variance of a step under a plan, relative to its variance with the pools so far. */
@@ -269,9 +257,9 @@ static double error_of(const Combination *combination, const double samples[ESTI
     return sum;
 }
 
-Plan combination_plan(const Combination *combination)
+StepRates combination_rates(const Combination *combination)
 {
-    Plan best = {0};
+    StepRates best = {0};
     double least = HUGE_VAL;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (!combination->ready[s])
@@ -281,12 +269,12 @@ Plan combination_plan(const Combination *combination)
             double samples[ESTIMATOR_COUNT] = {
                 [ESTIMATOR_CHAINS] = PLAN_PARTS - paths - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = paths};
             for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-                samples[s] /= COSTS[s];
+                samples[s] /= estimator_cost(s);
             double error = error_of(combination, samples);
             if (error < least) {
                 least = error;
-                best.paths_per_step = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS];
-                best.pool_per_step = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS];
+                best.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS];
+                best.pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS];
             }
         }
     return best;

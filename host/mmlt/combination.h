@@ -8,15 +8,11 @@
  * A bright path that a pool or path tracing finds by chance would be a firefly. Each shows a path only up to a clamping
  * threshold and leaves the rest to the chains, which have many more samples of such paths: the excess (of the pool) and
  * the rare light (of path tracing). Contribution depends on the density with which an estimator makes the path, so the
- * two rests differ. The same variances determine how time is divided (combination_plan). */
+ * two rests differ. The same variances determine how time is divided (combination_rates). */
 #ifndef TWINLIGHT_MMLT_COMBINATION_H
 #define TWINLIGHT_MMLT_COMBINATION_H
 
 #include "mmlt/combination_learn.h"
-
-/* The work of `samples` of each estimator, in samples of path tracing. Uses typical costs on the CPU backend, not
- * measured ones, so that the image does not depend on the machine. */
-double combination_work(const double samples[ESTIMATOR_COUNT]);
 
 /* Allocates for films of the crop size of `film`. Destroy it even on failure. */
 bool combination_init(Combination *combination, const Film *film, Error *error);
@@ -37,11 +33,11 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors);
 
 /* Samples of path tracing and of pools per step of a chain. */
-typedef struct Plan {
-    double paths_per_step, pool_per_step;
-} Plan;
+typedef struct StepRates {
+    double paths, pool;
+} StepRates;
 
-/* The plan of least relative error of the whole picture at equal time; zeros until variances are known. */
-Plan combination_plan(const Combination *combination);
+/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. */
+StepRates combination_rates(const Combination *combination);
 
 #endif

@@ -2,14 +2,12 @@
 #ifndef TWINLIGHT_MMLT_COMBINATION_LEARN_H
 #define TWINLIGHT_MMLT_COMBINATION_LEARN_H
 
-#include "film/film.h"
 #include "film/pixel_series.h"
+#include "mmlt/estimator.h"
 
 #include <stdatomic.h>
 
 #define TILE_SIDE 8 /* pixels a side */
-
-typedef enum Estimator { ESTIMATOR_CHAINS, ESTIMATOR_POOL, ESTIMATOR_PATHS, ESTIMATOR_COUNT } Estimator;
 
 /* Two more series of pictures, from chains: light that pools leave out, and light that path tracing leaves out. */
 #define SERIES_EXCESS ESTIMATOR_COUNT

@@ -57,6 +57,14 @@
 #define PAPER_POOL_PER_CHAIN 8u
 #define LARGE_STEP_DEFAULT 0.3
 
+/* ---- what samples cost ------------------------------------------------------------------------------------------ */
+
+/* A step of a chain, a sample of a pool and one of path tracing, in samples of path tracing, on the CPU backend.
+ * Constants, so that the image does not depend on the machine; docs/TUNING.md. */
+#define COST_CHAINS 1.2
+#define COST_POOL 4.0
+#define COST_PATHS 1.0
+
 /* ---- what a combination learns ---------------------------------------------------------------------------------- */
 
 /* Weight, in generations, of the prior for a tile's variance: the median over tiles of variance / light, times the

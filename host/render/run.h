@@ -15,7 +15,7 @@ typedef struct RenderRun {
     const Guide *guide; /* the scene's */
     Film *film;
     uint64_t crop_pixels;
-    uint64_t done; /* paths in the film; MMLT: its work (combination_work) */
+    uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */
     double start, last_save;
     bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;

@@ -150,7 +150,7 @@ START_TEST(test_absent)
 {
     Estimators estimators;
     const double pool[ESTIMATOR_COUNT] = {[ESTIMATOR_POOL] = 1.0}, paths[ESTIMATOR_COUNT] = {[ESTIMATOR_PATHS] = 2.0};
-    const double part = 0.25 * combination_work(paths);
+    const double part = 0.25 * estimators_work(paths);
     estimators_init(&estimators);
     for (int g = 0; g < 6; ++g) {
         estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
@@ -166,7 +166,7 @@ START_TEST(test_absent)
         if (g == _i)
             ck_assert_double_eq(weight[ESTIMATOR_PATHS], 0.0);
         else if (g < 2)
-            ck_assert_double_eq_tol(weight[ESTIMATOR_PATHS], part / (2.0 * combination_work(pool) + part), 1e-12);
+            ck_assert_double_eq_tol(weight[ESTIMATOR_PATHS], part / (2.0 * estimators_work(pool) + part), 1e-12);
         else if (g > 2)
             ck_assert_double_gt(weight[ESTIMATOR_PATHS], 0.0);
     }
@@ -261,20 +261,20 @@ START_TEST(test_plan)
 {
     Estimators estimators;
     estimators_init(&estimators);
-    ck_assert_double_eq(combination_plan(&estimators.combination).paths_per_step, 0.0);
+    ck_assert_double_eq(combination_rates(&estimators.combination).paths, 0.0);
     for (int g = 0; g < 20; ++g) {
         estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, _i == 0 ? 10.0 : 1.0);
         estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 10.0);
         estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, _i == 0 ? 1.0 : 10.0);
         generation(&estimators);
     }
-    Plan plan = combination_plan(&estimators.combination);
-    printf("plan: %.3f paths, %.3f samples of a pool for a step\n", plan.paths_per_step, plan.pool_per_step);
-    ck_assert_int_eq(plan.paths_per_step > 10.0, _i == 0);
+    StepRates rates = combination_rates(&estimators.combination);
+    printf("plan: %.3f paths, %.3f samples of a pool for a step\n", rates.paths, rates.pool);
+    ck_assert_int_eq(rates.paths > 10.0, _i == 0);
     if (_i == 1) {
-        double steps = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_CHAINS] = 1.0});
-        double pool = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_POOL] = plan.pool_per_step});
-        double paths = combination_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_PATHS] = plan.paths_per_step});
+        double steps = estimators_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_CHAINS] = 1.0});
+        double pool = estimators_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_POOL] = rates.pool});
+        double paths = estimators_work((double[ESTIMATOR_COUNT]){[ESTIMATOR_PATHS] = rates.paths});
         ck_assert_double_eq_tol(paths / (steps + pool + paths), 0.05, 1e-6);
         ck_assert_double_eq_tol(pool / (steps + pool), 0.45, 0.05);
     }

@@ -138,7 +138,7 @@ START_TEST(test_weights_known)
         others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
     ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
     double work = (double)pupil.film.light_samples / PIXELS;
-    TEST_NEAR(work * PIXELS, combination_work(samples), 1.0);
+    TEST_NEAR(work * PIXELS, estimators_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
         const CombinationTile *tile = &teacher.combination.known[combination_tile_of(&teacher.combination, i)];
         double w = 0.0, c = weight_search(tile, samples, false, 0.0);
@@ -230,11 +230,11 @@ START_TEST(test_plan_known)
     for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
         double one[ESTIMATOR_COUNT] = {0.0};
         one[s] = 1.0;
-        costs[s] = combination_work(one);
+        costs[s] = estimators_work(one);
     }
     for (int round = 0; round < ROUNDS; ++round) {
         double least = HUGE_VAL;
-        Plan best = {0};
+        StepRates best = {0};
         known_tell(&known, 4.0);
         for (int paths = 1; paths < 20; ++paths)
             for (int pool = 1; paths + pool < 20; ++pool) {
@@ -243,13 +243,13 @@ START_TEST(test_plan_known)
                 double error = picture_error(&known.combination, samples, costs);
                 if (error < least) {
                     least = error;
-                    best = (Plan){samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
-                                  samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
+                    best = (StepRates){samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
+                                       samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
                 }
             }
-        Plan plan = combination_plan(&known.combination);
-        TEST_NEAR(plan.paths_per_step, best.paths_per_step, 1e-9);
-        TEST_NEAR(plan.pool_per_step, best.pool_per_step, 1e-9);
+        StepRates rates = combination_rates(&known.combination);
+        TEST_NEAR(rates.paths, best.paths, 1e-9);
+        TEST_NEAR(rates.pool, best.pool, 1e-9);
     }
     known_destroy(&known);
 }

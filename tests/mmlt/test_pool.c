@@ -2,6 +2,7 @@
 #include "support/test_util.h"
 
 #include "base/sample_statistics.h"
+#include "chain/pool.h"
 #include "mmlt/mmlt.h"
 
 #include "math/rng.h"

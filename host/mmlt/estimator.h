@@ -1,0 +1,41 @@
+/* What the three estimators that share MMLT's image have in common: the Markov chains (mmlt/chains_estimator.h), the
+ * bootstrap pool that they start from (mmlt/pool_estimator.h) and path tracing (mmlt/paths_estimator.h). Each runs
+ * passes of its own list into a film of its own; a combination (mmlt/combination.h) makes one image of the films. */
+#ifndef TWINLIGHT_MMLT_ESTIMATOR_H
+#define TWINLIGHT_MMLT_ESTIMATOR_H
+
+#include "film/film.h"
+#include "render/run.h"
+
+/* Index of an estimator in what there is of each: samples, weights, variances. */
+typedef enum EstimatorKind { ESTIMATOR_CHAINS, ESTIMATOR_POOL, ESTIMATOR_PATHS, ESTIMATOR_COUNT } EstimatorKind;
+
+typedef struct Estimator {
+    StepList list;
+    /* What it shows of the generation under way. light_samples: its samples of paths that estimators share: steps of
+     * chains, pool samples, camera paths. */
+    Film film;
+} Estimator;
+
+/* Makes the film, like that of the image, which must have its quantum; with sums of splats with SPLAT_RARE if `rare`,
+ * and by depth if the image has those and `depths`. The list is left to the caller. Call estimator_destroy even on
+ * failure. */
+bool estimator_init(Estimator *estimator, const RenderRun *run, bool rare, bool depths, Error *error);
+void estimator_destroy(Estimator *estimator);
+
+/* Sets what passes whose splats go to the estimator's film know of it. */
+void estimator_film_params(const Estimator *estimator, FilmParams *params);
+
+/* Runs such a pass. parts: a stopped pass leaves the splats of the items that were finished. *delivered: receives their
+ * number, frame->pass.item_count unless stopped. */
+bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *frame, bool parts, uint64_t *delivered,
+                    Error *error);
+
+/* The cost of `samples` of each estimator, in samples of path tracing. Uses typical costs on the CPU backend, not
+ * measured ones, so that the image does not depend on the machine. */
+double estimators_work(const double samples[ESTIMATOR_COUNT]);
+
+/* The cost of one sample. */
+double estimator_cost(EstimatorKind kind);
+
+#endif

@@ -1,0 +1,68 @@
+#include "mmlt/paths_estimator.h"
+
+#include "base/timing.h"
+#include "camera/film_sum.h"
+#include "chain/chain.h"
+#include "mmlt/tuning.h"
+#include "render/integrator.h"
+
+bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool direct_only, const Guide *guide,
+                          Error *error)
+{
+    *paths = (PathsEstimator){.frame = run->frame};
+    paths->frame.path.strategies = integrator_pt()->strategies;
+    paths->frame.partition.split_direct = !direct_only;
+    if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
+        paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
+    if (!estimator_init(&paths->own, run, false, !direct_only, error))
+        return false;
+    estimator_film_params(&paths->own, &paths->frame.film);
+    bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);
+    paths->own.list.guide = guide;
+    return made;
+}
+
+void paths_estimator_destroy(PathsEstimator *paths)
+{
+    estimator_destroy(&paths->own);
+}
+
+bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, double more, bool *whole, Error *error)
+{
+    RenderRun *run = generation->run;
+    FrameParams *frame = &paths->frame;
+    double begin = timing_now();
+    paths->wanted += more;
+    uint64_t target = (uint64_t)paths->wanted, first = (uint64_t)generation->index + 1;
+    if (generation->index < 2 * REPLICAS && target < first)
+        target = first;
+    film_clear(&paths->own.film);
+    paths->delivered = 0;
+    frame->partition.clamp_threshold = generation->clamp_threshold;
+    uint64_t items = target > paths->done ? (target - paths->done) * run->crop_pixels : 0;
+    for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
+        uint64_t delivered, left = items - next;
+        frame->pass.sample_index = run->options->first_sample + (uint)(paths->done + next / run->crop_pixels);
+        frame->pass.first_item = (uint)(next % run->crop_pixels);
+        frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
+        if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
+            return false;
+        paths->delivered += delivered;
+        *whole = delivered == frame->pass.item_count;
+    }
+    paths->done = target > paths->done ? target : paths->done;
+    paths->own.film.light_samples = items;
+    run->chains.direct_seconds += timing_now() - begin;
+    return true;
+}
+
+void paths_estimator_alone(PathsEstimator *paths)
+{
+    Film *film = &paths->own.film;
+    for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
+        film->sums[i] =
+            film_sum_rounded((double)film_sum_shown(film->sums[i]) + (double)film_sum_shown(film->light_sums[i]));
+        film->light_sums[i] = 0;
+    }
+    film->light_samples = 0;
+}

@@ -1,0 +1,96 @@
+#include "mmlt/plan.h"
+
+#include "mmlt/tuning.h"
+
+#include <math.h>
+
+static double steps_of(const Plan *plan, uint chains)
+{
+    return (double)((uint64_t)chains * plan->options->steps);
+}
+
+/* The work of a chain in a generation, with its part of the pool and of path tracing. */
+static double chain_work(const Plan *plan)
+{
+    double steps = (double)plan->options->steps;
+    const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = steps,
+                                             [ESTIMATOR_POOL] = plan->scheme->renews ? steps * plan->rates.pool : 0.0,
+                                             [ESTIMATOR_PATHS] = steps * plan->rates.paths};
+    return estimators_work(samples);
+}
+
+/* How many chains the remaining work is enough for, rounded up. */
+static uint64_t chains_left(const Plan *plan)
+{
+    return (uint64_t)ceil((double)(plan->total - plan->done) / chain_work(plan));
+}
+
+/* Chains that go with one path tracing sample of every pixel, unless that exceeds WHOLE_SAMPLE_PART of the work so far:
+ * generations without path tracing show easy light badly. */
+static uint chains_of_sample(const Plan *plan)
+{
+    double whole = (double)plan->pixels / (plan->rates.paths * (double)plan->options->steps);
+    double most = WHOLE_SAMPLE_PART * (double)plan->done / chain_work(plan);
+    return plan->options->chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
+}
+
+void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples)
+{
+    *plan = (Plan){.options = options,
+                   .scheme = scheme,
+                   .pixels = pixels,
+                   .rates = {.pool = POOL_PER_STEP, .paths = options->chains_only ? PATHS_DIRECT : PATHS_FIRST},
+                   .total = samples > 0 ? pixels * samples : UINT64_MAX / 2,
+                   .timed = samples == 0,
+                   .chains = options->chains};
+    uint64_t left = chains_left(plan);
+    if (scheme->grows) {
+        left = (left + 1) / 2;
+        plan->chains = plan->chains < CHAINS_FIRST ? plan->chains : CHAINS_FIRST;
+    }
+    plan->chains = left < plan->chains ? (uint)left : plan->chains;
+}
+
+void plan_learn(Plan *plan, const Combination *combination)
+{
+    StepRates rates = combination_rates(combination);
+    if (rates.paths > 0.0)
+        plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
+}
+
+void plan_count(Plan *plan, uint64_t work)
+{
+    plan->last = work;
+    plan->done += work;
+}
+
+void plan_next(Plan *plan, uint index, double seconds, double elapsed)
+{
+    uint most = plan->options->chains, whole = chains_of_sample(plan), next = plan->chains;
+    bool grow = plan->timed ? 2.0 * seconds < GENERATION_PART * elapsed
+                            : 2.0 * (double)plan->last < GENERATION_PART * (double)plan->done;
+    if (!plan->scheme->grows || plan->done >= plan->total)
+        return;
+    if (index % 2 == 0) {
+        next = grow && next < most ? 2 * next : next;
+        next = next < whole ? whole : next;
+    }
+    next = next < most ? next : most;
+    uint64_t left = chains_left(plan);
+    plan->chains = left < next ? (uint)left : next;
+}
+
+uint plan_pool_samples(const Plan *plan, uint chains)
+{
+    double pixels = (double)plan->pixels, steps = steps_of(plan, chains),
+           whole = rint(plan->rates.pool * steps / pixels);
+    double wanted = whole >= 1.0 ? whole * pixels : plan->rates.pool * steps;
+    if (plan->options->pool)
+        wanted = (double)plan->options->pool;
+    return (uint)fmin(fmax(wanted, 1.0), 0x1p30);
+}
+
+double plan_paths_samples(const Plan *plan, uint chains)
+{
+    return plan->rates.paths * steps_of(plan, chains) / (double)plan->pixels;
+}

@@ -1,0 +1,43 @@
+/* What runs next, and for how long: the sizes of generations, and how many samples of the pool and of path tracing go
+ * with a step of a chain. */
+#ifndef TWINLIGHT_MMLT_PLAN_H
+#define TWINLIGHT_MMLT_PLAN_H
+
+#include "mmlt/combination.h"
+#include "mmlt/scheme.h"
+#include "render/job.h"
+
+typedef struct Plan {
+    const ChainOptions *options; /* complete: no zeros for defaults but `pool` */
+    const MmltScheme *scheme;
+    uint64_t pixels;
+    StepRates rates; /* at present */
+    uint64_t total; /* estimators_work that is wanted */
+    bool timed; /* `total` is no limit: the time is */
+    uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
+    uint chains; /* in the next generation */
+} Plan;
+
+/* Plans the first generation: few chains, for an early image, and at most half of the work. samples: per pixel; 0: no
+ * limit. options, scheme: must outlive the plan. */
+void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples);
+
+/* Adopts the best rates by what is known; no change until variances are. */
+void plan_learn(Plan *plan, const Combination *combination);
+
+/* Counts a generation's work. */
+void plan_count(Plan *plan, uint64_t work);
+
+/* Plans the size of generation `index`. Both of a pair, one for each replica, have the same. With a limit of work the
+ * sizes depend on that alone, so that the image does not depend on the clock. seconds: of the latest generation;
+ * elapsed: in all. */
+void plan_next(Plan *plan, uint index, double seconds, double elapsed);
+
+/* Samples of a pool for `chains` chains: --pool, else by the rates, rounded to whole samples per pixel if that gives at
+ * least one. */
+uint plan_pool_samples(const Plan *plan, uint chains);
+
+/* Samples of path tracing per pixel for `chains` chains. */
+double plan_paths_samples(const Plan *plan, uint chains);
+
+#endif
