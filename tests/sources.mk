@@ -28,6 +28,7 @@ check_PROGRAMS += \
 	tests/test_math \
 	tests/test_metrics \
 	tests/test_options \
+	tests/test_partition \
 	tests/test_platform_bits \
 	tests/test_pool \
 	tests/test_reference \
@@ -89,6 +90,8 @@ EXTRA_DIST += \
 	tests/mmlt/test_combination.h \
 	tests/geometry/test_bvh.h \
 	tests/mmlt/test_chain.h \
+	tests/mmlt/test_partition.h \
+	tests/mmlt/test_partition_state.h \
 	tests/light/test_emit.h \
 	tests/support/test_files.h \
 	tests/pbrt/test_import.h \
@@ -237,6 +240,10 @@ tests_test_opencl_SOURCES = tests/backend/test_opencl.c \
 	tests/backend/test_opencl_inspect.c \
 	tests/backend/test_opencl_pipeline.c \
 	tests/backend/test_opencl_program.c
+
+tests_test_partition_SOURCES = tests/mmlt/test_partition.c \
+	tests/mmlt/test_partition_kernels.c \
+	tests/mmlt/test_partition_replay.c
 
 tests_test_texture_SOURCES = tests/image/test_texture.c \
 	tests/image/test_texture_color.c \

@@ -75,7 +75,7 @@ static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const Sh
     if (!context->emits || context->shape.alpha == NONE)
         return true;
     const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
-    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f)
+    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f || op[1].code != TEXTURE_END)
         return true;
     return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)", "it emits no light",
                               "use a point light");

@@ -5,7 +5,8 @@
 #include "chain/mutation.h"
 #include "path/bd_weight.h"
 
-/* Stores the proposal's film position and, in its key, the part that path tracing shows. */
+/* Stores the proposal's film position and, in its key, the part that path tracing shows. color: its contribution, if
+ * what a light's alpha texture lets through is a factor of it (light_hit_alpha). */
 SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict paths, uint item, Vec2 film,
                                  Vec3 color, float path_tracing)
 {
@@ -63,7 +64,7 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
                 state_load(paths, stride, BD_CAMERA_DELTA, item));
     DensityView view = chain_density_view(frame, paths, densities, item, 0u, d + 1u);
     Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, item);
-    float path_tracing = 0.0f;
+    float path_tracing = 0.0f, alpha = 1.0f;
     if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
         float u = random_float(chain_select(frame, paths, item).x[0]);
         color = chain_environment(scene, beta, view, walk_hit->ray.d, walk_hit->from_ng, d, u, &path_tracing);
@@ -74,13 +75,14 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
             StrategyWeights weights = bd_weights(frame, 0u, d + 1u, &view, &ends);
             color = vec3_scale(color, weights.own);
             path_tracing = weights.path_tracing;
+            alpha = light_hit_alpha(scene, walk_hit->light, &walk_hit->surface);
         }
     }
     if (vec3_is_zero(color))
         return;
     Random4 film = chain_camera(frame, paths, item);
     state_store_vec3(paths, stride, BD_CONTRIBUTION, item, color);
-    chain_place(scene, paths, item, film_position(frame, film.x[0], film.x[1]), color, path_tracing);
+    chain_place(scene, paths, item, film_position(frame, film.x[0], film.x[1]), vec3_scale(color, alpha), path_tracing);
 }
 
 #endif

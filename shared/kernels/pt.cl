@@ -104,9 +104,9 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
 }
 
 /* s = 0: the camera's path hits a light of `radiance`, which light sampling would have found with density `pdf_other`
- * (0: never). */
+ * (0: never). alpha: light_hit_alpha, a factor of the path's contribution that this strategy has as a probability. */
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                  Vec3 radiance, float pdf_other)
+                                  Vec3 radiance, float pdf_other, float alpha)
 {
     uint stride = frame->pass.stride;
     float weight = 1.0f, balance = 1.0f;
@@ -117,7 +117,7 @@ SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global ui
     }
     Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), radiance);
     uint segments = state_load(paths, stride, PATH_DEPTH, item);
-    weight *= path_shown(frame, paths, item, segments, rgb_luminance(light) * balance);
+    weight *= path_shown(frame, paths, item, segments, rgb_luminance(light) * balance * alpha);
     path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight));
 }
 
@@ -131,7 +131,7 @@ SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint 
         float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
             pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-        path_add_met(scene->frame, paths, item, environment_light_radiance(scene, light, d), pdf_light);
+        path_add_met(scene->frame, paths, item, environment_light_radiance(scene, light, d), pdf_light, 1.0f);
     }
 }
 
@@ -147,7 +147,7 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
     if ((flags & PATH_FLAG_DELTA) == 0u)
         pdf_light = scene->lights[light].select_pdf *
                     light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, item), d, surface);
-    path_add_met(scene->frame, paths, item, radiance, pdf_light);
+    path_add_met(scene->frame, paths, item, radiance, pdf_light, light_hit_alpha(scene, light, surface));
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or have max_depth segments

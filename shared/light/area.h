@@ -243,16 +243,27 @@ SHARED_FUNCTION float area_light_pdf_from_area(float pdf_a, float distance2, flo
     return cosine != 0.0f && float_finite(pdf_w) ? pdf_w : 0.0f;
 }
 
-/* Opacity at a point: the probability with which a ray that hits it is kept (primitive_alpha_keeps). */
-SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *primitive, const AreaPoint *point)
+/* Opacity at the point p with texture coordinates uv: the probability with which a ray that hits it is kept
+ * (primitive_alpha_keeps). */
+SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec2 uv)
 {
     if (!SCENE_HAS(scene, FEATURE_ALPHA) || (primitive->shape_and_kind & PRIMITIVE_ALPHA_BIT) == 0u)
         return 1.0f;
     TexturePoint at;
-    at.p = point->p;
-    at.uv = point->uv;
+    at.p = p;
+    at.uv = uv;
     uint alpha = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].alpha;
     return float_clamp(texture_eval_float(scene, alpha, &at), 0.0f, 1.0f);
+}
+
+/* The same where a path has hit the light (p and uv are read). A hit happens with that probability and brings the whole
+ * emission; a point that is drawn brings that part of the emission. */
+SHARED_FUNCTION float light_hit_alpha(const SceneView *scene, uint light, const Surface *hit)
+{
+    if (!SCENE_HAS(scene, FEATURE_ALPHA))
+        return 1.0f;
+    Primitive primitive = scene->primitives[scene->lights[light].primitive];
+    return area_light_alpha(scene, &primitive, hit->p, hit->uv);
 }
 
 /* Draws a point by area, independently of any reference point. */
@@ -322,7 +333,7 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
     sample->infinite = 0u;
     if (!(sample->pdf_w > 0.0f && float_finite(sample->pdf_w)) || vec3_is_zero(sample->radiance))
         return false;
-    sample->radiance = vec3_scale(sample->radiance, area_light_alpha(scene, &primitive, &point));
+    sample->radiance = vec3_scale(sample->radiance, area_light_alpha(scene, &primitive, point.p, point.uv));
     return !vec3_is_zero(sample->radiance);
 }
 

@@ -47,7 +47,7 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
     emission->w = vec3_normalize(w);
     emission->cosine = vec3_dot(emission->ng, emission->w);
     emission->pdf_w = area_emit_pdf_w(source, emission->ng, emission->w);
-    emission->radiance = vec3_scale(source->emission, area_light_alpha(scene, &primitive, &point));
+    emission->radiance = vec3_scale(source->emission, area_light_alpha(scene, &primitive, point.p, point.uv));
     return emission->pdf_w > 0.0f && emission->pdf_p > 0.0f && float_finite(emission->pdf_p);
 }
 

@@ -8,7 +8,8 @@
  *
  * What a path carries depends on the estimator: in the pool it is f, the target of the chains (chain_target); in path
  * tracing it is its luminance over the sum of the densities of path tracing's own strategies, s = 0 and 1, times the
- * target importance. */
+ * target importance; what the alpha texture of its lamp lets through is a factor of that luminance, even where the
+ * lamp is hit with that probability (light_hit_alpha). */
 #ifndef TWINLIGHT_PATH_PARTITION_H
 #define TWINLIGHT_PATH_PARTITION_H
 

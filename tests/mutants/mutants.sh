@@ -189,15 +189,16 @@ make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log"
 # others.
 likely() {
     case $1 in
+    shared/kernels/*.cl | shared/path/bd_start.h) echo test_partition test_chain:shown test_layers ;;
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
-    shared/chain/mutation.h) echo test_chain:shown test_chain test_shift test_layers ;;
+    shared/chain/mutation.h) echo test_chain:shown test_partition test_chain test_shift test_layers ;;
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
-    shared/path/partition.h) echo test_chain:shown test_chain test_layers test_pool ;;
-    shared/chain/pool.h) echo test_chain:shown test_chain_population test_pool test_layers ;;
-    shared/chain/chain_light.h) echo test_chain:shown test_layers test_shift ;;
+    shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
+    shared/chain/pool.h) echo test_chain:shown test_partition test_chain_population test_pool test_layers ;;
+    shared/chain/chain_light.h) echo test_chain:shown test_partition test_layers test_shift ;;
     shared/light/emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
-    shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_bidirectional:walks test_analytic ;;
+    shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_partition test_bidirectional:walks test_analytic ;;
     shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
     host/*) echo test_combination test_pool test_layers ;;
