@@ -99,7 +99,8 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     Vec2 u = scatter_point(random), u_base = u;
     if (side == SIDE_CAMERA && scene->frame->scene.guide_count > 0u && bsdf_has_base(&vertex->bsdf))
         u_base = scatter_point(light_guide_numbers(scene, vertex->p, vertex->frame, random));
-    if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
+    BsdfDraw draw = {random_float(random.x[0]), u, u_base, transport};
+    if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, draw, &sample))
         return false;
     Vec3 wi = frame_to_world(vertex->frame, sample.wi);
     step->beta = vec3_mul(vertex->beta, sample.weight);
