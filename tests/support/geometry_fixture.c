@@ -269,7 +269,12 @@ Hit brute_force(const TestScene *test, const Ray *ray)
 bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v)
 {
     RayQuery query = ray_query(*ray);
-    return triangle_query(a, b, c, &query, t, u, v);
+    Hit hit = {0};
+    bool found = triangle_query(a, b, c, &query, &hit);
+    *t = hit.t;
+    *u = hit.u;
+    *v = hit.v;
+    return found;
 }
 
 bool hit_same(const Hit *a, const Hit *b)
