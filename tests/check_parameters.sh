@@ -4,8 +4,7 @@
 # in it that has 7 or fewer is a fault, too.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
-LARGE='batch_start chain_population_renew chain_seeds_choose device_memory_init exr_write flip_compute population_choose
-    render_film scene_add_quadric state_show'
+LARGE='chain_population_renew chain_seeds_choose population_choose'
 
 # Prints "file:line: name has N parameters" for every function of more than 7. A declaration begins in the first column
 # and its list of parameters ends before a `{` or `;`. Commas within inner parentheses, those of function pointers,

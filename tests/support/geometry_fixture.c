@@ -178,9 +178,8 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
     Error error = {0};
     double inverse[16];
     test_matrix_inverse(world_from_object, inverse);
-    ck_assert_msg(
-        scene_add_quadric(&test->scene, kind, quadric, world_from_object, inverse, shape_plain(0), NULL, 0, &error),
-        "%s", error.message);
+    const QuadricData data = {kind, quadric, world_from_object, inverse};
+    ck_assert_msg(scene_add_quadric(&test->scene, &data, shape_plain(0), NULL, 0, &error), "%s", error.message);
 }
 
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count)
