@@ -102,7 +102,9 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, item);
-    WalkHit walk_hit = walk_hit_make(scene, paths, rays, hits, vertices, item, vertex_base(frame, side, depth - 1u));
+    WalkHit walk_hit = {0};
+    walk_hit.before = vertex_base(frame, side, depth - 1u);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     Vec3 beta = state_load_vec3(paths, stride, BD_BETA, item);
     DensityView view = bd_density_view(frame, paths, densities, item);
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);

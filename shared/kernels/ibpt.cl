@@ -68,7 +68,8 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     KERNEL_SCENE(frame, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, item);
     /* The vertex overwrites the one before it. */
-    WalkHit walk_hit = walk_hit_make(scene, paths, rays, hits, vertices, item, 0u);
+    WalkHit walk_hit = {0};
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))

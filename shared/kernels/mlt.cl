@@ -226,7 +226,9 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), d = chain_key_depth(key), s = chain_key_s(key);
     uint bank = chain_bank(paths, stride, item, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
-    WalkHit walk_hit = walk_hit_make(scene, paths, rays, hits, vertices, item, base);
+    WalkHit walk_hit = {0};
+    walk_hit.before = base;
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), item, walk_hit.own);
     if (frame->chains.shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
         !shift_hit(frame, paths, vertices, item, depth, &walk_hit)) {

@@ -180,40 +180,38 @@ typedef struct WalkHit {
     float back; /* Vertex.back at the hit */
 } WalkHit;
 
-/* The hit of the ray under way. `before`: base of the vertex that the ray left. */
-SHARED_FUNCTION WalkHit walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
-                                      __global const uint *restrict rays, __global const uint *restrict hits,
-                                      __global const uint *restrict vertices, uint item, uint before)
+/* Fills *walk_hit, whose `before` is given, from the ray under way and its hit. */
+SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
+                                   __global const uint *restrict rays, __global const uint *restrict hits,
+                                   __global const uint *restrict vertices, uint item, WalkHit *walk_hit)
 {
-    uint stride = scene->frame->pass.stride;
+    uint stride = scene->frame->pass.stride, before = walk_hit->before;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, item);
     bool first = side == SIDE_CAMERA && depth == 1u;
     Hit hit = hit_load(hits, stride, item);
-    WalkHit walk_hit = {0};
-    walk_hit.before = before;
-    walk_hit.ray = ray_load(rays, stride, item);
-    walk_hit.missed = hit.primitive == NONE;
-    walk_hit.instance = hit.instance;
-    walk_hit.primitive = hit.primitive;
-    walk_hit.own = state_load_float(paths, stride, BD_PDF, item);
-    walk_hit.from_ng = first ? walk_hit.ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, item);
-    walk_hit.light = NONE;
-    if (walk_hit.missed)
-        return walk_hit;
-    walk_hit.surface = surface_from_hit(scene, &walk_hit.ray, hit);
-    walk_hit.from = first || (flags & WALK_PARALLEL) != 0u
-                        ? walk_hit.ray.o
-                        : state_load_vec3(vertices, stride, before + VERTEX_POINT, item);
-    walk_hit.distance2 = vec3_length_squared(vec3_sub(walk_hit.surface.p, walk_hit.from));
-    walk_hit.own =
-        walk_density(scene->frame, &walk_hit.ray, &walk_hit.surface, walk_hit.distance2, first, flags, walk_hit.own);
+    walk_hit->ray = ray_load(rays, stride, item);
+    walk_hit->missed = hit.primitive == NONE;
+    walk_hit->instance = hit.instance;
+    walk_hit->primitive = hit.primitive;
+    walk_hit->own = state_load_float(paths, stride, BD_PDF, item);
+    walk_hit->from_ng = first ? walk_hit->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, item);
+    walk_hit->light = NONE;
+    if (walk_hit->missed)
+        return;
+    walk_hit->surface = surface_from_hit(scene, &walk_hit->ray, hit);
+    walk_hit->from = first || (flags & WALK_PARALLEL) != 0u
+                         ? walk_hit->ray.o
+                         : state_load_vec3(vertices, stride, before + VERTEX_POINT, item);
+    walk_hit->distance2 = vec3_length_squared(vec3_sub(walk_hit->surface.p, walk_hit->from));
+    walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, first, flags,
+                                 walk_hit->own);
     uint emitter_flags = side == SIDE_LIGHT && depth == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
-    walk_hit.back = first ? 1.0f : walk_back_stored(vertices, stride, item, before, walk_hit.surface.p, emitter_flags);
-    uint first_light = scene->shapes[walk_hit.surface.shape].first_light;
+    walk_hit->back =
+        first ? 1.0f : walk_back_stored(vertices, stride, item, before, walk_hit->surface.p, emitter_flags);
+    uint first_light = scene->shapes[walk_hit->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
-        walk_hit.light = first_light + hit.primitive - scene->shapes[walk_hit.surface.shape].first_primitive;
-    return walk_hit;
+        walk_hit->light = first_light + hit.primitive - scene->shapes[walk_hit->surface.shape].first_primitive;
 }
 
 /* Makes the vertex at the hit. False, and the walk is to end, if the vertex scatters nothing, or if it is the camera's
