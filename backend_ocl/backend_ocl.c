@@ -98,8 +98,9 @@ static bool scene_build(Backend *backend, const BackendScene *scene, const Backe
     if (!bvh_build(scene, &bvh, error))
         return false;
     backend->build_seconds = bvh.build_seconds;
-    bool done = device_memory_init(&backend->memory, backend->context, backend->compute, &backend->device, scene, &bvh,
-                                   options->batch, error);
+    bool done =
+        device_memory_init(&backend->memory, backend->context, backend->compute, &backend->device, scene, &bvh, error);
+    backend->memory.batch_wanted = options->batch;
     bvh_destroy(&bvh);
     return done;
 }
@@ -175,10 +176,8 @@ static Batch *batch_prepare(Backend *backend, int slot, const FrameParams *frame
     return batch;
 }
 
-static bool batch_start(Backend *backend, int slot, const FrameParams *frame, const StepList *list, uint first,
-                        uint count, bool *dropped, Error *error)
+static bool batch_start(Backend *backend, int slot, Batch *batch, const StepList *list, bool *dropped, Error *error)
 {
-    Batch *batch = batch_prepare(backend, slot, frame, first, count);
     if (!batch_launch(&backend->launcher, batch, list, dropped, error))
         return false;
     if (!*dropped)
@@ -204,7 +203,9 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
         uint left = frame->pass.item_count - first, count = left < batch ? left : batch;
         int slot = (int)(backend->next_batch % (uint64_t)backend->slots);
         adders_wait(backend->adders, slot);
-        if (device_failed(backend, error) || !batch_start(backend, slot, frame, list, first, count, dropped, error))
+        if (device_failed(backend, error))
+            return false;
+        if (!batch_start(backend, slot, batch_prepare(backend, slot, frame, first, count), list, dropped, error))
             return false;
         if (backend->slots == 1)
             adders_wait(backend->adders, slot);

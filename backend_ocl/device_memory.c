@@ -90,13 +90,12 @@ static bool scene_copy(DeviceMemory *memory, int i, const uint *words, size_t by
 }
 
 bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_queue queue, const OclDevice *device,
-                        const BackendScene *scene, const Bvh *bvh, uint batch, Error *error)
+                        const BackendScene *scene, const Bvh *bvh, Error *error)
 {
     memset(memory, 0, sizeof *memory);
     memory->context = context;
     memory->queue = queue;
     memory->device = device;
-    memory->batch_wanted = batch;
     const uint *words[SCENE_BUFFER_COUNT] = {scene->geometry, scene->tables, scene->texels, bvh->words};
     const size_t bytes[SCENE_BUFFER_COUNT] = {scene->geometry_words * sizeof(uint), scene->tables_words * sizeof(uint),
                                               scene->texel_words * sizeof(uint), bvh->word_count * sizeof(uint)};

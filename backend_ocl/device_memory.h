@@ -38,7 +38,7 @@ typedef struct DeviceMemory {
     cl_mem film; /* sums of the film, if the device adds splats (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* for which the state was allocated */
     uint batch; /* items per batch; 0: no state yet */
-    uint batch_wanted; /* --batch; 0: chosen automatically */
+    uint batch_wanted; /* --batch, set by the owner; 0: chosen automatically */
     size_t scene_bytes, film_bytes, bytes;
 } DeviceMemory;
 
@@ -46,9 +46,9 @@ typedef struct DeviceMemory {
  * cache conflicts between the fields of an item if `count` is a power of two. */
 uint device_memory_stride(uint count);
 
-/* Copies the scene to the device. `batch`: items per batch, 0: chosen automatically. */
+/* Copies the scene to the device. */
 bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_queue queue, const OclDevice *device,
-                        const BackendScene *scene, const Bvh *bvh, uint batch, Error *error);
+                        const BackendScene *scene, const Bvh *bvh, Error *error);
 
 /* Allocates state for this list, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);

@@ -30,21 +30,17 @@ static bool state_clear(Launcher *launcher, const Batch *batch, const StepList *
     return done;
 }
 
-static bool state_show(Launcher *launcher, const Batch *batch, const StepList *list, int id, uint first, StateSink sink,
-                       void *context, Error *error)
+/* *words: a copy of a buffer, to be freed also on failure. */
+static bool state_read(Launcher *launcher, const Batch *batch, const StepList *list, int id, uint **words, Error *error)
 {
     size_t bytes = state_bytes(batch, list, id);
-    uint *words = malloc(bytes);
-    if (!words)
+    *words = malloc(bytes);
+    if (!*words)
         return error_memory(error, bytes, "a copy of the device's state");
-    bool done = check(launcher,
-                      clEnqueueReadBuffer(launcher->compute, state_buffer(launcher, batch, id), CL_TRUE, 0, bytes,
-                                          words, 0, NULL, NULL),
-                      "reading state", error);
-    if (done)
-        sink(context, (BufferId)id, words, first, batch->frame.pass.item_count, batch->frame.pass.stride);
-    free(words);
-    return done;
+    return check(launcher,
+                 clEnqueueReadBuffer(launcher->compute, state_buffer(launcher, batch, id), CL_TRUE, 0, bytes, *words, 0,
+                                     NULL, NULL),
+                 "reading state", error);
 }
 
 bool inspect_batch(Launcher *launcher, Batch *batch, const StepList *list, uint first, StateSink sink, void *context,
@@ -56,7 +52,12 @@ bool inspect_batch(Launcher *launcher, Batch *batch, const StepList *list, uint 
     cl_int status = clFinish(launcher->copy);
     done = done && check(launcher, status, "computing", error);
     for (int id = BUFFER_PATHS; id < BUFFER_COUNT && done; ++id)
-        if (list->words_per_item[id] > 0)
-            done = state_show(launcher, batch, list, id, first, sink, context, error);
+        if (list->words_per_item[id] > 0) {
+            uint *words;
+            done = state_read(launcher, batch, list, id, &words, error);
+            if (done)
+                sink(context, (BufferId)id, words, first, batch->frame.pass.item_count, batch->frame.pass.stride);
+            free(words);
+        }
     return done;
 }

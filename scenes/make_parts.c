@@ -268,7 +268,7 @@ static bool sun_write(const char *folder, Error *error)
                 sun[3 * (y * SUN_SIDE + x) + c] = (float)(SUN_COLOR[c] * sun_part(x, y));
     ExrChannel channels[] = {{"R", sun, 3, true}, {"G", sun + 1, 3, true}, {"B", sun + 2, 3, true}};
     snprintf(path, sizeof path, "%s/parts/sun.exr", folder);
-    bool good = exr_write(path, channels, 3, SUN_SIDE, SUN_SIDE, NULL, NULL, 0, error);
+    bool good = exr_write(path, channels, 3, SUN_SIDE, SUN_SIDE, error);
     free(sun);
     return good;
 }

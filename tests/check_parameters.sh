@@ -4,12 +4,7 @@
 # in it that has 7 or fewer is a fault, too.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
-LARGE='batch_start bsdf_coated_diffuse_sample bsdf_conductor_sample bsdf_dielectric_sample bsdf_diffuse_sample
-    bsdf_diffuse_transmission_sample bsdf_sample_base bsdf_thin_dielectric_sample chain_add_small chain_connect
-    chain_environment chain_population_renew chain_seeds_choose chain_splat chain_walk_on device_memory_init exr_write
-    film_splat_axis flip_compute population_choose render_film reservoir_update scene_add_quadric shift_guide state_show
-    triangle_finish walk_back_stored walk_begin walk_density walk_hit_make walk_leave walk_leave_vertex walk_scatter
-    walk_start_light walk_vertex walk_vertex_make'
+LARGE='chain_population_renew chain_seeds_choose population_choose'
 
 # Prints "file:line: name has N parameters" for every function of more than 7. A declaration begins in the first column
 # and its list of parameters ends before a `{` or `;`. Commas within inner parentheses, those of function pointers,

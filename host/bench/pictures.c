@@ -57,8 +57,8 @@ static bool flip_store(const Pictures *pictures, int id, const Rendering *image,
     float *map = shown + 6 * pixels;
     display_linear(image->rgb, 3 * pixels, display->exposure, shown);
     display_linear(reference->rgb, 3 * pixels, display->exposure, shown + 3 * pixels);
-    bool good = flip_compute(shown, shown + 3 * pixels, image->width, image->height, display->pixels_per_degree, map,
-                             &mean, error);
+    const float *const both[2] = {shown, shown + 3 * pixels};
+    bool good = flip_compute(both, image->width, image->height, display->pixels_per_degree, map, &mean, error);
     for (size_t i = 0; i < pixels && good; ++i)
         magnitude_color(map[i], rgb + 3 * i);
     free(shown);

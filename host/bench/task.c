@@ -114,8 +114,14 @@ static bool image_write(const char *path, const float *rgb, const BenchScene *sc
     const ExrAttribute attributes[] = {exr_text("integrator", task->integrator->name),
                                        exr_text("scene", path_file_name(scene->path)), exr_whole("seed", task->seed)};
     const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
-    return exr_write(path, channels, 3, scene->width, scene->height, NULL, attributes,
-                     sizeof attributes / sizeof attributes[0], error);
+    const ExrPicture picture = {.channels = channels,
+                                .channel_count = 3,
+                                .width = scene->width,
+                                .height = scene->height,
+                                .crop = {0, 0, scene->width, scene->height},
+                                .attributes = attributes,
+                                .attribute_count = sizeof attributes / sizeof attributes[0]};
+    return exr_write_picture(path, &picture, error);
 }
 
 static bool film_write(const BenchWorkshop *shop, const BenchTask *task, const Film *film, const char *path,
@@ -153,8 +159,12 @@ static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *
     progress.last_shown = HUGE_VAL; /* without a terminal, one line per rendering is enough */
     const Counters before = counters_read(shop);
     bool good = film_init(&film, settings->width, settings->height, settings->crop, error) &&
-                render_film(task->integrator, &shop->data, shop->backend.interface, shop->backend.backend, &options,
-                            false, &callbacks, &film, &result, error);
+                render_film(&(RenderTask){.integrator = task->integrator,
+                                          .scene = &shop->data,
+                                          .backend = shop->backend,
+                                          .options = &options,
+                                          .callbacks = &callbacks},
+                            &film, &result, error);
     progress_end(&progress);
     *finished = good && !result.stopped;
     if (*finished) {

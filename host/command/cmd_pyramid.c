@@ -80,8 +80,8 @@ static bool strategy_render(const RenderCommand *command, const Scene *scene, co
     RenderResult result;
     if (!film_init(&film, settings->width, settings->height, settings->crop, error))
         return false;
-    bool done = render_film(integrator_bdpt(), scene, backend->interface, backend->backend, &options, false, NULL,
-                            &film, &result, error);
+    const RenderTask task = {.integrator = integrator_bdpt(), .scene = scene, .backend = *backend, .options = &options};
+    bool done = render_film(&task, &film, &result, error);
     if (done)
         film_resolve(&film, settings->film_scale, rgb);
     film_destroy(&film);

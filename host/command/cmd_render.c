@@ -203,13 +203,17 @@ static bool film_render(RenderJob *job, Error *error)
     const SceneSettings *settings = &job->scene.settings;
     RenderOptions options = job_options(job);
     RenderCallbacks callbacks = {job_progress, job_save, job};
+    const RenderTask task = {.integrator = job->integrator,
+                             .scene = &job->scene,
+                             .backend = job->backend,
+                             .options = &options,
+                             .callbacks = &callbacks};
     progress_init(&job->progress, stderr, command->quiet);
     job->output.writing = job_writing;
     job->output.writing_context = job;
     bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
                     render_output_reserve(&job->output, settings->crop, error) &&
-                    render_film(job->integrator, &job->scene, job->backend.interface, job->backend.backend, &options,
-                                false, &callbacks, &job->film, &job->result, error);
+                    render_film(&task, &job->film, &job->result, error);
     progress_end(&job->progress);
     return rendered;
 }

@@ -21,9 +21,9 @@ bool display_error_compute(const float *image, const float *reference, int width
         return error_memory(error, 2 * values * sizeof *shown, "tone-mapped pictures");
     display_linear(image, values, settings->exposure, shown);
     display_linear(reference, values, settings->exposure, shown + values);
-    bool good =
-        flip_compute(shown, shown + values, width, height, settings->pixels_per_degree, NULL, &result->flip, error) &&
-        ssim_compute(shown, shown + values, width, height, &result->ssim, error);
+    const float *const both[2] = {shown, shown + values};
+    bool good = flip_compute(both, width, height, settings->pixels_per_degree, NULL, &result->flip, error) &&
+                ssim_compute(shown, shown + values, width, height, &result->ssim, error);
     free(shown);
     return good;
 }

@@ -35,10 +35,11 @@ bool display_error_compute(const float *image, const float *reference, int width
 void display_linear(const float *in, size_t count, double exposure_stops, float *out);
 
 /* *mean = mean over all pixels of LDR-FLIP (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP:
- * A Difference Evaluator for Alternating Images", 2020), from 0 (equal) to 1. `map`: one value per pixel; may be NULL.
- * 1 <= pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MAX. Fails when out of memory. */
-bool flip_compute(const float *image, const float *reference, int width, int height, double pixels_per_degree,
-                  float *map, double *mean, Error *error);
+ * A Difference Evaluator for Alternating Images", 2020), from 0 (equal) to 1. shown: an image and its reference.
+ * `map`: one value per pixel; may be NULL. 1 <= pixels_per_degree <= FLIP_PIXELS_PER_DEGREE_MAX. Fails when out of
+ * memory. */
+bool flip_compute(const float *const shown[2], int width, int height, double pixels_per_degree, float *map,
+                  double *mean, Error *error);
 
 /* *mean = mean structural similarity (Wang, Bovik, Sheikh and Simoncelli, "Image Quality Assessment: From Error
  * Visibility to Structural Similarity", 2004), 1 for equal images: window 11 x 11, Gaussian of sigma 1.5, K1 = 0.01,

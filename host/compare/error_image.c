@@ -80,7 +80,7 @@ static bool exr_error_write(const char *path, const float *image, const float *r
                                    {"G", difference + 1, 3, false},
                                    {"B", difference + 2, 3, false},
                                    {"relative.Y", relative, 1, false}};
-    bool good = exr_write(path, channels, 4, width, height, NULL, NULL, 0, error);
+    bool good = exr_write(path, channels, 4, width, height, error);
     free(difference);
     return good;
 }

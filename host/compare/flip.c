@@ -237,8 +237,8 @@ static void images_lay_out(FlipImage images[2], int width, int height, double *m
         images[0].scratch[p] = images[1].scratch[p] = memory;
 }
 
-bool flip_compute(const float *image, const float *reference, int width, int height, double pixels_per_degree,
-                  float *map, double *mean, Error *error)
+bool flip_compute(const float *const shown[2], int width, int height, double pixels_per_degree, float *map,
+                  double *mean, Error *error)
 {
     size_t pixels = (size_t)width * (size_t)height, planes = 2 * KEPT_PLANES + SCRATCH_PLANES;
     double *memory = malloc(planes * pixels * sizeof *memory), largest = color_distance_max(), sum = 0.0;
@@ -247,7 +247,7 @@ bool flip_compute(const float *image, const float *reference, int width, int hei
     FlipImage images[2];
     images_lay_out(images, width, height, memory);
     for (int i = 0; i < 2; ++i) {
-        colors_fill(&images[i], i == 0 ? image : reference, pixels_per_degree);
+        colors_fill(&images[i], shown[i], pixels_per_degree);
         features_fill(&images[i], pixels_per_degree);
     }
     for (size_t i = 0; i < pixels; ++i) {

@@ -289,16 +289,12 @@ bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error
     return good;
 }
 
-bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
-               const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error)
+bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height, Error *error)
 {
-    const int whole[4] = {0, 0, width, height};
-    ExrPicture picture = {.channels = channels,
-                          .channel_count = channel_count,
-                          .width = width,
-                          .height = height,
-                          .attributes = attributes,
-                          .attribute_count = attribute_count};
-    memcpy(picture.crop, crop ? crop : whole, sizeof picture.crop);
+    const ExrPicture picture = {.channels = channels,
+                                .channel_count = channel_count,
+                                .width = width,
+                                .height = height,
+                                .crop = {0, 0, width, height}};
     return exr_write_picture(path, &picture, error);
 }

@@ -56,14 +56,13 @@ typedef struct ExrPicture {
     float *plane; /* scratch of channel_count x EXR_BAND_ROWS rows of the data window; NULL: allocated */
 } ExrPicture;
 
-/* Writes an image like exr_write, optionally band by band. */
+/* Writes the pixels crop[0] <= x < crop[2], crop[1] <= y < crop[3] of a width x height image: scanlines, ZIP
+ * compression, channels sorted by name as the format requires, chromaticities of sRGB, linear values. Nothing in the
+ * file depends on time or machine. The file is written beside `path` and renamed when complete. Fails, naming the path,
+ * if it cannot be written or a channel name occurs twice. */
 bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error);
 
-/* Writes the pixels crop[0] <= x < crop[2], crop[1] <= y < crop[3] (NULL: all) of a width x height image (the display
- * window): scanlines, ZIP compression, channels sorted by name as the format requires, chromaticities of sRGB, linear
- * values. Nothing in the file depends on time or machine. The file is written beside `path` and renamed when complete.
- * Fails, naming the path, if it cannot be written or a channel name occurs twice. */
-bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height,
-               const int crop[4], const ExrAttribute *attributes, size_t attribute_count, Error *error);
+/* exr_write_picture of all pixels of an image without attributes. */
+bool exr_write(const char *path, const ExrChannel *channels, size_t channel_count, int width, int height, Error *error);
 
 #endif

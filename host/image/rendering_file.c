@@ -53,7 +53,7 @@ bool rendering_mean_write(const char *path, float *const halves[2], int width, i
         {"R", mean, 3, !layers},  {"G", mean + 1, 3, !layers},  {"B", mean + 2, 3, !layers},
         {"halfA.R", a, 3, false}, {"halfA.G", a + 1, 3, false}, {"halfA.B", a + 2, 3, false},
         {"halfB.R", b, 3, false}, {"halfB.G", b + 1, 3, false}, {"halfB.B", b + 2, 3, false}};
-    bool good = exr_write(path, channels, layers ? 9 : 3, width, height, NULL, NULL, 0, error);
+    bool good = exr_write(path, channels, layers ? 9 : 3, width, height, error);
     free(mean);
     return good;
 }

@@ -145,9 +145,10 @@ static bool quadric_emit(PbrtImport *im, uint kind, const Quadric *quadric, cons
                          Shape shape, const AreaEmission *emission)
 {
     size_t first_light = im->scene->lights.count;
+    const QuadricData data = {kind, *quadric, matrix->m, inverse->m};
     if (!quadric_fits(im, quadric, matrix) ||
-        !scene_add_quadric(im->scene, kind, *quadric, matrix->m, inverse->m, shape,
-                           emission ? emission->radiance : NULL, emission ? emission->flags : 0u, im->error))
+        !scene_add_quadric(im->scene, &data, shape, emission ? emission->radiance : NULL,
+                           emission ? emission->flags : 0u, im->error))
         return false;
     Box box = quadric_box(&ARRAY_AT(&im->scene->quadrics, Quadric, im->scene->quadrics.count - 1), kind);
     box_join(space_box(im), &box);

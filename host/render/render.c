@@ -132,14 +132,15 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
         frame->scene.guide_count = 0;
 }
 
-bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
-                 const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
-                 RenderResult *result, Error *error)
+bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error *error)
 {
-    RenderRun run = {.interface = interface,
-                     .backend = backend,
+    const Integrator *integrator = task->integrator;
+    const Scene *scene = task->scene;
+    const RenderOptions *options = task->options;
+    RenderRun run = {.interface = task->backend.interface,
+                     .backend = task->backend.backend,
                      .options = options,
-                     .callbacks = callbacks,
+                     .callbacks = task->callbacks,
                      .film = film,
                      .guide = &scene->guide};
     run.crop_pixels = film_pixels(film);
@@ -151,7 +152,7 @@ bool render_film(const Integrator *integrator, const Scene *scene, const Backend
     run.start = run.last_save = timing_now();
     RenderLayers *layers = options->layers;
     bool done =
-        (keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
+        (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
         (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.scene.world_radius, error)) &&
         (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);

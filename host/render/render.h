@@ -3,6 +3,7 @@
 #ifndef TWINLIGHT_RENDER_RENDER_H
 #define TWINLIGHT_RENDER_RENDER_H
 
+#include "backend/group.h"
 #include "render/chain_statistics.h"
 #include "render/integrator.h"
 #include "render/job.h"
@@ -23,15 +24,22 @@ typedef struct RenderResult {
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];
 } RenderResult;
 
+/* What to render, on what, and how. */
+typedef struct RenderTask {
+    const Integrator *integrator;
+    const Scene *scene; /* finished */
+    BackendMember backend; /* open on the scene */
+    const RenderOptions *options;
+    bool keep_quantum; /* of the film; otherwise a pilot (film_pilot_run) sets it */
+    const RenderCallbacks *callbacks; /* may be NULL */
+} RenderTask;
+
 /* Fills in *frame for the scene and the options, starting at the first item. max_depth is limited to what the
  * integrator supports. */
 void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame);
 
-/* Renders into `film`, which must be initialised with the scene's size and crop; its quantum is set by a pilot
- * (film_pilot_run) unless `keep_quantum`. callbacks: may be NULL. On failure the film holds what was finished, and
- * *result says how much that is. */
-bool render_film(const Integrator *integrator, const Scene *scene, const BackendInterface *interface, Backend *backend,
-                 const RenderOptions *options, bool keep_quantum, const RenderCallbacks *callbacks, Film *film,
-                 RenderResult *result, Error *error);
+/* Renders into `film`, which must be initialised with the scene's size and crop. On failure the film holds what was
+ * finished, and *result says how much that is. */
+bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error *error);
 
 #endif

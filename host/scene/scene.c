@@ -304,15 +304,15 @@ static double quadric_area(const Quadric *quadric, uint kind, int steps)
     return kind == PRIMITIVE_SPHERE ? sphere_area(quadric, steps) : disk_area(quadric);
 }
 
-bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double world_from_object[16],
-                       const double object_from_world[16], Shape shape, const float *emission, uint light_flags,
+bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const float *emission, uint light_flags,
                        Error *error)
 {
-    uint index;
+    uint index, kind = data->kind;
     MeshData no_vertices = {0};
-    quadric.world_from_object = matrix_affine(world_from_object);
-    quadric.object_from_world = matrix_affine(object_from_world);
-    double scale = similarity_scale(world_from_object);
+    Quadric quadric = data->quadric;
+    quadric.world_from_object = matrix_affine(data->world_from_object);
+    quadric.object_from_world = matrix_affine(data->object_from_world);
+    double scale = similarity_scale(data->world_from_object);
     bool full = kind == PRIMITIVE_SPHERE && quadric.z_min <= -quadric.radius && quadric.z_max >= quadric.radius &&
                 quadric.phi_max >= 6.2831850f;
     quadric.whole = full && scale > 0.0;

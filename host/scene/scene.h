@@ -114,10 +114,13 @@ bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float
 bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
-/* A sphere or disk (kind PRIMITIVE_SPHERE or PRIMITIVE_DISK). `world_from_object` and its inverse are 4x4, row-major.
- * The caller sets radius, inner_radius, z_min, z_max and phi_max of `quadric`; the rest is set here. */
-bool scene_add_quadric(Scene *scene, uint kind, Quadric quadric, const double world_from_object[16],
-                       const double object_from_world[16], Shape shape, const float *emission, uint light_flags,
+/* A sphere or disk; shape, emission and light_flags as above. */
+typedef struct QuadricData {
+    uint kind; /* PRIMITIVE_SPHERE or PRIMITIVE_DISK */
+    Quadric quadric; /* radius, inner_radius, z_min, z_max and phi_max; the rest is set by scene_add_quadric */
+    const double *world_from_object, *object_from_world; /* 4x4, row-major; inverse to each other */
+} QuadricData;
+bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
 /* Object definitions: shapes added between begin and end belong to the object. *object: its index. */

@@ -57,23 +57,22 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
     return bsdf_value_zero();
 }
 
-/* Whether bsdf_sample_base reads u_base. */
+/* Whether bsdf_sample_base reads draw.u_base. */
 SHARED_FUNCTION bool bsdf_has_base(const Bsdf *bsdf)
 {
     return (bsdf_traits(bsdf->kind) & TRAIT_COSINE) != 0u;
 }
 
-/* Draws wi. u_lobe chooses the lobe; u_base draws the direction in a cosine lobe, u in any other; all in [0,1). Fills
- * every member of *sample. False: no contribution, since the light is absorbed or the direction lies on the wrong side
- * of the surface. */
-SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                      Vec2 u_base, uint transport, BsdfSample *sample)
+/* Draws wi. Fills every member of *sample. False: no contribution, since the light is absorbed or the direction lies on
+ * the wrong side of the surface. */
+SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                      BsdfSample *sample)
 {
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
         return false;
 #define SAMPLE(NAME, name, text, traits)                                                                               \
     if (OF_KIND(scene, bsdf, NAME))                                                                                    \
-        return bsdf_##name##_sample(scene, bsdf, wo, u_lobe, u, u_base, transport, sample);
+        return bsdf_##name##_sample(scene, bsdf, wo, draw, sample);
     BSDF_LIST(SAMPLE)
 #undef SAMPLE
     return false;
@@ -83,7 +82,8 @@ SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, 
 SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
                                  uint transport, BsdfSample *sample)
 {
-    return bsdf_sample_base(scene, bsdf, wo, u_lobe, u, u, transport, sample);
+    BsdfDraw draw = {u_lobe, u, u, transport};
+    return bsdf_sample_base(scene, bsdf, wo, draw, sample);
 }
 
 /* The point with which bsdf_sample_base draws wi in the lobe that u_lobe chooses. False: that lobe is a delta or cannot

@@ -150,11 +150,10 @@ SHARED_FUNCTION BsdfValue bsdf_coated_diffuse_eval(const SceneView *scene, const
     return coated_eval(scene, bsdf, wo, wi);
 }
 
-SHARED_FUNCTION bool bsdf_coated_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                                Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_coated_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                                BsdfSample *sample)
 {
-    (void)transport;
-    return coated_sample(scene, bsdf, wo, u_lobe, u, u_base, sample);
+    return coated_sample(scene, bsdf, wo, draw.u_lobe, draw.u, draw.u_base, sample);
 }
 
 SHARED_FUNCTION bool bsdf_coated_diffuse_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,

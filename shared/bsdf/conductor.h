@@ -66,13 +66,10 @@ SHARED_FUNCTION BsdfValue bsdf_conductor_eval(const SceneView *scene, const Bsdf
     return bsdf_is_rough(scene, bsdf) ? conductor_rough_eval(bsdf, wo, wi) : bsdf_value_zero();
 }
 
-SHARED_FUNCTION bool bsdf_conductor_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                           Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_conductor_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                           BsdfSample *sample)
 {
-    (void)u_lobe;
-    (void)u_base;
-    (void)transport;
-    return bsdf_is_rough(scene, bsdf) ? conductor_rough_sample(bsdf, wo, u, sample)
+    return bsdf_is_rough(scene, bsdf) ? conductor_rough_sample(bsdf, wo, draw.u, sample)
                                       : conductor_smooth_sample(bsdf, wo, sample);
 }
 

@@ -174,12 +174,11 @@ SHARED_FUNCTION BsdfValue bsdf_dielectric_eval(const SceneView *scene, const Bsd
     return bsdf_is_rough(scene, bsdf) ? dielectric_rough_eval(bsdf, wo, wi, transport) : bsdf_value_zero();
 }
 
-SHARED_FUNCTION bool bsdf_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                            Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                            BsdfSample *sample)
 {
-    (void)u_base;
-    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_sample(bsdf, wo, u_lobe, u, transport, sample)
-                                      : dielectric_smooth_sample(bsdf, wo, u_lobe, transport, sample);
+    return bsdf_is_rough(scene, bsdf) ? dielectric_rough_sample(bsdf, wo, draw.u_lobe, draw.u, draw.transport, sample)
+                                      : dielectric_smooth_sample(bsdf, wo, draw.u_lobe, draw.transport, sample);
 }
 
 SHARED_FUNCTION bool bsdf_dielectric_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,

@@ -34,14 +34,11 @@ SHARED_FUNCTION BsdfValue bsdf_diffuse_eval(const SceneView *scene, const Bsdf *
     return diffuse_eval(bsdf, wo, wi);
 }
 
-SHARED_FUNCTION bool bsdf_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u,
-                                         Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_diffuse_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                         BsdfSample *sample)
 {
     (void)scene;
-    (void)u_lobe;
-    (void)u;
-    (void)transport;
-    return diffuse_sample(bsdf, wo, u_base, sample);
+    return diffuse_sample(bsdf, wo, draw.u_base, sample);
 }
 
 SHARED_FUNCTION bool bsdf_diffuse_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,

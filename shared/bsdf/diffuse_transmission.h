@@ -59,13 +59,11 @@ SHARED_FUNCTION BsdfValue bsdf_diffuse_transmission_eval(const SceneView *scene,
     return diffuse_transmission_eval(bsdf, wo, wi);
 }
 
-SHARED_FUNCTION bool bsdf_diffuse_transmission_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe,
-                                                      Vec2 u, Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_diffuse_transmission_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                                      BsdfSample *sample)
 {
     (void)scene;
-    (void)u;
-    (void)transport;
-    return diffuse_transmission_sample(bsdf, wo, u_lobe, u_base, sample);
+    return diffuse_transmission_sample(bsdf, wo, draw.u_lobe, draw.u_base, sample);
 }
 
 SHARED_FUNCTION bool bsdf_diffuse_transmission_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,

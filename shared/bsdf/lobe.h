@@ -62,7 +62,7 @@ SHARED_FUNCTION bool bsdf_is_rough(const SceneView *scene, const Bsdf *bsdf)
 /* The numbers with which a lobe draws a direction, once the lobe is chosen, and their density: pdf_w is that of the
  * lobe alone, without the probability of choosing it. */
 typedef struct BsdfInverse {
-    Vec2 u; /* u of bsdf_sample_base, or its u_base if `base` */
+    Vec2 u; /* BsdfDraw.u, or BsdfDraw.u_base if `base` */
     float pdf_w;
     bool base;
 } BsdfInverse;

@@ -35,14 +35,11 @@ SHARED_FUNCTION BsdfValue bsdf_thin_dielectric_eval(const SceneView *scene, cons
     return bsdf_value_zero();
 }
 
-SHARED_FUNCTION bool bsdf_thin_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe,
-                                                 Vec2 u, Vec2 u_base, uint transport, BsdfSample *sample)
+SHARED_FUNCTION bool bsdf_thin_dielectric_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                                 BsdfSample *sample)
 {
     (void)scene;
-    (void)u;
-    (void)u_base;
-    (void)transport;
-    return thin_dielectric_sample(bsdf, wo, u_lobe, sample);
+    return thin_dielectric_sample(bsdf, wo, draw.u_lobe, sample);
 }
 
 SHARED_FUNCTION bool bsdf_thin_dielectric_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,

@@ -35,22 +35,40 @@ SHARED_FUNCTION bool film_splat_range(float radius, uint begin, uint end, float 
     return true;
 }
 
-/* Draws one of the pixels begin <= i < end along an axis in proportion to |f(film - i - 0.5)|; NONE if no filter covers
- * `film`. *weight: the sum of |f| / (integral of |f|) over all of them, with the sign of f at the one drawn.
+/* An axis of the film: the filter along it, and the pixels begin <= i < end of the crop window. */
+typedef struct FilmAxis {
+    uint table; /* in `lookup` */
+    float radius;
+    uint begin, end;
+} FilmAxis;
+
+SHARED_FUNCTION FilmAxis film_axis_x(__global const FrameParams *frame)
+{
+    FilmAxis axis = {frame->film.filter.table_x, frame->film.filter.radius_x, frame->film.crop_x0, frame->film.crop_x1};
+    return axis;
+}
+
+SHARED_FUNCTION FilmAxis film_axis_y(__global const FrameParams *frame)
+{
+    FilmAxis axis = {frame->film.filter.table_y, frame->film.filter.radius_y, frame->film.crop_y0, frame->film.crop_y1};
+    return axis;
+}
+
+/* Draws one of the pixels i of an axis in proportion to |f(film - i - 0.5)|; NONE if no filter covers `film`. *weight:
+ * the sum of |f| / (integral of |f|) over all of them, with the sign of f at the one drawn.
  *
  * Reservoir sampling in one pass: the pixel drawn so far is replaced with probability f / (sum so far); what each
  * decision leaves of u is uniform again and serves the next. */
-SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float radius, uint begin, uint end, float film,
-                                     float u, float *weight)
+SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, FilmAxis axis, float film, float u, float *weight)
 {
     uint chosen = NONE, first, last;
     float sum = 0.0f, sign = 1.0f;
     *weight = 0.0f;
-    if (!film_splat_range(radius, begin, end, film, &first, &last))
+    if (!film_splat_range(axis.radius, axis.begin, axis.end, film, &first, &last))
         return NONE;
     for (uint i = first; i <= last; ++i) {
         float sign_here;
-        float f = film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign_here);
+        float f = film_splat_density(scene, axis.table, axis.radius, film - ((float)i + 0.5f), &sign_here);
         if (!(f > 0.0f))
             continue;
         float before = sum, place;
@@ -66,14 +84,14 @@ SHARED_FUNCTION uint film_splat_axis(const SceneView *scene, uint table, float r
 }
 
 /* |*weight| of film_splat_axis. */
-SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float radius, uint begin, uint end, float film)
+SHARED_FUNCTION float film_splat_sum(const SceneView *scene, FilmAxis axis, float film)
 {
     uint first, last;
     float sum = 0.0f, sign;
-    if (!film_splat_range(radius, begin, end, film, &first, &last))
+    if (!film_splat_range(axis.radius, axis.begin, axis.end, film, &first, &last))
         return 0.0f;
     for (uint i = first; i <= last; ++i)
-        sum += film_splat_density(scene, table, radius, film - ((float)i + 0.5f), &sign);
+        sum += film_splat_density(scene, axis.table, axis.radius, film - ((float)i + 0.5f), &sign);
     return sum;
 }
 
@@ -83,13 +101,10 @@ SHARED_FUNCTION float film_splat_sum(const SceneView *scene, uint table, float r
 SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u, float *weight)
 {
     __global const FrameParams *frame = scene->frame;
-    __global const PixelFilter *filter = &frame->film.filter;
     float weight_x, weight_y;
-    uint x = film_splat_axis(scene, filter->table_x, filter->radius_x, frame->film.crop_x0, frame->film.crop_x1, film.x,
-                             u.x, &weight_x);
-    uint y = film_splat_axis(scene, filter->table_y, filter->radius_y, frame->film.crop_y0, frame->film.crop_y1, film.y,
-                             u.y, &weight_y);
-    *weight = weight_x * weight_y * filter->weight;
+    uint x = film_splat_axis(scene, film_axis_x(frame), film.x, u.x, &weight_x);
+    uint y = film_splat_axis(scene, film_axis_y(frame), film.y, u.y, &weight_y);
+    *weight = weight_x * weight_y * frame->film.filter.weight;
     return x == NONE || y == NONE ? NONE : y * frame->film.width + x;
 }
 
@@ -98,9 +113,7 @@ SHARED_FUNCTION uint film_splat_pixel(const SceneView *scene, Vec2 film, Vec2 u,
 SHARED_FUNCTION float film_splat_cover(const SceneView *scene, Vec2 film)
 {
     __global const FrameParams *frame = scene->frame;
-    __global const PixelFilter *filter = &frame->film.filter;
-    return film_splat_sum(scene, filter->table_x, filter->radius_x, frame->film.crop_x0, frame->film.crop_x1, film.x) *
-           film_splat_sum(scene, filter->table_y, filter->radius_y, frame->film.crop_y0, frame->film.crop_y1, film.y);
+    return film_splat_sum(scene, film_axis_x(frame), film.x) * film_splat_sum(scene, film_axis_y(frame), film.y);
 }
 
 /* The cell of an axis of `pixels` pixels, beginning at pixel `first`, that contains `film` or is nearest to it. */

@@ -21,14 +21,15 @@ SHARED_FUNCTION void chain_place(const SceneView *scene, __global uint *restrict
  * proportion to the luminance of its weighted contribution. It is scaled to the luminance of all, so that the chain
  * targets their sum; its expected colour is theirs. *path_tracing: StrategyWeights.path_tracing, scaled alike, so that
  * color / *path_tracing is what path tracing would contribute from the light drawn. */
-SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, Vec3 d, Vec3 ng, uint depth,
-                                       float u, float *path_tracing)
+SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, DensityView view, const WalkHit *miss,
+                                       uint depth, float u, float *path_tracing)
 {
     Vec3 one = vec3_splat(0.0f);
     float all = 0.0f, luminance = 1.0f, scale = 1.0f;
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], d, ng, &ends));
+        Vec3 color =
+            vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], miss->ray.d, miss->from_ng, &ends));
         if (vec3_is_zero(color))
             continue;
         StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
@@ -67,7 +68,7 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
     float path_tracing = 0.0f, alpha = 1.0f;
     if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
         float u = random_float(chain_select(frame, paths, item).x[0]);
-        color = chain_environment(scene, beta, view, walk_hit->ray.d, walk_hit->from_ng, d, u, &path_tracing);
+        color = chain_environment(scene, beta, view, walk_hit, d, u, &path_tracing);
     } else if (!walk_hit->missed && walk_hit->light != NONE) {
         StrategyEnds ends = {0};
         color = vec3_mul(beta, emission_met(scene, walk_hit, &ends));

@@ -134,17 +134,24 @@ SHARED_FUNCTION void chain_add_large(__global const FrameParams *frame, __global
     }
 }
 
+/* How long small steps are. */
+typedef struct StepSize {
+    uint scale; /* mutation_scale */
+    uint length; /* mutation_length */
+} StepSize;
+
 SHARED_FUNCTION void chain_add_small(__global const FrameParams *frame, __global uint *paths, uint item, uint step,
-                                     ChangedNumbers numbers, uint scale, uint length, bool back)
+                                     ChangedNumbers numbers, StepSize size, bool back)
 {
-    uint film = scale + (numbers.first == NUMBER_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
+    uint film = size.scale + (numbers.first == NUMBER_CAMERA ? STEP_SHIFT_CAMERA : STEP_SHIFT_OTHERS);
     uint turn = back ? 1u : 0u;
     for (uint first = 0u; first < numbers.count; first += 8u) {
         Random4 random = chain_random(frame, item, step, CHAIN_BLOCK_SMALL + first / 8u);
         for (uint i = 0u; i < 8u; ++i) {
-            uint shift = first + i < 4u ? film : scale + STEP_SHIFT_OTHERS;
+            uint shift = first + i < 4u ? film : size.scale + STEP_SHIFT_OTHERS;
             uint bits = mutation_subpath_bits(random.x[i / 2u], i % 2u) ^ turn;
-            chain_number_add(paths, frame->pass.stride, item, numbers, first + i, mutation_offset(bits, shift, length));
+            chain_number_add(paths, frame->pass.stride, item, numbers, first + i,
+                             mutation_offset(bits, shift, size.length));
         }
     }
 }
@@ -182,6 +189,7 @@ SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __glo
     uint step = state_load(paths, stride, CHAIN_STEP, item), key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
     uint d = chain_key_depth(key), s = chain_key_s(key);
     ChangedNumbers numbers = chain_changed(frame, move >> MOVE_CHANGED & 0xfu, d, s);
+    StepSize size = {move >> MOVE_SCALE & 0xfu, mutation_length(d)};
     if ((move >> MOVE_SHIFT & SHIFT_KEEPS) != 0u) {
         numbers.first = NUMBER_CAMERA;
         numbers.count = 4u;
@@ -190,7 +198,7 @@ SHARED_FUNCTION void chain_move_numbers(__global const FrameParams *frame, __glo
     if ((move >> MOVE_MUTATION & 0xfu) == MUTATION_LARGE)
         chain_add_large(frame, paths, item, step, numbers, back);
     else
-        chain_add_small(frame, paths, item, step, numbers, move >> MOVE_SCALE & 0xfu, mutation_length(d), back);
+        chain_add_small(frame, paths, item, step, numbers, size, back);
 }
 
 SHARED_FUNCTION Random4 chain_numbers(__global const FrameParams *frame, __global const uint *paths, uint item,

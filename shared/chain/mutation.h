@@ -114,25 +114,33 @@ SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint 
     return (by_pool ? SPLAT_LIGHT : SPLAT_EXCESS) | (by_paths ? 0u : SPLAT_RARE);
 }
 
-/* Splats a path at `film` whose contribution is f times `color`, for `visits` expected visits. random: block
- * CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
+/* A path at `film` whose contribution is f times `color`, for `visits` expected visits. */
+typedef struct ChainSplat {
+    uint key; /* chain_key_shown */
+    Vec2 film;
+    float f;
+    Vec3 color;
+    float visits;
+} ChainSplat;
+
+/* Splats a path. random: block CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
  * splat or nothing of it, at random. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
-                                 __global uint *restrict diagnostics, uint item, uint key, Vec2 film, float f,
-                                 Vec3 color, float visits, Random4 random)
+                                 __global uint *restrict diagnostics, uint item, const ChainSplat *path, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride, pixel = NONE;
     float weight = 0.0f;
-    if (visits > 0.0f)
-        pixel = film_splat_pixel(scene, film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
+    if (path->visits > 0.0f)
+        pixel =
+            film_splat_pixel(scene, path->film, vec2(random_float(random.x[1]), random_float(random.x[2])), &weight);
     if (pixel == NONE)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else
         splat_store(splats, diagnostics, stride, item,
-                    chain_splat_layers(frame, key, f, random_float(random.x[3])) | pixel |
-                        splat_depth(frame->film.split_depths, chain_key_depth(key)),
-                    vec3_scale(color, visits * (weight * frame->chains.brightness)));
+                    chain_splat_layers(frame, path->key, path->f, random_float(random.x[3])) | pixel |
+                        splat_depth(frame->film.split_depths, chain_key_depth(path->key)),
+                    vec3_scale(path->color, path->visits * (weight * frame->chains.brightness)));
 }
 
 SHARED_FUNCTION Vec2 chain_film_load(__global const uint *restrict paths, uint stride, uint field, uint item)
@@ -145,10 +153,10 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
                                          float visits, Random4 random)
 {
     uint stride = scene->frame->pass.stride;
-    chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_KEY, item),
-                chain_film_load(paths, stride, CHAIN_FILM, item),
-                state_load_float(paths, stride, CHAIN_LUMINANCE, item),
-                state_load_vec3(paths, stride, CHAIN_COLOR, item), visits, random);
+    ChainSplat path = {state_load(paths, stride, CHAIN_KEY, item), chain_film_load(paths, stride, CHAIN_FILM, item),
+                       state_load_float(paths, stride, CHAIN_LUMINANCE, item),
+                       state_load_vec3(paths, stride, CHAIN_COLOR, item), visits};
+    chain_splat(scene, splats, diagnostics, item, &path, random);
 }
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
@@ -222,8 +230,9 @@ SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restric
     } else {
         if (f > 0.0f)
             color = vec3_scale(color, 1.0f / f);
-        chain_splat(scene, splats, diagnostics, item, state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
-                    chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), f, color, accept, random);
+        ChainSplat path = {state_load(paths, stride, CHAIN_PROPOSED_KEY, item),
+                           chain_film_load(paths, stride, CHAIN_PROPOSED_FILM, item), f, color, accept};
+        chain_splat(scene, splats, diagnostics, item, &path, random);
         state_store_float(paths, stride, CHAIN_PENDING, item, pending + (1.0f - accept));
         chain_move_numbers(frame, paths, item, true);
     }

@@ -75,11 +75,11 @@ SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __gl
 }
 
 /* The first ray of the camera walk. What it gathers goes to the sample's pixel. */
-SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint item)
+SHARED_FUNCTION void pool_start_camera(const SceneView *scene, Walk walk)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->pass.stride;
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item;
     float weight;
     Random4 random = pool_camera(scene, paths, item, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
@@ -87,28 +87,33 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, __global uint *re
     state_store_float(paths, stride, BD_IMPORTANCE, item, film_importance(frame, scene->guide, film));
     float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, item));
     state_store_float(paths, stride, BD_WEIGHT, item, density_ratio * (weight / film_reach_factor(frame)));
-    walk_start_film(scene, paths, rays, diagnostics, stride, item, random);
+    walk_start_film(scene, walk, random);
     pool_roulette_weigh(frame, paths, item, density_ratio);
 }
 
-/* Offers a path of strategy (s, t) to the sample's reservoir, whose candidate it becomes with probability proportional
- * to its contribution weight. contribution: after roulette, which it survived with probability `survival`; cover,
- * importance: film_splat_cover and target importance at its film position. Returns what the film shows of it: the part
- * below the clamping threshold. */
+/* A path of strategy (s, t) that is offered to the reservoir of its sample. */
+typedef struct Candidate {
+    uint s, t;
+    float survival; /* probability with which it survived roulette */
+    float cover, importance; /* film_splat_cover and target importance at its film position */
+    Vec3 contribution; /* after roulette */
+} Candidate;
+
+/* Offers a path to the sample's reservoir, whose candidate it becomes with probability proportional to its contribution
+ * weight. Returns what the film shows of it: the part below the clamping threshold. */
 SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __global const Guide *guide,
-                                      __global uint *restrict paths, uint item, uint s, uint t, float survival,
-                                      float cover, float importance, Vec3 contribution)
+                                      __global uint *restrict paths, uint item, Candidate path)
 {
-    uint stride = frame->pass.stride;
-    float luminance = rgb_luminance(contribution) * importance;
-    float f = luminance * cover * survival; /* as a chain has it: without roulette */
+    uint stride = frame->pass.stride, s = path.s, t = path.t;
+    float luminance = rgb_luminance(path.contribution) * path.importance;
+    float f = luminance * path.cover * path.survival; /* as a chain has it: without roulette */
     float weight = s > 1u ? frame->pool.lights_weight : 1.0f; /* fewer items have a light walk */
     if (!(f > 0.0f) || !float_finite(luminance))
-        return vec3_scale(contribution, weight);
+        return vec3_scale(path.contribution, weight);
     /* Divided by the density of the random numbers. A path with t = 1 does not use the film's two, which are
      * uniform. */
     float worth = weight * luminance;
-    worth *= t == 1u ? cover
+    worth *= t == 1u ? path.cover
                      : pool_density_ratio(frame, guide, state_load(paths, stride, BD_PIXEL, item)) /
                            film_reach_factor(frame);
     float sum = state_load_float(paths, stride, BD_CANDIDATE_SUM, item) + worth;
@@ -118,7 +123,7 @@ SHARED_FUNCTION Vec3 reservoir_update(__global const FrameParams *frame, __globa
         state_store(paths, stride, BD_CANDIDATE, item, chain_key(s + t - 1u, s));
         state_store_float(paths, stride, BD_CANDIDATE_LUMINANCE, item, f);
     }
-    return vec3_scale(contribution, weight * partition_shown(f, partition_threshold(frame, PARTITION_POOL)));
+    return vec3_scale(path.contribution, weight * partition_shown(f, partition_threshold(frame, PARTITION_POOL)));
 }
 
 #endif

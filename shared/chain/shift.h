@@ -67,11 +67,11 @@ SHARED_FUNCTION uint shift_kind(__global const uint *paths, __global const uint 
                                                                                          : SHIFT_STEP;
 }
 
-/* Replaces the coordinates of the direction at z_i, in `numbers` and in state, by those that draw the direction to the
- * kept vertex z_{i+1}. d: segments of the path. False if no coordinates do. */
-SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict paths,
-                                 __global const uint *restrict vertices, uint item, uint d, uint i,
-                                 const Vertex *vertex, Random4 *numbers)
+/* Replaces the coordinates of the direction at z_i in `numbers` by those that draw the direction to the kept vertex
+ * z_{i+1}. False if no coordinates do. */
+SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global const uint *restrict paths,
+                                 __global const uint *restrict vertices, uint item, uint i, const Vertex *vertex,
+                                 Random4 *numbers)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride, point = shift_point(shift_bank(paths, stride, item), i + 1u);
@@ -88,9 +88,15 @@ SHARED_FUNCTION bool shift_guide(const SceneView *scene, __global uint *restrict
         origin = light_guide_numbers(scene, vertex->p, vertex->frame, origin);
     numbers->x[1] = light_guide_bits(inverse.u.x) - origin.x[1];
     numbers->x[2] = light_guide_bits(inverse.u.y) - origin.x[2];
-    for (uint k = 0u; k < 2u; ++k)
-        state_store(paths, stride, shift_number(frame, d, i, k), item, numbers->x[1u + k]);
     return true;
+}
+
+/* Makes what shift_guide has found the coordinates of the direction at z_i, in a path of d segments. */
+SHARED_FUNCTION void shift_numbers_store(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                         uint d, uint i, Random4 numbers)
+{
+    for (uint k = 0u; k < 2u; ++k)
+        state_store(paths, frame->pass.stride, shift_number(frame, d, i, k), item, numbers.x[1u + k]);
 }
 
 /* Stores the density with which a vertex draws the world direction d. */

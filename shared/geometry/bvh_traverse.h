@@ -209,21 +209,22 @@ SHARED_FUNCTION bool bvh_triangle_query(const SceneView *scene, __global const F
     Float4 x = (quads[query->kx] - float4_splat(query->ox)) - sx * z;
     Float4 y = (quads[query->ky] - float4_splat(query->oy)) - sy * z;
     z = sz * z;
-    ShearedCorner sheared_a = bvh_corner(x, y, z, 0u), sheared_b = bvh_corner(x, y, z, 1u),
-                  sheared_c = bvh_corner(x, y, z, 2u);
-    TriangleEdges edges = triangle_edges(sheared_a, sheared_b, sheared_c);
-    float area = edges.a + edges.b + edges.c;
-    if (!triangle_contains(edges) || !(area > 0.0f || area < 0.0f))
+    ShearedTriangle sheared;
+    sheared.a = bvh_corner(x, y, z, 0u);
+    sheared.b = bvh_corner(x, y, z, 1u);
+    sheared.c = bvh_corner(x, y, z, 2u);
+    sheared.e = triangle_edges(sheared.a, sheared.b, sheared.c);
+    float area = sheared.e.a + sheared.e.b + sheared.e.c;
+    if (!triangle_contains(sheared.e) || !(area > 0.0f || area < 0.0f))
         return false;
-    if (!(float_max(float_max(sheared_a.z, sheared_b.z), sheared_c.z) > 0.0f))
+    if (!(float_max(float_max(sheared.a.z, sheared.b.z), sheared.c.z) > 0.0f))
         return false;
     x = quads[0];
     y = quads[1];
     z = quads[2];
     Vec3 a = vec3(lane_of(x, 0), lane_of(y, 0), lane_of(z, 0)), b = vec3(lane_of(x, 1), lane_of(y, 1), lane_of(z, 1)),
          c = vec3(lane_of(x, 2), lane_of(y, 2), lane_of(z, 2));
-    return triangle_finish(a, b, c, sheared_a, sheared_b, sheared_c, edges, query, &hit->t, &hit->u, &hit->v) &&
-           primitive_triangle_counts(scene, id, a, b, c, query, hit);
+    return triangle_finish(a, b, c, &sheared, query, hit) && primitive_triangle_counts(scene, id, a, b, c, query, hit);
 }
 
 #define BVH_FEATURES_CURVED (FEATURE_BILINEAR | FEATURE_SPHERE | FEATURE_DISK)

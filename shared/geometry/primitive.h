@@ -185,8 +185,7 @@ SHARED_FUNCTION bool primitive_query(const SceneView *scene, uint id, const RayQ
     if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_TRIANGLE)
         return primitive_query_curved(scene, id, query, hit);
     Vec3 a = scene->positions[primitive.a], b = scene->positions[primitive.b], c = scene->positions[primitive.c];
-    return triangle_query(a, b, c, query, &hit->t, &hit->u, &hit->v) &&
-           primitive_triangle_counts(scene, id, a, b, c, query, hit);
+    return triangle_query(a, b, c, query, hit) && primitive_triangle_counts(scene, id, a, b, c, query, hit);
 }
 
 /* Whether a comes before b in the order that makes the closest hit unique: t, instance, primitive. */

@@ -151,42 +151,50 @@ SHARED_FUNCTION float triangle_t_error(ShearedCorner a, ShearedCorner b, Sheared
     return TRIANGLE_ULPS_T * FLOAT_EPSILON * extent * extent * reach;
 }
 
+/* A triangle's corners after the shear, and their edge functions. */
+typedef struct ShearedTriangle {
+    ShearedCorner a, b, c;
+    TriangleEdges e;
+} ShearedTriangle;
+
 /* Completes the test of a triangle that the ray's line passes through (triangle_contains, area not zero): the hit with
- * 0 < t < t_max. sa, sb, sc, e: its sheared corners and their edge functions. */
-SHARED_FUNCTION bool triangle_finish(Vec3 a, Vec3 b, Vec3 c, ShearedCorner sa, ShearedCorner sb, ShearedCorner sc,
-                                     TriangleEdges e, const RayQuery *query, float *t, float *u, float *v)
+ * 0 < t < t_max. Sets t, and if there is a hit u and v, of *hit. */
+SHARED_FUNCTION bool triangle_finish(Vec3 a, Vec3 b, Vec3 c, const ShearedTriangle *sheared, const RayQuery *query,
+                                     Hit *hit)
 {
+    TriangleEdges e = sheared->e;
     float area = e.a + e.b + e.c;
-    float volume = e.a * sa.z + e.b * sb.z + e.c * sc.z;
-    *t = volume / area;
-    if (!(*t > 0.0f && *t < query->t_max))
+    float volume = e.a * sheared->a.z + e.b * sheared->b.z + e.c * sheared->c.z;
+    hit->t = volume / area;
+    if (!(hit->t > 0.0f && hit->t < query->t_max))
         return false;
     Vec3 normal = triangle_normal(a, b, c);
     if (vec3_is_zero(normal))
         return false;
-    float error = triangle_t_error(sa, sb, sc, query);
+    float error = triangle_t_error(sheared->a, sheared->b, sheared->c, query);
     bool near = float_abs(volume) <= error;
-    bool far = (query->t_max - *t) * float_abs(area) <= error;
+    bool far = (query->t_max - hit->t) * float_abs(area) <= error;
     if ((near || far) && !triangle_between_ends(a, b, c, normal, query, near, far))
         return false;
-    *u = e.b / area;
-    *v = e.c / area;
+    hit->u = e.b / area;
+    hit->v = e.c / area;
     return true;
 }
 
-/* The hit of the triangle a, b, c with 0 < t < t_max; u and v are the barycentric weights of b and c. Triangles whose
- * normal computes to zero, and NaNs anywhere, give no hit. The result depends on nothing but the arguments. */
-SHARED_FUNCTION bool triangle_query(Vec3 a, Vec3 b, Vec3 c, const RayQuery *query, float *t, float *u, float *v)
+/* The hit of the triangle a, b, c with 0 < t < t_max: sets t, u and v of *hit. Triangles whose normal computes to zero,
+ * and NaNs anywhere, give no hit. The result depends on nothing but the arguments. */
+SHARED_FUNCTION bool triangle_query(Vec3 a, Vec3 b, Vec3 c, const RayQuery *query, Hit *hit)
 {
     uint kx = query->kx, ky = query->ky, kz = query->kz;
-    ShearedCorner sa = triangle_shear(vec3_component(a, kx), vec3_component(a, ky), vec3_component(a, kz), query);
-    ShearedCorner sb = triangle_shear(vec3_component(b, kx), vec3_component(b, ky), vec3_component(b, kz), query);
-    ShearedCorner sc = triangle_shear(vec3_component(c, kx), vec3_component(c, ky), vec3_component(c, kz), query);
-    TriangleEdges e = triangle_edges(sa, sb, sc);
-    float area = e.a + e.b + e.c;
-    if (!triangle_contains(e) || !(area > 0.0f || area < 0.0f))
+    ShearedTriangle sheared;
+    sheared.a = triangle_shear(vec3_component(a, kx), vec3_component(a, ky), vec3_component(a, kz), query);
+    sheared.b = triangle_shear(vec3_component(b, kx), vec3_component(b, ky), vec3_component(b, kz), query);
+    sheared.c = triangle_shear(vec3_component(c, kx), vec3_component(c, ky), vec3_component(c, kz), query);
+    sheared.e = triangle_edges(sheared.a, sheared.b, sheared.c);
+    float area = sheared.e.a + sheared.e.b + sheared.e.c;
+    if (!triangle_contains(sheared.e) || !(area > 0.0f || area < 0.0f))
         return false;
-    return triangle_finish(a, b, c, sa, sb, sc, e, query, t, u, v);
+    return triangle_finish(a, b, c, &sheared, query, hit);
 }
 
 #endif

@@ -104,12 +104,10 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
         float cover =
             t == 1u ? float_abs(state_load_float(paths, stride, BD_TARGET_WEIGHT, item) / frame->film.filter.weight)
                     : state_load_float(paths, stride, BD_COVER, item);
-        Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
         float importance = state_load_float(paths, stride, t == 1u ? BD_TARGET_IMPORTANCE : BD_IMPORTANCE, item);
-        contribution = reservoir_update(frame, guide, paths, item, s, t,
-                                        state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item), cover,
-                                        importance, contribution);
-        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, contribution);
+        Candidate path = {s,     t,          state_load_float(paths, stride, BD_CONNECTION_SURVIVAL, item),
+                          cover, importance, state_load_vec3(paths, stride, BD_CONTRIBUTION, item)};
+        state_store_vec3(paths, stride, BD_CONTRIBUTION, item, reservoir_update(frame, guide, paths, item, path));
     }
     if (visible)
         connection_depth_set(frame, paths, item, s + t - 1u);

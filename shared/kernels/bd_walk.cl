@@ -31,7 +31,8 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
         (frame->pool.enabled != 0u && !pool_has_light(frame, frame->pass.first_item + item)))
         return;
     float own;
-    if (!walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, vertex_base(frame, SIDE_LIGHT, 0u),
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    if (!walk_start_light(scene, walk, vertices, vertex_base(frame, SIDE_LIGHT, 0u),
                           bd_random(frame, paths, item, BD_RANDOM_LIGHT), bd_random(frame, paths, item, BD_RANDOM_EMIT),
                           &own))
         return;
@@ -51,10 +52,25 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
     if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
+    Walk walk = {paths, rays, diagnostics, stride, item};
     if (frame->pool.enabled != 0u)
-        pool_start_camera(scene, paths, rays, diagnostics, item);
+        pool_start_camera(scene, walk);
     else
-        walk_start_camera(scene, paths, rays, diagnostics, stride, item);
+        walk_start_camera(scene, walk);
+}
+
+/* reservoir_update for a path with s = 0. */
+SHARED_FUNCTION Vec3 bd_offer_met(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
+                                  Vec3 contribution)
+{
+    uint stride = scene->frame->pass.stride;
+    Candidate path = {0u,
+                      depth + 1u,
+                      state_load_float(paths, stride, BD_SURVIVAL, item),
+                      state_load_float(paths, stride, BD_COVER, item),
+                      state_load_float(paths, stride, BD_IMPORTANCE, item),
+                      contribution};
+    return reservoir_update(scene->frame, scene->guide, paths, item, path);
 }
 
 /* s = 0: adds what the lights send that the camera walk has hit after `depth` segments. */
@@ -64,10 +80,7 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
     if (frame->pool.enabled != 0u)
-        contribution = reservoir_update(frame, scene->guide, paths, item, 0u, depth + 1u,
-                                        state_load_float(paths, stride, BD_SURVIVAL, item),
-                                        state_load_float(paths, stride, BD_COVER, item),
-                                        state_load_float(paths, stride, BD_IMPORTANCE, item), contribution);
+        contribution = bd_offer_met(scene, paths, item, depth, contribution);
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, item, depth);
     bd_add_radiance(paths, stride, item, contribution);
@@ -90,7 +103,8 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, item);
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, item, vertex_base(frame, side, depth - 1u), &walk_hit);
+    walk_hit.before = vertex_base(frame, side, depth - 1u);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     Vec3 beta = state_load_vec3(paths, stride, BD_BETA, item);
     DensityView view = bd_density_view(frame, paths, densities, item);
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);
@@ -109,9 +123,11 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
             bd_add_met(scene, paths, item, depth,
                        vec3_scale(vec3_mul(beta, radiance), bd_weight(frame, 0u, depth + 1u, &view, &ends)));
     }
-    if (!walk_vertex(scene, paths, rays, vertices, item, vertex_base(frame, side, depth - 1u),
-                     vertex_base(frame, side, depth), bd_random_mix(scene, paths, item, side, depth), &walk_hit))
+    if (!walk_vertex(scene, paths, vertices, item, vertex_base(frame, side, depth),
+                     bd_random_mix(scene, paths, item, side, depth), &walk_hit)) {
+        walk_end(paths, rays, stride, item);
         return;
+    }
     uint lengths = state_load(paths, stride, BD_LENGTHS, item);
     lengths = side == SIDE_LIGHT ? (lengths & 0xffff0000u) | (depth + 1u) : (lengths & 0xffffu) | (depth << 16);
     state_store(paths, stride, BD_LENGTHS, item, lengths);
@@ -134,7 +150,8 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(scene, paths, rays, vertices, diagnostics, item, vertex_base(frame, side, depth), random, &step))
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    if (!walk_leave(scene, walk, vertices, vertex_base(frame, side, depth), random, &step))
         return;
     walk_mark(paths, stride, item, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u)

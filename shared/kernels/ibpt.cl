@@ -23,9 +23,10 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
     KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
     bd_header_begin(frame, paths, rays, shadows, item, item_place(frame, item));
-    if (frame->path.max_depth >= 2u && walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, 0u,
-                                                        bd_random(frame, paths, item, BD_RANDOM_LIGHT),
-                                                        bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    if (frame->path.max_depth >= 2u &&
+        walk_start_light(scene, walk, vertices, 0u, bd_random(frame, paths, item, BD_RANDOM_LIGHT),
+                         bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, item, own);
 }
 
@@ -68,7 +69,7 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     uint side = state_load(paths, stride, BD_SIDE, item);
     /* The vertex overwrites the one before it. */
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, item, 0u, &walk_hit);
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
@@ -81,7 +82,8 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
         Vec3 radiance = emission_met(scene, &walk_hit, &ends);
         ib_add_met(frame, paths, item, depth, radiance, &ends);
     }
-    walk_vertex(scene, paths, rays, vertices, item, 0u, 0u, bd_random_mix(scene, paths, item, side, depth), &walk_hit);
+    if (!walk_vertex(scene, paths, vertices, item, 0u, bd_random_mix(scene, paths, item, side, depth), &walk_hit))
+        walk_end(paths, rays, stride, item);
 }
 
 /* From: the vertex. To: its connection to the lens (the light's walk) or to a point drawn on a light, weighted, and the
@@ -145,7 +147,8 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
     KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};
-    if (!walk_leave(scene, paths, rays, vertices, diagnostics, item, 0u, random, &step))
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    if (!walk_leave(scene, walk, vertices, 0u, random, &step))
         return;
     ib_leave(paths, stride, item, side, depth, step.reverse, step.delta != 0u);
     walk_step_store(paths, rays, stride, item, depth, &step);

@@ -123,8 +123,9 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     uint bank = chain_bank(paths, stride, item, SIDE_LIGHT);
     float own;
-    if (walk_start_light(scene, paths, rays, vertices, diagnostics, stride, item, chain_vertex_base(SIDE_LIGHT, bank),
-                         chain_select(frame, paths, item), chain_emit(frame, paths, item), &own))
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    if (walk_start_light(scene, walk, vertices, chain_vertex_base(SIDE_LIGHT, bank), chain_select(frame, paths, item),
+                         chain_emit(frame, paths, item), &own))
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), item, own);
 }
 
@@ -150,7 +151,8 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
         return;
     }
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
-    walk_start_film(scene, paths, rays, diagnostics, stride, item, chain_camera(frame, paths, item));
+    Walk walk = {paths, rays, diagnostics, stride, item};
+    walk_start_film(scene, walk, chain_camera(frame, paths, item));
 }
 
 /* The walk has made the last vertex of its side: stores what the connection needs to know of it. */
@@ -167,34 +169,41 @@ SHARED_FUNCTION void chain_subpath_store(__global uint *restrict paths, uint str
     chain_move_set(paths, stride, item, MOVE_REACHED, chain_move(paths, stride, item, MOVE_REACHED) | flag);
 }
 
+/* How far the walk of a chain is: at vertex `depth` of a side, whose subpath is in `bank`, of a proposal of d segments
+ * with s vertices from the light. */
+typedef struct ChainWalk {
+    uint side, depth, bank, d, s;
+} ChainWalk;
+
 /* Continues the walk from a vertex that is not its last; only its position and geometric normal are read later. */
-SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                   __global uint *restrict vertices, __global uint *restrict densities,
-                                   __global uint *restrict diagnostics, uint item, uint side, uint depth, uint d,
-                                   uint s, uint bank, Random4 numbers, Vertex *vertex)
+SHARED_FUNCTION void chain_walk_on(const SceneView *scene, Walk walk, __global uint *restrict vertices,
+                                   __global uint *restrict densities, ChainWalk at, Random4 numbers, Vertex *vertex)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->pass.stride;
-    bool shifts = frame->chains.shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, d, s);
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item, side = at.side, depth = at.depth;
+    bool shifts = frame->chains.shifts > 0.0f && side == SIDE_CAMERA && shift_draws(depth, at.d, at.s);
     WalkStep step = {0};
-    vertex_place_store(vertices, stride, chain_vertex_base(side, bank), item, vertex);
+    vertex_place_store(vertices, stride, chain_vertex_base(side, at.bank), item, vertex);
     vertex->frame.b = vec3_cross(vertex->frame.n, vertex->frame.t); /* as frame_load makes it of the pool's vertex */
-    if (shifts && (chain_move(paths, stride, item, MOVE_SHIFT) & SHIFT_KEEPS) != 0u &&
-        !shift_guide(scene, paths, vertices, item, d, depth, vertex, &numbers)) {
-        walk_end(paths, rays, stride, item);
-        return;
+    if (shifts && (chain_move(paths, stride, item, MOVE_SHIFT) & SHIFT_KEEPS) != 0u) {
+        if (!shift_guide(scene, paths, vertices, item, depth, vertex, &numbers)) {
+            walk_end(paths, walk.rays, stride, item);
+            return;
+        }
+        shift_numbers_store(frame, paths, item, at.d, depth, numbers);
     }
-    if (!walk_leave_vertex(scene, paths, rays, diagnostics, item, vertex, numbers, &step))
+    if (!walk_leave_vertex(scene, walk, vertex, numbers, &step))
         return;
     if (shifts)
         shift_drawn(scene, paths, item, vertex, numbers, step.ray.d);
     walk_mark(paths, stride, item, side, depth, &step);
     if (side == SIDE_LIGHT || depth > 1u) {
-        uint before = chain_density(frame, side, bank, s, depth - 1u);
+        uint before = chain_density(frame, side, at.bank, at.s, depth - 1u);
         state_store_float(densities, stride, before, item,
                           step.reverse / state_load_float(densities, stride, before, item));
     }
-    walk_step_store(paths, rays, stride, item, depth, &step);
+    walk_step_store(paths, walk.rays, stride, item, depth, &step);
 }
 
 /* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s
@@ -218,7 +227,8 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     uint bank = chain_bank(paths, stride, item, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;
     WalkHit walk_hit = {0};
-    walk_hit_make(scene, paths, rays, hits, vertices, item, base, &walk_hit);
+    walk_hit.before = base;
+    walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), item, walk_hit.own);
     if (frame->chains.shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
         !shift_hit(frame, paths, vertices, item, depth, &walk_hit)) {
@@ -236,11 +246,14 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
         numbers = chain_vertex(frame, paths, item, side, d, depth);
     float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(numbers.x[3]) : 0.5f;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, item, base, u_mix, &walk_hit, &vertex))
+    if (!walk_vertex_make(scene, paths, vertices, item, u_mix, &walk_hit, &vertex)) {
+        walk_end(paths, rays, stride, item);
         return;
+    }
     if (depth < last) {
-        chain_walk_on(scene, paths, rays, vertices, densities, diagnostics, item, side, depth, d, s, bank, numbers,
-                      &vertex);
+        Walk walk = {paths, rays, diagnostics, stride, item};
+        ChainWalk at = {side, depth, bank, d, s};
+        chain_walk_on(scene, walk, vertices, densities, at, numbers, &vertex);
         return;
     }
     vertex_store(scene, vertices, stride, base, item, &vertex);
@@ -248,13 +261,13 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     walk_end(paths, rays, stride, item);
 }
 
-/* Connects the two last vertices. film: chain_camera. */
+/* Connects the two last vertices of the proposal `key`. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
-                                   __global const uint *restrict vertices, uint item, uint s, uint camera, Random4 film,
+                                   __global const uint *restrict vertices, uint item, uint key, Random4 film,
                                    Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->pass.stride;
+    uint stride = frame->pass.stride, s = chain_key_s(key), camera = chain_key_depth(key) + 1u - s;
     uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
          camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     uint light_half = chain_subpath(SIDE_LIGHT, light_bank);
@@ -294,7 +307,7 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     Random4 film = chain_camera(frame, paths, item);
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Connection connection = {0};
-    if (!chain_connect(scene, paths, vertices, item, s, camera, film, &connection))
+    if (!chain_connect(scene, paths, vertices, item, key, film, &connection))
         return;
     DensityView view = chain_density_view(frame, paths, densities, item, s, camera);
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);

@@ -4,7 +4,7 @@
 #define TWINLIGHT_LAYOUT_MATERIAL_LIST_H
 
 /* The lobes of a BSDF. */
-#define TRAIT_COSINE 0x1u /* a cosine lobe, drawn with u_base of bsdf_sample_base */
+#define TRAIT_COSINE 0x1u /* a cosine lobe, drawn with BsdfDraw.u_base */
 #define TRAIT_MICROFACET 0x2u /* a microfacet lobe, or a delta if both alphas are below ALPHA_DELTA */
 #define TRAIT_INTERFACE 0x4u /* ... of an interface, which is smooth if its relative index is close to 1 */
 #define TRAIT_DELTA 0x8u /* only deltas if it is not rough */

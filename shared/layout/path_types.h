@@ -55,6 +55,14 @@ typedef struct Bsdf {
 
 #define ALPHA_DELTA 1e-3f
 
+/* What draws a direction from a Bsdf: u_lobe chooses the lobe; u_base draws the direction in a cosine lobe, u in any
+ * other; all in [0,1). transport: TRANSPORT_*. */
+typedef struct BsdfDraw {
+    float u_lobe;
+    Vec2 u, u_base;
+    uint transport;
+} BsdfDraw;
+
 /* A direction drawn from a Bsdf, in the shading frame (z = ns, directions point away from the surface). weight, the
  * factor of the throughput, is f |cos wi| / pdf_w. For a delta lobe, pdf_w is the probability of having chosen the lobe
  * (densities of deltas never enter an MIS ratio). pdf_rev_w: density of drawing wo from wi. */

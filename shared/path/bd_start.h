@@ -26,11 +26,11 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
 
 /* Draws y_0, stored at `base`, and the first ray of the light walk. choice: which light (x, y); random: point,
  * direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
-SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *restrict paths,
-                                      __global uint *restrict rays, __global uint *restrict vertices,
-                                      __global uint *restrict diagnostics, uint stride, uint item, uint base,
+SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __global uint *restrict vertices, uint base,
                                       Random4 choice, Random4 random, float *own)
 {
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item;
     uint light = light_select(scene, choice.x[0], choice.x[1]);
     LightEmission emission = {0};
     if (!light_emit(scene, light, vec2(random_float(random.x[0]), random_float(random.x[1])),
@@ -48,16 +48,15 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, __global uint *res
     Vec3 beta = vec3_scale(emission.radiance, emission.cosine / (select * emission.pdf_p * emission.pdf_w));
     bool on_surface = !infinite && emission.delta_position == 0u;
     Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
-    walk_begin(paths, rays, diagnostics, stride, item, SIDE_LIGHT, ray, beta,
-               infinite ? emission.pdf_p : emission.pdf_w, infinite ? WALK_PARALLEL : 0u);
+    walk_begin(walk, SIDE_LIGHT, ray, beta, infinite ? emission.pdf_p : emission.pdf_w, infinite ? WALK_PARALLEL : 0u);
     return true;
 }
 
 /* The first ray of the camera walk, for a sample of the item's pixel. */
-SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                       uint item)
+SHARED_FUNCTION void walk_start_camera(const SceneView *scene, Walk walk)
 {
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item;
     __global const FrameParams *frame = scene->frame;
     Random4 random = bd_random(frame, paths, item, BD_RANDOM_CAMERA);
     float weight;
@@ -69,7 +68,7 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, __global uint *re
     Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     state_store_float(paths, stride, BD_WEIGHT, item, weight);
-    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
+    walk_begin(walk, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
 }
 
 /* The reach: film positions that the pixel filter of the crop window covers, width x height pixels from (x, y) on. */
@@ -114,16 +113,13 @@ SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
 
 /* The first ray of a camera walk from any film position. random: film, lens. Its throughput is meant for splats that
  * are divided by the samples per pixel, like those of light paths. */
-SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
-                                     __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
-                                     uint item, Random4 random)
+SHARED_FUNCTION void walk_start_film(const SceneView *scene, Walk walk, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
     Camera camera = frame->camera;
     Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->film.width,
                          (float)frame->film.height, vec2(random_float(random.x[2]), random_float(random.x[3])));
-    walk_begin(paths, rays, diagnostics, stride, item, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f,
-               WALK_DELTA);
+    walk_begin(walk, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f, WALK_DELTA);
 }
 
 #endif

@@ -92,15 +92,12 @@ SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
     return solid_angle_to_area(vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
 }
 
-/* walk_back at p, vertex i >= 1 of a side; `before`: base of the vertex before it. For the lens it is never used. */
-SHARED_FUNCTION float walk_back_stored(__global const uint *restrict paths, __global const uint *restrict vertices,
-                                       uint stride, uint item, uint side, uint i, uint before, Vec3 p)
+/* walk_back at p; `before`: base of the vertex before it. */
+SHARED_FUNCTION float walk_back_stored(__global const uint *restrict vertices, uint stride, uint item, uint before,
+                                       Vec3 p, uint emitter_flags)
 {
-    if (side == SIDE_CAMERA && i == 1u)
-        return 1.0f;
-    uint flags = side == SIDE_LIGHT && i == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
     return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, item),
-                     state_load_vec3(vertices, stride, before + VERTEX_NG, item), flags);
+                     state_load_vec3(vertices, stride, before + VERTEX_NG, item), emitter_flags);
 }
 
 /* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
@@ -151,11 +148,11 @@ SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global con
     return light_connect_ratio(scene, light, p, vec3_scale(d, 1.0f / float_sqrt(distance2)), distance2, &point);
 }
 
-/* Area density with which the walk has made the point that it has just hit. */
+/* Area density with which the walk has made the point that it has just hit. first: by the camera's first ray. */
 SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
-                                   float distance2, uint side, uint depth, uint flags, float pdf)
+                                   float distance2, bool first, uint flags, float pdf)
 {
-    if (side == SIDE_CAMERA && depth == 1u)
+    if (first)
         return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
     if ((flags & WALK_PARALLEL) != 0u)
         return pdf * float_abs(vec3_dot(ray->d, surface->ng));

@@ -12,6 +12,14 @@
 
 /* ---- a step ------------------------------------------------------------------------------------------------------ */
 
+/* Where the state of a walk is. */
+typedef struct Walk {
+    __global uint *paths;
+    __global uint *rays;
+    __global uint *diagnostics;
+    uint stride, item;
+} Walk;
+
 SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint item)
 {
     state_store(paths, stride, BD_DEPTH, item, 0u);
@@ -26,11 +34,11 @@ SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride,
 }
 
 /* The first ray of a walk. */
-SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *restrict rays,
-                                __global uint *restrict diagnostics, uint stride, uint item, uint side, Ray ray,
-                                Vec3 beta, float pdf, uint flags)
+SHARED_FUNCTION void walk_begin(Walk walk, uint side, Ray ray, Vec3 beta, float pdf, uint flags)
 {
-    ray_store(rays, stride, item, ray);
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item;
+    ray_store(walk.rays, stride, item, ray);
     state_store(paths, stride, BD_SIDE, item, side);
     state_store(paths, stride, BD_DEPTH, item, 1u);
     state_store_vec3(paths, stride, BD_BETA, item, beta);
@@ -39,8 +47,8 @@ SHARED_FUNCTION void walk_begin(__global uint *restrict paths, __global uint *re
     state_store_float(paths, stride, BD_ROULETTE_SCALE, item, 1.0f / vec3_max_component(beta));
     state_store_float(paths, stride, BD_SURVIVAL, item, 1.0f);
     if (!ray_traceable(ray.o, ray.d)) {
-        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
-        walk_end(paths, rays, stride, item);
+        diagnostic_count(walk.diagnostics, DIAGNOSTIC_RAY_RANGE);
+        walk_end(paths, walk.rays, stride, item);
     }
 }
 
@@ -88,28 +96,36 @@ SHARED_FUNCTION Vec2 scatter_point(Random4 random)
     return vec2(random_float(random.x[1]), random_float(random.x[2]));
 }
 
-/* Draws the next direction at a vertex after `depth` segments. False: absorbed, or ended by Russian roulette, which MIS
- * weights ignore: they sum to one without it. random: lobe, direction, roulette. least: walk_survival_least. */
-SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, uint depth,
-                                  float roulette_scale, float least, Random4 random, WalkStep *step)
+/* What Russian roulette needs to know of a walk. */
+typedef struct Roulette {
+    uint depth; /* segments so far */
+    float scale; /* of the throughput (BD_ROULETTE_SCALE) */
+    float least; /* walk_survival_least */
+} Roulette;
+
+/* Draws the next direction at a vertex. False: absorbed, or ended by Russian roulette, which MIS weights ignore: they
+ * sum to one without it. random: lobe, direction, roulette. */
+SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, uint side, Roulette roulette,
+                                  Random4 random, WalkStep *step)
 {
-    bool roulette = depth >= scene->frame->path.roulette_depth;
+    bool plays = roulette.depth >= scene->frame->path.roulette_depth;
     BsdfSample sample;
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     Vec2 u = scatter_point(random), u_base = u;
     if (side == SIDE_CAMERA && scene->frame->scene.guide_count > 0u && bsdf_has_base(&vertex->bsdf))
         u_base = scatter_point(light_guide_numbers(scene, vertex->p, vertex->frame, random));
-    if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, random_float(random.x[0]), u, u_base, transport, &sample))
+    BsdfDraw draw = {random_float(random.x[0]), u, u_base, transport};
+    if (!bsdf_sample_base(scene, &vertex->bsdf, vertex->wo, draw, &sample))
         return false;
     Vec3 wi = frame_to_world(vertex->frame, sample.wi);
     step->beta = vec3_mul(vertex->beta, sample.weight);
     if (side == SIDE_LIGHT)
         step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
                                                            vertex->wo.z, sample.wi.z));
-    step->roulette_scale = side == SIDE_CAMERA ? roulette_scale * sample.eta * sample.eta : roulette_scale;
-    float survival = roulette ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
+    step->roulette_scale = side == SIDE_CAMERA ? roulette.scale * sample.eta * sample.eta : roulette.scale;
+    float survival = plays ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
     if (survival > 0.0f) /* rejects NaN */
-        survival = float_max(survival, least);
+        survival = float_max(survival, roulette.least);
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))
         return false;
     step->survival = float_min(survival, 1.0f);
@@ -150,6 +166,7 @@ SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint 
 /* ---- what a ray has hit ------------------------------------------------------------------------------------------ */
 
 typedef struct WalkHit {
+    uint before; /* base of the vertex that the ray left */
     Ray ray;
     Vec3 from_ng; /* geometric normal where the ray left; for the camera's first ray its direction */
     float own; /* density with which the walk has made the point; for a miss, its direction */
@@ -163,12 +180,12 @@ typedef struct WalkHit {
     float back; /* Vertex.back at the hit */
 } WalkHit;
 
-/* Fills *walk_hit from the ray under way and its hit. `before`: base of the vertex that the ray left. */
+/* Fills *walk_hit, whose `before` is given, from the ray under way and its hit. */
 SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
                                    __global const uint *restrict rays, __global const uint *restrict hits,
-                                   __global const uint *restrict vertices, uint item, uint before, WalkHit *walk_hit)
+                                   __global const uint *restrict vertices, uint item, WalkHit *walk_hit)
 {
-    uint stride = scene->frame->pass.stride;
+    uint stride = scene->frame->pass.stride, before = walk_hit->before;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     uint flags = state_load(paths, stride, BD_WALK_FLAGS, item);
     bool first = side == SIDE_CAMERA && depth == 1u;
@@ -187,44 +204,43 @@ SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *
                          ? walk_hit->ray.o
                          : state_load_vec3(vertices, stride, before + VERTEX_POINT, item);
     walk_hit->distance2 = vec3_length_squared(vec3_sub(walk_hit->surface.p, walk_hit->from));
-    walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, side, depth,
-                                 flags, walk_hit->own);
-    walk_hit->back = walk_back_stored(paths, vertices, stride, item, side, depth, before, walk_hit->surface.p);
+    walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, first, flags,
+                                 walk_hit->own);
+    uint emitter_flags = side == SIDE_LIGHT && depth == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
+    walk_hit->back =
+        first ? 1.0f : walk_back_stored(vertices, stride, item, before, walk_hit->surface.p, emitter_flags);
     uint first_light = scene->shapes[walk_hit->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
         walk_hit->light = first_light + hit.primitive - scene->shapes[walk_hit->surface.shape].first_primitive;
 }
 
-/* Makes the vertex at the hit; `before`: base of the previous vertex. Ends the walk and returns false if the vertex
- * scatters nothing, or if it is the camera's and has max_depth segments. */
+/* Makes the vertex at the hit. False, and the walk is to end, if the vertex scatters nothing, or if it is the camera's
+ * and has max_depth segments. */
 SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *restrict paths,
-                                      __global uint *restrict rays, __global const uint *restrict vertices, uint item,
-                                      uint before, float u_mix, WalkHit *walk_hit, Vertex *vertex)
+                                      __global const uint *restrict vertices, uint item, float u_mix, WalkHit *walk_hit,
+                                      Vertex *vertex)
 {
     uint stride = scene->frame->pass.stride;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
     if ((side == SIDE_CAMERA && depth >= scene->frame->path.max_depth) ||
         !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, item), u_mix,
-                     vertex)) {
-        walk_end(paths, rays, stride, item);
+                     vertex))
         return false;
-    }
     /* Before the vertex may overwrite y_0. */
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, item,
-                          emitter_connect_ratio(scene, paths, vertices, stride, item, before, vertex->p));
+                          emitter_connect_ratio(scene, paths, vertices, stride, item, walk_hit->before, vertex->p));
     vertex->back = walk_hit->back;
     return true;
 }
 
 /* walk_vertex_make, then stores the vertex at `base`. */
-SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                 __global uint *restrict vertices, uint item, uint before, uint base, float u_mix,
-                                 WalkHit *walk_hit)
+SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict paths,
+                                 __global uint *restrict vertices, uint item, uint base, float u_mix, WalkHit *walk_hit)
 {
     uint stride = scene->frame->pass.stride;
     Vertex vertex;
-    if (!walk_vertex_make(scene, paths, rays, vertices, item, before, u_mix, walk_hit, &vertex))
+    if (!walk_vertex_make(scene, paths, vertices, item, u_mix, walk_hit, &vertex))
         return false;
     vertex_store(scene, vertices, stride, base, item, &vertex);
     state_store(vertices, stride, base + VERTEX_SURVIVAL, item, state_load(paths, stride, BD_SURVIVAL, item));
@@ -232,30 +248,30 @@ SHARED_FUNCTION bool walk_vertex(const SceneView *scene, __global uint *restrict
 }
 
 /* Draws how the walk continues from its last vertex; false if it has ended. random: lobe, direction, roulette. */
-SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, __global uint *restrict paths,
-                                       __global uint *restrict rays, __global uint *restrict diagnostics, uint item,
-                                       const Vertex *vertex, Random4 random, WalkStep *step)
+SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, Walk walk, const Vertex *vertex, Random4 random,
+                                       WalkStep *step)
 {
-    uint stride = scene->frame->pass.stride;
-    uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
-    float roulette_scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, item);
-    float least = walk_survival_least(scene->frame, paths, item);
-    if (walk_scatter(scene, vertex, side, depth, roulette_scale, least, random, step)) {
+    __global uint *paths = walk.paths;
+    uint stride = walk.stride, item = walk.item, side = state_load(paths, stride, BD_SIDE, item);
+    Roulette roulette;
+    roulette.depth = state_load(paths, stride, BD_DEPTH, item);
+    roulette.scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, item);
+    roulette.least = walk_survival_least(scene->frame, paths, item);
+    if (walk_scatter(scene, vertex, side, roulette, random, step)) {
         if (ray_traceable(step->ray.o, step->ray.d))
             return true;
-        diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
+        diagnostic_count(walk.diagnostics, DIAGNOSTIC_RAY_RANGE);
     }
-    walk_end(paths, rays, stride, item);
+    walk_end(paths, walk.rays, stride, item);
     return false;
 }
 
 /* walk_leave_vertex for the vertex stored at `base`. */
-SHARED_FUNCTION bool walk_leave(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
-                                __global const uint *restrict vertices, __global uint *restrict diagnostics, uint item,
-                                uint base, Random4 random, WalkStep *step)
+SHARED_FUNCTION bool walk_leave(const SceneView *scene, Walk walk, __global const uint *restrict vertices, uint base,
+                                Random4 random, WalkStep *step)
 {
-    Vertex vertex = vertex_load(scene, vertices, scene->frame->pass.stride, base, item);
-    return walk_leave_vertex(scene, paths, rays, diagnostics, item, &vertex, random, step);
+    Vertex vertex = vertex_load(scene, vertices, walk.stride, base, walk.item);
+    return walk_leave_vertex(scene, walk, &vertex, random, step);
 }
 
 /* ---- lights that the camera walk hits (s = 0) -------------------------------------------------------------------- */

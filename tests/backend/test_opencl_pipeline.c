@@ -29,8 +29,12 @@ static void attempt_make(RenderSetup setup, const RenderCallbacks *callbacks, co
     if (!attempt->backend)
         return;
     RenderOptions options = {.samples = setup.samples, .max_depth = setup.max_depth, .stop = stop};
-    attempt->done = render_film(integrator_pt(), &attempt->scene, backend_ocl(), attempt->backend, &options, false,
-                                callbacks, &attempt->film, &attempt->result, &attempt->error);
+    const RenderTask task = {.integrator = integrator_pt(),
+                             .scene = &attempt->scene,
+                             .backend = {backend_ocl(), attempt->backend},
+                             .options = &options,
+                             .callbacks = callbacks};
+    attempt->done = render_film(&task, &attempt->film, &attempt->result, &attempt->error);
 }
 
 static void attempt_end(Attempt *attempt)
@@ -82,7 +86,7 @@ START_TEST(test_scene_too_large)
     Bvh bvh = {0};
     test_device(&device);
     BackendScene scene = {.frame = &frame, .geometry_words = device.info.allocation_limit / 4 + 1};
-    ck_assert(!device_memory_init(&memory, NULL, NULL, &device, &scene, &bvh, 0, &error));
+    ck_assert(!device_memory_init(&memory, NULL, NULL, &device, &scene, &bvh, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "geometry"));
     ck_assert_ptr_nonnull(strstr(error.message, "largest single buffer"));
     ck_assert_ptr_nonnull(strstr(error.fix, "--backend=cpu"));
@@ -90,7 +94,7 @@ START_TEST(test_scene_too_large)
     device.info.memory = device.info.allocation_limit;
     scene.geometry_words = scene.texel_words = device.info.allocation_limit / 8;
     bvh.word_count = 1000;
-    ck_assert(!device_memory_init(&memory, NULL, NULL, &device, &scene, &bvh, 0, &error));
+    ck_assert(!device_memory_init(&memory, NULL, NULL, &device, &scene, &bvh, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "the scene"));
     device_memory_destroy(&memory);
 }

@@ -211,7 +211,7 @@ static void layered_write(const char *path, const float *rgb, const float *a, co
         {"halfA.R", a, 3, false}, {"halfA.G", a + 1, 3, false}, {"halfA.B", a + 2, 3, false},
         {"halfB.R", b, 3, false}, {"halfB.G", b + 1, 3, false}, {"halfB.B", b + 2, 3, false}};
     Error error = {0};
-    ck_assert_msg(exr_write(path, channels, b ? 9 : 6, 2, 1, NULL, NULL, 0, &error), "%s", error.message);
+    ck_assert_msg(exr_write(path, channels, b ? 9 : 6, 2, 1, &error), "%s", error.message);
 }
 
 START_TEST(test_layers_read)

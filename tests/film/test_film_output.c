@@ -32,7 +32,16 @@ static bool rgb_write(const char *path, const float *rgb, int width, int height,
     const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
     const ExrAttribute attributes[] = {exr_whole("seed", 4294967296u), exr_whole("n", 7),
                                        exr_text("software", "twinlight"), exr_text("scene", "a b\xc3\xa4")};
-    return exr_write(path, channels, 3, width, height, crop, attributes, 4, error);
+    ExrPicture picture = {.channels = channels,
+                          .channel_count = 3,
+                          .width = width,
+                          .height = height,
+                          .crop = {0, 0, width, height},
+                          .attributes = attributes,
+                          .attribute_count = 4};
+    if (crop)
+        memcpy(picture.crop, crop, sizeof picture.crop);
+    return exr_write_picture(path, &picture, error);
 }
 
 START_TEST(test_exr_keeps_every_bit)
@@ -69,7 +78,7 @@ START_TEST(test_exr_noise)
         noise[i] = zero ? 0.0f : bits_float((bits & 0x7f800000u) == 0x7f800000u ? bits ^ 0x00800000u : bits);
     }
     const ExrChannel channels[] = {{"Y", noise, 1, false}};
-    ck_assert_msg(exr_write(test_path("n.exr"), channels, 1, SIDE, LINES, NULL, NULL, 0, &error), "%s", error.message);
+    ck_assert_msg(exr_write(test_path("n.exr"), channels, 1, SIDE, LINES, &error), "%s", error.message);
     ck_assert_msg(image_read(test_path("n.exr"), &image, &error), "%s", error.message);
     ck_assert_int_eq(image.channels, 1);
     ck_assert_mem_eq(image.data, noise, count * sizeof *noise);
@@ -139,7 +148,14 @@ START_TEST(test_exr_attribute_types)
     const ExrAttribute attributes[] = {exr_whole("samples", 2147483647u), exr_whole("seed", 2147483648u),
                                        exr_real("time", 0.5), exr_matrix("worldToCamera", matrix)};
     Error error;
-    ck_assert(exr_write(test_path("types.exr"), channels, 3, WIDTH, HEIGHT, NULL, attributes, 4, &error));
+    const ExrPicture picture = {.channels = channels,
+                                .channel_count = 3,
+                                .width = WIDTH,
+                                .height = HEIGHT,
+                                .crop = {0, 0, WIDTH, HEIGHT},
+                                .attributes = attributes,
+                                .attribute_count = 4};
+    ck_assert(exr_write_picture(test_path("types.exr"), &picture, &error));
     exr_context_t context = NULL;
     int32_t whole = 0;
     float real = 0.0f;
@@ -173,15 +189,14 @@ START_TEST(test_exr_layers)
                                    {"B", data + 2, 4, true},
                                    {"G", data + 1, 4, true},
                                    {"A", data + 3, 4, false}};
-    ck_assert_msg(exr_write(test_path("l.exr"), channels, 5, WIDTH, HEIGHT, NULL, NULL, 0, &error), "%s",
-                  error.message);
+    ck_assert_msg(exr_write(test_path("l.exr"), channels, 5, WIDTH, HEIGHT, &error), "%s", error.message);
     ck_assert_msg(image_read(test_path("l.exr"), &image, &error), "%s", error.message);
     ck_assert_int_eq(image.channels, 4);
     for (size_t i = 0; i < 4 * WIDTH * HEIGHT; ++i)
         TEST_NEAR(image_value(&image, i), i == 0 ? 65504.0f : data[i], 0.0);
     image_destroy(&image);
     const ExrChannel twice[] = {{"R", data, 1, false}, {"R", data, 1, false}};
-    ck_assert(!exr_write(test_path("t.exr"), twice, 2, WIDTH, HEIGHT, NULL, NULL, 0, &error));
+    ck_assert(!exr_write(test_path("t.exr"), twice, 2, WIDTH, HEIGHT, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "two channels are named \"R\""));
     ck_assert_int_eq(test_folder_entries(), 1);
 }

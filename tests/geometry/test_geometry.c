@@ -21,8 +21,8 @@ static uint mesh_hits(const TestMesh *mesh, const RayQuery *query)
     uint hits = 0;
     for (size_t i = 0; i < mesh->triangle_count; ++i) {
         const uint *v = mesh->indices + 3 * i;
-        float t, b, c;
-        hits += triangle_query(mesh->positions[v[0]], mesh->positions[v[1]], mesh->positions[v[2]], query, &t, &b, &c);
+        Hit hit;
+        hits += triangle_query(mesh->positions[v[0]], mesh->positions[v[1]], mesh->positions[v[2]], query, &hit);
     }
     return hits;
 }

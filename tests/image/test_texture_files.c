@@ -249,10 +249,10 @@ START_TEST(test_exr_channels)
     const ExrChannel y = {"Y", grey, 1, false}, z = {"Z", grey, 1, false}, two[] = {y, {"RY", grey, 1, false}};
     const ExrChannel pair[] = {{"R", grey, 1, false}, {"G", grey, 1, false}};
     Error error;
-    ck_assert(exr_write(test_path("y.exr"), &y, 1, 2, 1, NULL, NULL, 0, &error));
-    ck_assert(exr_write(test_path("z.exr"), &z, 1, 2, 1, NULL, NULL, 0, &error));
-    ck_assert(exr_write(test_path("two.exr"), two, 2, 2, 1, NULL, NULL, 0, &error));
-    ck_assert(exr_write(test_path("pair.exr"), pair, 2, 2, 1, NULL, NULL, 0, &error));
+    ck_assert(exr_write(test_path("y.exr"), &y, 1, 2, 1, &error));
+    ck_assert(exr_write(test_path("z.exr"), &z, 1, 2, 1, &error));
+    ck_assert(exr_write(test_path("two.exr"), two, 2, 2, 1, &error));
+    ck_assert(exr_write(test_path("pair.exr"), pair, 2, 2, 1, &error));
     const char *const good[] = {"y.exr", "z.exr"};
     for (int i = 0; i < 2; ++i) {
         Image image = read_good(test_path(good[i]));
@@ -290,7 +290,7 @@ START_TEST(test_exr_choices)
             names[c][1] = '\0';
             channels[c] = (ExrChannel){names[c], data[c], 1, i % 2 == 1};
         }
-        ck_assert(exr_write(test_path("c.exr"), channels, count, 3, 2, NULL, NULL, 0, &error));
+        ck_assert(exr_write(test_path("c.exr"), channels, count, 3, 2, &error));
         Image image = read_good(test_path("c.exr"));
         ck_assert_int_eq(image.channels, (int)strlen(wanted));
         for (int k = 0; k < 6; ++k)

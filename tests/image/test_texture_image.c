@@ -144,7 +144,7 @@ START_TEST(test_floats)
     const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, false}, {"B", rgb + 2, 3, false}};
     Error error;
     char warning[256] = "";
-    ck_assert(exr_write(test_path("f.exr"), channels, 3, 2, 1, NULL, NULL, 0, &error));
+    ck_assert(exr_write(test_path("f.exr"), channels, 3, 2, 1, &error));
     Scene scene;
     TextureCache cache;
     scene_init(&scene);

@@ -170,8 +170,8 @@ START_TEST(test_splat)
         for (uint k = 0; k < N * N; ++k) {
             Random4 random = {
                 {0u, k % N * (0x80000000u / N * 2u) + 0x1000000u, k / N * (0x80000000u / N * 2u) + 0x1000000u, 0u}};
-            chain_splat(&shown.light.view, shown.splats, shown.diagnostics, 0, chain_key(4, 2), film, 1.0f, color,
-                        visits, random);
+            ChainSplat path = {chain_key(4, 2), film, 1.0f, color, visits};
+            chain_splat(&shown.light.view, shown.splats, shown.diagnostics, 0, &path, random);
             if (shown.splats[SPLAT_PIXEL] == NONE)
                 continue;
             uint pixel = shown.splats[SPLAT_PIXEL] & ~SPLAT_LAYERS, x = pixel % WIDTH - X0, y = pixel / WIDTH - Y0;
@@ -291,9 +291,10 @@ START_TEST(test_environment)
         expected[1] += (double)colors[i].y;
         expected[2] += (double)colors[i].z;
     }
+    WalkHit miss = {.ray.d = d, .from_ng = ng, .missed = true};
     for (uint k = 0; k < N; ++k) {
         float path_tracing = 0.0f;
-        Vec3 got = chain_environment(&shown.light.view, beta, view, d, ng, depth, ((float)k + 0.5f) / N, &path_tracing);
+        Vec3 got = chain_environment(&shown.light.view, beta, view, &miss, depth, ((float)k + 0.5f) / N, &path_tracing);
         bool one = false;
         TEST_NEAR(luminance_of(got) / all, 1.0, 1e-5);
         for (uint i = 0; i < frame->scene.infinite_light_count; ++i)
@@ -431,8 +432,8 @@ START_TEST(test_candidates)
         for (int i = 0; i < PATHS; ++i) {
             double f = luminance_of(colors[i]) * (double)(importance[i] * cover[i] * survival[i]);
             double counted = KINDS[i][0] > 1 ? (double)LIGHTS_WEIGHT : 1.0;
-            Vec3 got = reservoir_update(frame, shown.light.view.guide, shown.paths, 0, KINDS[i][0], KINDS[i][1],
-                                        survival[i], cover[i], importance[i], colors[i]);
+            Candidate path = {KINDS[i][0], KINDS[i][1], survival[i], cover[i], importance[i], colors[i]};
+            Vec3 got = reservoir_update(frame, shown.light.view.guide, shown.paths, 0, path);
             TEST_TRUE((f > (double)LIMIT) == (i % 2 == 1));
             TEST_NEAR(luminance_of(got) / luminance_of(colors[i]), counted * fmin((double)LIMIT / f, 1.0), 1e-5);
         }
@@ -479,7 +480,7 @@ START_TEST(test_start)
         for (uint sample = 0; sample < SAMPLES; ++sample) {
             shown.paths[BD_PIXEL] = pixel;
             shown.paths[BD_SAMPLE] = sample;
-            pool_start_camera(&shown.light.view, shown.paths, shown.rays, shown.diagnostics, 0);
+            pool_start_camera(&shown.light.view, (Walk){shown.paths, shown.rays, shown.diagnostics, 1, 0});
             Random4 random = {{0u, 0u, 0u, 0u}};
             float weight;
             random = pool_camera(&shown.light.view, shown.paths, 0, &weight);

@@ -185,9 +185,9 @@ static void picture_render(const RenderSetup *setup, const Scene *scene, bool al
     Backend *backend = alone ? members[0].backend : backend_group_create(members, 2, &error);
     ck_assert_msg(backend != NULL, "%s", error.message);
     ck_assert(film_init(&film, scene->settings.width, scene->settings.height, scene->settings.crop, &error));
-    ck_assert_msg(
-        render_film(integrator_mmlt(), scene, interface, backend, &options, false, NULL, &film, &result, &error), "%s",
-        error.message);
+    const RenderTask task = {
+        .integrator = integrator_mmlt(), .scene = scene, .backend = {interface, backend}, .options = &options};
+    ck_assert_msg(render_film(&task, &film, &result, &error), "%s", error.message);
     film_resolve(&film, scene->settings.film_scale, rgb);
     film_destroy(&film);
     interface->close(backend);

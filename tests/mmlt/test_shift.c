@@ -201,7 +201,7 @@ START_TEST(test_kept_point)
 }
 END_TEST
 
-/* With the numbers that shift_guide finds and stores, walk_scatter samples the direction to the next vertex, also if
+/* With the numbers that shift_guide finds, walk_scatter samples the direction to the next vertex, also if
  * numbers are relative to a light guide (second run). shift_drawn stores the density of the diffuse lobe, cosine /
  * pi. */
 START_TEST(test_kept_numbers)
@@ -233,10 +233,11 @@ START_TEST(test_kept_numbers)
         Random4 numbers = {{(uint)(u[2] * 4e9f), (uint)(u[3] * 4e9f), (uint)(u[4] * 4e9f), 0u}};
         kept_init(&kept, SHIFT_STEP | SHIFT_KEEPS);
         state_store_vec3(kept.vertices, 1, shift_point(0, i + 1), 0, vec3_mad(vertex.p, 1.0f + 3.0f * u[5], w));
-        ck_assert(shift_guide(&view, kept.paths, kept.vertices, 0, d, i, &vertex, &numbers));
+        ck_assert(shift_guide(&view, kept.paths, kept.vertices, 0, i, &vertex, &numbers));
+        shift_numbers_store(&scene.frame, kept.paths, 0, d, i, numbers);
         for (uint k = 0; k < 2; ++k)
             TEST_TRUE(state_load(kept.paths, 1, shift_number(&scene.frame, d, i, k), 0) == numbers.x[1 + k]);
-        TEST_TRUE(walk_scatter(&view, &vertex, SIDE_CAMERA, 1, 1.0f, 0.0f, numbers, &step));
+        TEST_TRUE(walk_scatter(&view, &vertex, SIDE_CAMERA, (Roulette){1, 1.0f, 0.0f}, numbers, &step));
         TEST_NEAR(vec3_length(vec3_sub(step.ray.d, w)), 0.0, 1e-4);
         shift_drawn(&view, kept.paths, 0, &vertex, numbers, w);
         TEST_NEAR(bits_float(kept.paths[BD_SHIFT_DENSITY]), (double)vec3_dot(w, vertex.ng) / 3.14159265358979, 1e-5);

@@ -141,9 +141,11 @@ START_TEST(test_quantum_of_pilot)
             Backend *backend = fixture_open(&setup, &scene, &error);
             ck_assert_msg(backend != NULL, "%s", error.message);
             ck_assert(film_init(&film, 16, 16, scene.settings.crop, &error));
-            ck_assert_msg(render_film(integrators[i], &scene, backend_cpu(), backend, &options, false, NULL, &film,
-                                      &result, &error),
-                          "%s", error.message);
+            const RenderTask task = {.integrator = integrators[i],
+                                     .scene = &scene,
+                                     .backend = {backend_cpu(), backend},
+                                     .options = &options};
+            ck_assert_msg(render_film(&task, &film, &result, &error), "%s", error.message);
             exponents[i][k] = film.quantum_exponent;
             ck_assert_int_eq(exponents[i][k], exponents[i][0] + (k == 1 ? 40 : 0));
             backend_cpu()->close(backend);
@@ -326,9 +328,9 @@ START_TEST(test_not_finite)
     ck_assert_msg(backend != NULL, "%s", error.message);
     ck_assert(film_init(&film, 16, 16, scene.settings.crop, &error));
     RenderOptions options = {.samples = 16, .max_depth = 4};
-    ck_assert_msg(
-        render_film(integrator, &scene, backend_cpu(), backend, &options, false, NULL, &film, &result, &error), "%s",
-        error.message);
+    const RenderTask task = {
+        .integrator = integrator, .scene = &scene, .backend = {backend_cpu(), backend}, .options = &options};
+    ck_assert_msg(render_film(&task, &film, &result, &error), "%s", error.message);
     film_resolve(&film, 1.0f, rgb);
     double mean = 0.0;
     for (int i = 0; i < 3 * 16 * 16; ++i) {

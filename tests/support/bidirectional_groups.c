@@ -37,9 +37,12 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
                              .unweighted = setup->unweighted};
     ck_assert_msg(film_init(&film, settings->width, settings->height, settings->crop, &error), "%s", error.message);
     film.quantum_exponent = renderer->quantum_exponent;
-    ck_assert_msg(render_film(setup->integrator ? setup->integrator : integrator_pt(), &renderer->scene, backend_cpu(),
-                              renderer->backend, &options, renderer->have_quantum, NULL, &film, &result, &error),
-                  "%s", error.message);
+    const RenderTask task = {.integrator = setup->integrator ? setup->integrator : integrator_pt(),
+                             .scene = &renderer->scene,
+                             .backend = {backend_cpu(), renderer->backend},
+                             .options = &options,
+                             .keep_quantum = renderer->have_quantum};
+    ck_assert_msg(render_film(&task, &film, &result, &error), "%s", error.message);
     renderer->quantum_exponent = film.quantum_exponent;
     renderer->have_quantum = true;
     if (renderer->layer_depth > 0)

@@ -178,9 +178,8 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
     Error error = {0};
     double inverse[16];
     test_matrix_inverse(world_from_object, inverse);
-    ck_assert_msg(
-        scene_add_quadric(&test->scene, kind, quadric, world_from_object, inverse, shape_plain(0), NULL, 0, &error),
-        "%s", error.message);
+    const QuadricData data = {kind, quadric, world_from_object, inverse};
+    ck_assert_msg(scene_add_quadric(&test->scene, &data, shape_plain(0), NULL, 0, &error), "%s", error.message);
 }
 
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count)
@@ -269,7 +268,12 @@ Hit brute_force(const TestScene *test, const Ray *ray)
 bool triangle_intersect(Vec3 a, Vec3 b, Vec3 c, const Ray *ray, float *t, float *u, float *v)
 {
     RayQuery query = ray_query(*ray);
-    return triangle_query(a, b, c, &query, t, u, v);
+    Hit hit = {0};
+    bool found = triangle_query(a, b, c, &query, &hit);
+    *t = hit.t;
+    *u = hit.u;
+    *v = hit.v;
+    return found;
 }
 
 bool hit_same(const Hit *a, const Hit *b)

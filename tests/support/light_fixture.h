@@ -85,9 +85,9 @@ static inline void fixture_add_quadric(LightFixture *f, uint kind, Quadric quadr
     double inverse[16];
     Error error = {0};
     test_matrix_inverse(matrix, inverse);
-    ck_assert_msg(scene_add_quadric(&f->scene, kind, quadric, matrix, inverse, fixture_shape(shape_flags), emission,
-                                    light_flags, &error),
-                  "%s", error.message);
+    const QuadricData data = {kind, quadric, matrix, inverse};
+    ck_assert_msg(scene_add_quadric(&f->scene, &data, fixture_shape(shape_flags), emission, light_flags, &error), "%s",
+                  error.message);
 }
 
 static inline void fixture_add_sphere(LightFixture *f, float radius, double x, double y, double z, float radiance,

@@ -70,9 +70,12 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},
                              .unweighted = setup->unweighted};
-    require(render_film(setup->integrator ? setup->integrator : integrator_pt(), &scene, interface, backend, &options,
-                        setup->quantum_of != NULL, NULL, &image->film, &image->result, &error),
-            &error);
+    const RenderTask task = {.integrator = setup->integrator ? setup->integrator : integrator_pt(),
+                             .scene = &scene,
+                             .backend = {interface, backend},
+                             .options = &options,
+                             .keep_quantum = setup->quantum_of != NULL};
+    require(render_film(&task, &image->film, &image->result, &error), &error);
     interface->close(backend);
     image->rgb = malloc((size_t)image->width * (size_t)image->height * 3 * sizeof *image->rgb);
     ck_assert_ptr_nonnull(image->rgb);
