@@ -43,8 +43,8 @@ struct Backend {
 /* ---- the pool ---------------------------------------------------------------------------------------------------- */
 
 /* Items per chunk. In a small pass, such as the first generations of chains, every thread should get several chunks.
- * Not when states are compared: a chunk of few items may be idle and skip steps that clear state, which a device with
- * its larger batch would run. */
+ * Not when states are compared: if all items of a small chunk are dead, steps that clear state are skipped, which a
+ * device with its larger batch would run. */
 static uint chunk_items(const Job *job, const Backend *backend)
 {
     if (job->inspect)
@@ -179,8 +179,8 @@ static bool threads_start(Backend *backend, uint count, Error *error)
         thread->backend = backend;
         bool ready = worker_init(&thread->worker, backend->scene, backend->rays, error);
         if (ready && pthread_create(&thread->thread, NULL, thread_main, thread) != 0) {
-            error_set(error, "thread %u of %u cannot be started", i + 1, count);
-            ready = error_fix(error, "ask for fewer with --threads");
+            error_set(error, "cannot start thread %u of %u", i + 1, count);
+            ready = error_fix(error, "use fewer, with --threads");
         }
         if (!ready) {
             worker_destroy(&thread->worker);

@@ -2,8 +2,8 @@
 #include "config.h"
 #endif
 
-/* Before any shared header: inlines everything into the loops of this file, which are those of path tracing and of the
- * auxiliary variables, which start with the same kernels. */
+/* Before any shared header: inlines everything into the loops of this file, those of path tracing and of the AOVs,
+ * which start with the same kernels. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif

@@ -47,7 +47,7 @@ struct RaysEmbree {
 /* What the callbacks reach through the context that Embree passes on. The hit is kept here and not in Embree's record;
  * Embree only learns the new end of the ray. */
 typedef struct RayWalk {
-    struct RTCIntersectContext context; /* first, so that Embree's pointer to it is one to the walk */
+    struct RTCIntersectContext context; /* first, so that Embree's pointer to it also points to the walk */
     const RaysEmbree *rays;
     const Ray *ray; /* NULL once `query` is made from it: many rays hit no box and never need one */
     RayQuery query;
@@ -353,14 +353,14 @@ static void *thread_empty(void *nothing)
     return nothing;
 }
 
-/* Likewise if no thread can be started. */
+/* Embree may also end the program if it cannot start a thread. */
 static bool thread_probe(Error *error)
 {
     pthread_t thread;
     if (pthread_create(&thread, NULL, thread_empty, NULL) == 0)
         return pthread_join(thread, NULL) == 0;
-    error_set(error, "no thread can be started");
-    return error_fix(error, "end other programs, or have the limit raised: ulimit -u");
+    error_set(error, "cannot start a thread");
+    return error_fix(error, "end other programs, or raise the limit on processes: ulimit -u");
 }
 
 static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads, Error *error)
@@ -372,9 +372,9 @@ static bool rays_build(RaysEmbree *rays, const BackendScene *scene, int threads,
     rays->device = rtcNewDevice(config);
     if (!rays->device) {
         int code = (int)rtcGetDeviceError(NULL);
-        error_set(error, "Embree cannot be started (error %d%s)", code,
+        error_set(error, "cannot start Embree (error %d%s)", code,
                   code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "");
-        return error_fix(error, "use a machine with more memory, or raise the limit of address space: ulimit -v");
+        return error_fix(error, "use a machine with more memory, or raise the limit on address space: ulimit -v");
     }
     if (!memory_probe(rays, threads, error))
         return false;
@@ -440,8 +440,8 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     walk->best = hit_none(ray->t_max);
 }
 
-/* Whether the ray starts beyond the reach of Embree's margins. That choice decides no bit: both traversals find what
- * the shared primitive test finds. */
+/* Whether the ray starts beyond the reach of Embree's margins. The choice affects no bit: both traversals find the hits
+ * of the shared primitive test. */
 static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
 {
     return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;

@@ -232,7 +232,7 @@ static inline LaneMask lanes_in_box(const TriangleCluster *cluster, const RayQue
     return inside;
 }
 
-/* The lanes that triangle_query would continue with: does its first half, and computes t as triangle_finish does, which
+/* The lanes with which triangle_query would continue. Does its first half, and computes t as triangle_finish does: t
  * must be ahead of the origin and, unless box_admits_hit would move it, not beyond t_best. This nearly always rejects
  * the triangle that a ray starts on. Of the other candidates nearly all are hits inside their boxes and far from the
  * ray's ends; test->sure says which are. */

@@ -60,9 +60,9 @@ static void rounding_ask(OclDevice *device)
     if (!info->promises_division)
         ocl_device_probe(device, false);
     if (!info->same_bits)
-        log_message(LOG_WARNING, "%s does not have %s%s%s: the image may differ from the CPU's in the last bits",
-                    info->name, info->rounds_division ? "" : "correctly rounded division and square roots",
-                    !info->rounds_division && !info->keeps_denormals ? ", nor " : "",
+        log_message(LOG_WARNING, "%s lacks %s%s%s: the image may differ from the CPU's in the last bits", info->name,
+                    info->rounds_division ? "" : "correctly rounded division and square roots",
+                    !info->rounds_division && !info->keeps_denormals ? " and " : "",
                     info->keeps_denormals ? "" : "denormal numbers");
 }
 
@@ -244,7 +244,7 @@ static bool backend_ocl_run(Backend *backend, const FrameParams *frame, const St
     if (items_done)
         *items_done = 0;
     if (backend->failed)
-        return error_set(error, "%s has failed before", backend->device.info.name);
+        return error_set(error, "%s has failed in an earlier pass", backend->device.info.name);
     if (!device_memory_reserve(&backend->memory, list, error) || !pass_data_begin(&backend->memory, frame, list, error))
         return false;
     bool done =

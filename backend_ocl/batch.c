@@ -137,7 +137,7 @@ static bool batch_begin(Launch *launch)
     const DeviceMemory *memory = launch->launcher->memory;
     Batch *batch = launch->batch;
     if (batch->number == launch->launcher->fail_at)
-        return check(launch, CL_OUT_OF_RESOURCES, "computing (TWINLIGHT_TEST_FAIL_BATCH orders it)");
+        return check(launch, CL_OUT_OF_RESOURCES, "computing (as TWINLIGHT_TEST_FAIL_BATCH requests)");
     return buffer_write(launch, batch->memory->frame, &batch->frame, sizeof batch->frame) &&
            buffer_write(launch, memory->state[BUFFER_COUNTS], ZEROS, COUNT_WORDS * sizeof(uint)) &&
            buffer_write(launch, memory->state[BUFFER_DIAGNOSTICS], ZEROS, DIAGNOSTIC_COUNT * sizeof(uint));
@@ -150,8 +150,8 @@ static void counted_release(Launch *launch)
     launch->counted = NULL;
 }
 
-/* Counts live rays and traces them. Near the turn at which a batch may have ended, the count is read back while the
- * rays are traced, so that the device stays busy while the host waits for it. */
+/* Counts live rays and traces them. From one turn before first_check on, the count is read back while the rays are
+ * traced, so that the device stays busy while the host waits for it. */
 static bool trace_closest(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -252,8 +252,8 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
     return done;
 }
 
-/* The next batch starts asking one turn before this one ended, since batches differ by a turn or two. With several
- * walks in the list, each of which may end early, all turns are asked. */
+/* The next batch starts to check for live rays one turn before this one ended, since batches differ by a turn or two.
+ * With several walks in the list, each of which may end early, every turn is checked. */
 static void first_check_adapt(Launch *launch)
 {
     Launcher *launcher = launch->launcher;

@@ -178,7 +178,7 @@ static bool staging_map(DeviceMemory *memory, BatchMemory *batch, size_t bytes, 
     cl_int status;
     batch->host = clEnqueueMapBuffer(memory->queue, batch->staging, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes, 0,
                                      NULL, NULL, &status);
-    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "mapping memory of the host", status);
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "mapping host memory", status);
 }
 
 static bool batches_make(DeviceMemory *memory, uint64_t stride, Error *error)

@@ -122,7 +122,7 @@ void ocl_device_probe(OclDevice *device, bool anew)
     RoundingProbe probe;
     Error error = {0};
     if (!rounding_probe_run(device, anew, &probe, &error)) {
-        log_message(LOG_WARNING, "divisions and square roots of %s cannot be probed: %s", info->name,
+        log_message(LOG_WARNING, "cannot probe the divisions and square roots of %s: %s", info->name,
                     error_text(&error));
         return;
     }
@@ -131,8 +131,8 @@ void ocl_device_probe(OclDevice *device, bool anew)
     info->same_bits = device_same_bits(device);
     if (info->promises_division && probe.wrong > 0)
         log_message(LOG_WARNING,
-                    "%s promises correctly rounded division and square roots, but %llu of %llu are not; %s", info->name,
-                    (unsigned long long)probe.wrong, (unsigned long long)probe.compared, probe.first);
+                    "%s promises correctly rounded division and square roots, but %llu of %llu results are wrong: %s",
+                    info->name, (unsigned long long)probe.wrong, (unsigned long long)probe.compared, probe.first);
 }
 
 size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all)
@@ -157,7 +157,7 @@ static bool fix_with_list(const OclDevice *devices, size_t count, Error *error)
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%zu (%s)", i > 0 ? ", " : "", i, devices[i].info.name);
     }
-    return error_fix(error, "there are: %s; see twinlight devices", list);
+    return error_fix(error, "use one of: %s; see twinlight devices", list);
 }
 
 static bool is_number(const char *text)
@@ -180,7 +180,7 @@ static bool device_pick(const OclDevice *devices, size_t count, const char *choi
         *picked = strtoul(choice, NULL, 10);
         if (*picked < count)
             return true;
-        error_set(error, "--device=%s: there is no OpenCL device of that number", choice);
+        error_set(error, "--device=%s: there is no OpenCL device with that number", choice);
         return fix_with_list(devices, count, error);
     }
     for (size_t i = count; i-- > 0;)
@@ -205,13 +205,13 @@ static bool no_device(Error *error)
     char name[128] = "";
     if (clGetPlatformIDs(1, &platform, NULL) != CL_SUCCESS) {
         error_set(error, "there is no OpenCL device");
-        return error_fix(error, "install the driver of the machine's GPU, or PoCL, which computes on the CPU: "
-                                "apt-get install pocl-opencl-icd; or take --backend=cpu");
+        return error_fix(error, "install the driver of the machine's GPU, or PoCL, which computes on the CPU (apt-get "
+                                "install pocl-opencl-icd), or use --backend=cpu");
     }
     clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
-    error_set(error, "there is no OpenCL device, though there is a driver (%s)", name);
-    return error_fix(error, "PoCL has none when its cache folder cannot be written: set XDG_CACHE_HOME or "
-                            "POCL_CACHE_DIR to one that can; or take --backend=cpu");
+    error_set(error, "there is no OpenCL device, although a driver is installed (%s)", name);
+    return error_fix(error, "PoCL offers none if it cannot write its cache folder: set XDG_CACHE_HOME or "
+                            "POCL_CACHE_DIR to a writable folder, or use --backend=cpu");
 }
 
 bool ocl_device_choose(const char *choice, OclDevice *device, Error *error)

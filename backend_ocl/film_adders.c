@@ -165,8 +165,8 @@ FilmAdders *adders_create(int threads, Timeline *timeline, Error *error)
     for (int i = 0; i < threads; ++i) {
         list[i] = (Adder){.adders = adders, .lane = (uint)i};
         if (pthread_create(&list[i].thread, NULL, adder_main, &list[i]) != 0) {
-            error_set(error, "thread %d of %d cannot be started", i + 1, threads);
-            error_fix(error, "ask for fewer with --threads");
+            error_set(error, "cannot start thread %d of %d", i + 1, threads);
+            error_fix(error, "use fewer, with --threads");
             adders_destroy(adders);
             return NULL;
         }

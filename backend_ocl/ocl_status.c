@@ -69,11 +69,12 @@ bool ocl_fail(Error *error, const char *device, const char *what, cl_int status)
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:
     case CL_OUT_OF_RESOURCES:
     case CL_OUT_OF_HOST_MEMORY:
-        return error_fix(error, "try a smaller --batch=N, close what else uses the device, or take --backend=cpu");
+        return error_fix(error,
+                         "try a smaller --batch=N, close other programs that use the device, or use --backend=cpu");
     case CL_COMPILER_NOT_AVAILABLE:
-        return error_fix(error, "this device builds no programs; choose another (see twinlight devices)");
+        return error_fix(error, "this device cannot build programs; choose another (see twinlight devices)");
     default:
-        return error_fix(error, "choose another device (see twinlight devices) or --backend=cpu; if it happens again, "
-                                "the device's driver is at fault");
+        return error_fix(error, "choose another device (see twinlight devices) or --backend=cpu; if this happens "
+                                "repeatedly, suspect the device's driver");
     }
 }

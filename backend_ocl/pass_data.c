@@ -30,7 +30,7 @@ bool pass_data_begin(DeviceMemory *memory, const FrameParams *frame, const StepL
     if (status == CL_SUCCESS)
         status = clEnqueueWriteBufferRect(memory->queue, *buffer, CL_TRUE, region.device, region.host, region.size,
                                           region.device_row, 0, region.host_row, 0, list->pass_words, 0, NULL, NULL);
-    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's words", status);
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's data", status);
 }
 
 bool pass_data_end(DeviceMemory *memory, const FrameParams *frame, const StepList *list, Error *error)
@@ -43,5 +43,5 @@ bool pass_data_end(DeviceMemory *memory, const FrameParams *frame, const StepLis
                                             region.device_row, 0, region.host_row, 0, list->pass_words, 0, NULL, NULL);
     clReleaseMemObject(*buffer);
     *buffer = NULL;
-    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's words back", status);
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's data back", status);
 }

@@ -73,15 +73,15 @@ static bool build_fail(const OclProgram *program, const char *folder, cl_int sta
     }
     int length;
     const char *line = log_first_error(log, &length);
-    error_set(error, "%s does not build the kernels of %s: %.*s", program->device->info.name, folder,
+    error_set(error, "%s cannot build the kernels of %s: %.*s", program->device->info.name, folder,
               length > 400 ? 400 : length, line);
     bool has_reason = strstr(log, "error:") != NULL;
     log_show(program, log);
     free(log);
     if (!has_reason)
-        return error_fix(error, "the driver gives no reason; PoCL must be able to write in its cache folder: set "
-                                "POCL_CACHE_DIR to one that it can, choose another device, or --backend=cpu");
-    return error_fix(error, "the sources must be those of this version of Twinlight (TWINLIGHT_KERNELS names another "
+        return error_fix(error, "the driver gives no reason; PoCL must be able to write to its cache folder: set "
+                                "POCL_CACHE_DIR to a writable folder, or choose another device or --backend=cpu");
+    return error_fix(error, "the sources must be those of this version of Twinlight (TWINLIGHT_KERNELS selects another "
                             "folder); otherwise choose another device, or --backend=cpu");
 }
 
@@ -93,13 +93,13 @@ static bool build_from_source(OclProgram *program, const char *source, const cha
     bool driver_keeps = program->device->keeps_programs;
     uint64_t start = timeline_now();
     if (!driver_keeps)
-        log_message(LOG_INFO, "building the kernels for %s; they are kept for the next time", device);
+        log_message(LOG_INFO, "building the kernels for %s; they are kept for later runs", device);
     program->program = clCreateProgramWithSource(program->context, 1, &source, NULL, &status);
     if (status != CL_SUCCESS)
         return ocl_fail(error, device, "making a program", status);
     status = clBuildProgram(program->program, 1, &program->device->id, options, NULL, NULL);
     if (status == CL_SUCCESS && driver_keeps && timeline_now() - start > SLOW_BUILD)
-        log_message(LOG_INFO, "%s builds each kernel when it is first used, and keeps it for the next time", device);
+        log_message(LOG_INFO, "%s builds each kernel on first use, and keeps it for later runs", device);
     return status == CL_SUCCESS || build_fail(program, folder, status, error);
 }
 
@@ -145,7 +145,7 @@ static void save_to_cache(const OclProgram *program, CacheKey key)
     size_t size;
     unsigned char *binary = program_binary(program->program, &size);
     if (binary && !cache_write(key, binary, size, path))
-        log_message(LOG_INFO, "the built kernels cannot be kept in %s; they will be built again next time",
+        log_message(LOG_INFO, "cannot keep the built kernels in %s; the next run will build them again",
                     path[0] ? path : "a cache (neither XDG_CACHE_HOME nor HOME is set)");
     free(binary);
 }

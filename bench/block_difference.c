@@ -7,7 +7,7 @@
  *   the largest |m| of all blocks, and its e;
  *   the largest |m| - T e, or 0, where T is Student's value for p = 0.01 of all blocks together;
  *   |m| and e of the whole picture, relative to its mean;
- *   the root mean square of d between two seeds of B, most of which equal seeds cancel. */
+ *   the root mean square of d between two seeds of B, most of which cancels if seeds are equal. */
 #include "bench_util.h"
 
 #include "base/student.h"

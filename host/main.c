@@ -36,9 +36,9 @@ static const Command COMMANDS[] = {
     {"render", "render a scene to OpenEXR and PNG", cmd_render},
     {"compare", "measure how far an image is from a reference", compare_run},
     {"bench", "measure error against time and write a report", cmd_bench},
-    {"info", "say what a scene holds", cmd_info},
-    {"devices", "list what can be rendered on", cmd_devices},
-    {"pyramid", "show what every bidirectional strategy brings", cmd_pyramid},
+    {"info", "print what a scene contains", cmd_info},
+    {"devices", "list backends and devices for rendering", cmd_devices},
+    {"pyramid", "show the contribution of every bidirectional strategy", cmd_pyramid},
 };
 
 #define COMMAND_COUNT (int)(sizeof COMMANDS / sizeof COMMANDS[0])
@@ -70,9 +70,11 @@ static void help_print(FILE *stream)
           stream);
     for (int i = 0; i < COMMAND_COUNT; ++i)
         fprintf(stream, "  %-8s  %s\n", COMMANDS[i].name, COMMANDS[i].summary);
-    fputs("\n  -h, --help     print this and exit; after a command, its own help\n"
-          "  -V, --version  print the version and exit\n\n"
-          "Exit status: 0 done; 1 failed, with an error; 2 command line not understood; 130 ended by a signal.\n"
+    fputs("\n"
+          "  -h, --help     print this and exit; after a command, its own help\n"
+          "  -V, --version  print the version and exit\n"
+          "\n"
+          "Exit status: 0 success; 1 failure, with an error; 2 invalid command line; 130 ended by a signal.\n"
           "More: man twinlight.\n",
           stream);
 }

@@ -1,5 +1,6 @@
-/* The mean of an even number of independent renderings, as an EXR of half floats, and how far from the truth it is:
- * half of them against the other half have four times its mean square error. usage: average_images OUT.exr IN... */
+/* The mean of an even number of independent renderings, as an EXR of half floats, and its error: the mean square
+ * difference between the means of the two halves is four times the mean square error of the mean of all.
+ * usage: average_images OUT.exr IN... */
 #include "compare/metrics.h"
 #include "image/image.h"
 #include "image/rendering_file.h"

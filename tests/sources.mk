@@ -248,6 +248,7 @@ tests_test_texture_SOURCES = tests/image/test_texture.c \
 # Rules of the source tree, and end-to-end tests of the program.
 script_tests = \
 	tests/check_layers.sh \
+	tests/check_parameters.sh \
 	tests/check_opencl.sh \
 	tests/bench/test_bench.sh \
 	tests/command/test_cli.sh \

@@ -291,7 +291,7 @@ static bool builder_run(Builder *builder, Error *error)
 {
     builder->device = rtcNewDevice("set_affinity=0");
     if (!builder->device)
-        return error_set(error, "Embree cannot be started (error %d)", (int)rtcGetDeviceError(NULL));
+        return error_set(error, "cannot start Embree (error %d)", (int)rtcGetDeviceError(NULL));
     rtcSetDeviceErrorFunction(builder->device, embree_error_callback, builder);
     builder->objects = calloc(builder->object_count + 1, sizeof *builder->objects);
     if (!builder->objects)

@@ -41,7 +41,7 @@ static bool choice_add(BackendChoices *choices, const BackendInterface *interfac
     BackendChoice *choice = &choices->items[choices->count++];
     choice->interface = interface;
     if (length >= sizeof choice->device) {
-        error_set(error, "--device: a name of %zu characters", length);
+        error_set(error, "--device: a name of %zu characters is too long", length);
         return error_fix(error, "write a shorter part of it, or the device's number");
     }
     memcpy(choice->device, device, length);
@@ -79,12 +79,12 @@ static bool all_devices_add(BackendChoices *choices, const BackendInterface *int
         char number[24];
         int length = snprintf(number, sizeof number, "%zu", i);
         if (!devices[i].same_bits)
-            log_message(LOG_WARNING, "%s is left out: the same bits are not to be expected of it", devices[i].name);
+            log_message(LOG_WARNING, "%s is left out: it is not expected to give the same bits", devices[i].name);
         else if (!choice_add(choices, interface, number, (size_t)length, error))
             return false;
     }
     if (found == 0)
-        log_message(LOG_WARNING, "%s has no device here, so --backend=all goes without", interface->name);
+        log_message(LOG_WARNING, "%s has no device on this machine, so --backend=all leaves it out", interface->name);
     return true;
 }
 
@@ -97,7 +97,7 @@ static bool choices_distinct(const BackendChoices *choices, Error *error)
             if (choices->items[i].interface == choices->items[k].interface &&
                 strcmp(choices->items[i].device, choices->items[k].device) == 0) {
                 error_set(error, "--device names %s twice", choices->items[i].device);
-                return error_fix(error, "name every device once");
+                return error_fix(error, "name each device once");
             }
     return true;
 }
@@ -149,7 +149,7 @@ static bool devices_distinct(const BackendChoices *choices, Error *error)
             if (choices->items[k].interface == choice->interface && indices[k] == indices[i]) {
                 error_set(error, "--device: %s and %s are the same device, number %zu", choices->items[k].device,
                           choice->device, indices[i]);
-                return error_fix(error, "name every device once");
+                return error_fix(error, "name each device once");
             }
     }
     return true;

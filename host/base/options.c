@@ -91,8 +91,8 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
     }
     snprintf(given, sizeof given, "%.*s", length, word);
     if (matches > 1) {
-        error_set(error, "option --%s is short for several: %s", given, list);
-        error_fix(error, "write more of the name");
+        error_set(error, "option --%s is ambiguous: it may stand for %s", given, list);
+        error_fix(error, "write more letters of the name");
         return;
     }
     const char *nearest = name_nearest(given, names, (size_t)table->count + 1);
@@ -103,7 +103,7 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
         error_fix(error, "see twinlight %s --help", table->command);
 }
 
-/* Reports what getopt_long refused: `code` is its return value, `word` the argument it was reading. */
+/* Reports what getopt_long rejected: `code` is its return value, `word` the argument it was reading. */
 static void options_refuse(const OptionTable *table, int code, const char *word, Error *error)
 {
     int index = optopt ? spec_index(table, optopt) : -1;

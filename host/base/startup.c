@@ -32,8 +32,9 @@ static bool stack_raise(Error *error)
         pthread_attr_destroy(&attributes);
         return true;
     }
-    error_set(error, "the stack may have %llu KiB only", (unsigned long long)limit.rlim_cur / 1024u);
-    return error_fix(error, "ask for more, at least %llu: ulimit -s 8192", (unsigned long long)STACK_LEAST / 1024u);
+    error_set(error, "the stack is limited to %llu KiB", (unsigned long long)limit.rlim_cur / 1024u);
+    return error_fix(error, "raise the limit to at least %llu KiB: ulimit -s 8192",
+                     (unsigned long long)STACK_LEAST / 1024u);
 }
 
 bool startup_prepare(Error *error)

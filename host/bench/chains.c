@@ -95,7 +95,7 @@ static void runs_row(FILE *stream, const ChainStatistics *chains, int first, int
 
 static void starts_row(FILE *stream, const ChainStatistics *chains, int first, int last)
 {
-    fputs("<tr><th>different starts, %</th>", stream);
+    fputs("<tr><th>distinct starts, %</th>", stream);
     share_cell(stream, depths_total(chains->distinct_starts), depths_total(chains->starts));
     for (int depth = first; depth <= last; ++depth)
         share_cell(stream, chains->distinct_starts[depth], chains->starts[depth]);
@@ -131,8 +131,8 @@ static void r_hat_row(FILE *stream, const ChainStatistics *chains, int first, in
 static void health_table(FILE *stream, const ChainStatistics *chains, int first, int last)
 {
     fprintf(stream,
-            "<p class=\"soft\">Whether they get about, by the path\u2019s segments; of runs and R\u0302 the largest of "
-            "all renderings. In the worst generation %.1f %% of the starts were different:</p>\n",
+            "<p class=\"soft\">How well the chains mix, by depth in segments; runs and R\u0302 are the largest of all "
+            "renderings. In the worst generation %.1f %% of the starts were distinct:</p>\n",
             100.0 * chains->least_distinct);
     table_begin(stream, "<th></th><th>all depths</th>", first, last);
     runs_row(stream, chains, first, last);
@@ -151,15 +151,17 @@ void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
             continue;
         fputs("<h3>Chains of ", stream);
         html_text(stream, scene->series[s].name);
-        fputs("</h3>\n<p class=\"soft\">A run draws ", stream);
+        fputs("</h3>\n"
+              "<p class=\"soft\">On average a run draws ",
+              stream);
         html_number(stream, (double)chains.pool_samples / runs, 3);
-        fputs(" samples for its pools, begins ", stream);
+        fputs(" pool samples, starts ", stream);
         html_number(stream, (double)chains.seeds / runs, 3);
         fputs(" chains and makes ", stream);
         html_number(stream, (double)chains.steps / runs, 3);
         fprintf(stream,
-                " mutations. In the picture of the last generation chains have %.0f %%, the pool %.0f %% and paths "
-                "%.0f %%. Acceptance in per cent, by kind of mutation and by the path\u2019s segments:</p>\n",
+                " mutations. In the last generation\u2019s image the weight of chains is %.0f %%, of the pool %.0f %% "
+                "and of path tracing %.0f %%. Acceptance in per cent, by kind of mutation and depth in segments:</p>\n",
                 100.0 * chains.weights[0] / runs, 100.0 * chains.weights[1] / runs, 100.0 * chains.weights[2] / runs);
         depths_find(&chains, &first, &last);
         acceptance_table(stream, &chains, first, last);

@@ -118,7 +118,7 @@ static void error_table(const Tables *tables)
                                        "MAPE",
                                        "FLIP",
                                        "SSIM",
-                                       "seconds to the first\u2019s relMSE",
+                                       "seconds to the first integrator\u2019s relMSE",
                                        "speed-up",
                                        "slope against time",
                                        "slope against samples"};
@@ -152,9 +152,9 @@ static void variance_table(const Tables *tables)
                                        "runs",
                                        "relative variance",
                                        "efficiency 1 / (variance \u00d7 s)",
-                                       "to the first\u2019s",
-                                       "relMSE of the mean, less variance / runs",
-                                       "mean over reference\u2019s"};
+                                       "relative to the first",
+                                       "relMSE of the mean, minus variance / runs",
+                                       "mean / reference\u2019s mean"};
     FILE *stream = tables->stream;
     double first = tables->scene->series[0].groups[tables->time].efficiency;
     head_write(stream, HEAD, sizeof HEAD / sizeof HEAD[0]);
@@ -219,7 +219,7 @@ static void stack_cell(FILE *stream, const Work *work)
         fprintf(stream, "<span class=\"k%d\" style=\"width:%.2f%%\" title=\"%s %.3g s\"></span>", i,
                 100.0 * chain_parts[i] / work->seconds, chain_names[i], chain_parts[i]);
     if (known == 0.0)
-        fputs("<span class=\"k2\" style=\"width:100%\" title=\"paths\"></span>", stream);
+        fputs("<span class=\"k2\" style=\"width:100%\" title=\"path tracing\"></span>", stream);
     fputs("</span></td>", stream);
 }
 
@@ -254,9 +254,9 @@ static void work_table(const Tables *tables)
         fputs("</tr>\n", stream);
     }
     table_end(stream);
-    fputs("<p class=\"soft key\">Stages: <i class=\"k0\"></i>pools <i class=\"k1\"></i>chains <i "
-          "class=\"k2\"></i>paths; grey is the rest. "
-          "Scene and acceleration structure are loaded and built once for all renderings.</p>\n",
+    fputs("<p class=\"soft key\">Stages: <i class=\"k0\"></i>pools <i class=\"k1\"></i>chains <i class=\"k2\"></i>path "
+          "tracing; grey is the rest. Scene and acceleration structure are loaded and built once for all "
+          "renderings.</p>\n",
           stream);
 }
 

@@ -30,33 +30,36 @@ enum {
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.html", "the report (default: bench.html)"},
     [OPTION_INTEGRATORS] = {"integrators", 0, "NAME,...",
-                            "what to compare, with the first (default: pt,ibpt,bdpt,mmlt)"},
-    [OPTION_TIMES] = {"times", 0, "TIME,...", "how long to render, each on its own (default: 1s,2s,4s,8s)"},
-    [OPTION_RUNS] = {"runs", 0, "N", "renderings with each integrator and time, with seeds of their own (default: 4)"},
-    [OPTION_REFERENCE] = {"reference", 0, "FILE", "the true picture; once for every scene, in their order"},
+                            "integrators to compare; the first is the baseline (default: pt,ibpt,bdpt,mmlt)"},
+    [OPTION_TIMES] = {"times", 0, "TIME,...", "rendering times, each with its own renderings (default: 1s,2s,4s,8s)"},
+    [OPTION_RUNS] = {"runs", 0, "N",
+                     "renderings per integrator, backend and time, each with its own seed (default: 4)"},
+    [OPTION_REFERENCE] = {"reference", 0, "FILE", "reference image; once per scene, in the order of the scenes"},
     [OPTION_REFERENCE_INTEGRATOR] = {"reference-integrator", 0, "NAME",
-                                     "what makes those not given (default: one not compared)"},
-    [OPTION_REFERENCE_TIME] = {"reference-time", 0, "TIME", "for how long (default: 8 times the longest of --times)"},
+                                     "integrator that renders missing references (default: one not compared)"},
+    [OPTION_REFERENCE_TIME] = {"reference-time", 0, "TIME",
+                               "total rendering time of a reference (default: 8 times the longest of --times)"},
     [OPTION_BACKENDS] = {"backends", 0, "NAME,...", "where to render (default: cpu)"},
-    [OPTION_PATCH] = {"patch", 0, "NAME:x,y,w,h", "show this part of the pictures enlarged; up to 8 times"},
-    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's)"},
+    [OPTION_PATCH] = {"patch", 0, "NAME:x,y,w,h", "show this rectangle enlarged and report its relMSE; up to 8 times"},
+    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "maximum depth of paths, in segments (default: the scene's)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "film size (default: the scene's)"},
-    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "of pictures, FLIP and SSIM: brighten by 2^STOPS (default: 0)"},
-    [OPTION_SEED] = {"seed", 0, "N", "another one gives other noise (default: 0)"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS",
+                         "multiply values by 2^STOPS in images and for FLIP and SSIM (default: 0)"},
+    [OPTION_SEED] = {"seed", 0, "N", "number from which the renderings' seeds are derived (default: 0)"},
     [OPTION_THREADS] = {"threads", 0, "N", "threads (default: one for each processor)"},
-    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what a scene asks for and Twinlight lacks, with a warning"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace unsupported features of a scene, with a warning"},
     [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
 };
 
 static const OptionTable TABLE = {
     "bench",
     "bench [OPTION]... SCENE...",
-    "Renders every SCENE by several integrators for several times and reports error against time.",
+    "Renders every SCENE with several integrators for several times and reports error against time.",
     SPECS,
     sizeof SPECS / sizeof SPECS[0],
-    "FILE.html needs nothing else; FILE.tsv and FILE.json have its figures, the folder FILE.runs its renderings, which "
-    "a\n"
-    "second call does not repeat. SIGINT ends with the report of what is there.\n"
+    "FILE.html is self-contained; FILE.tsv and FILE.json hold its figures, and the folder FILE.runs the renderings, "
+    "which a\n"
+    "second run does not repeat. After SIGINT the report covers what is finished.\n"
     "More: man twinlight-bench.",
 };
 
@@ -85,7 +88,7 @@ static bool list_set(Parse *parse, const char *option, const char *value, ItemSe
         size_t length = strcspn(at, ",");
         if (length == 0 || length >= sizeof item) {
             error_set(error, "--%s=%s: an item is empty or too long", option, value);
-            return error_fix(error, "write items with commas between them");
+            return error_fix(error, "separate the items by commas");
         }
         memcpy(item, at, length);
         item[length] = '\0';
@@ -99,8 +102,8 @@ static bool list_set(Parse *parse, const char *option, const char *value, ItemSe
 
 static bool too_many(const char *option, int most, Error *error)
 {
-    error_set(error, "--%s: more than %d", option, most);
-    return error_fix(error, "make several reports");
+    error_set(error, "--%s: more than %d items", option, most);
+    return error_fix(error, "make several reports, each with some of them");
 }
 
 static bool integrator_add(Parse *parse, const char *item, Error *error)
@@ -111,7 +114,7 @@ static bool integrator_add(Parse *parse, const char *item, Error *error)
         return false;
     if (bench_is_compared(options, integrator)) {
         error_set(error, "--integrators: %s is named twice", item);
-        return error_fix(error, "name every integrator once");
+        return error_fix(error, "name each integrator once");
     }
     if (options->integrator_count == BENCH_INTEGRATORS_MAX)
         return too_many("integrators", BENCH_INTEGRATORS_MAX, error);
@@ -128,7 +131,7 @@ static bool time_add(Parse *parse, const char *item, Error *error)
     if (options->time_count == BENCH_TIMES_MAX)
         return too_many("times", BENCH_TIMES_MAX, error);
     if (options->time_count > 0 && seconds <= options->times[options->time_count - 1]) {
-        error_set(error, "--times: %s does not come after a shorter time", item);
+        error_set(error, "--times: %s is not longer than the time before it", item);
         return error_fix(error, "write them in ascending order, e.g. --times=1s,2s,4s");
     }
     options->times[options->time_count++] = seconds;
@@ -166,8 +169,8 @@ static bool patch_add(BenchOptions *options, const char *value, Error *error)
     memcpy(patch->name, value, length);
     for (const BenchPatch *other = options->patches; other < patch; ++other)
         if (strcmp(other->name, patch->name) == 0) {
-            error_set(error, "--patch=%s: there is a patch of that name already", value);
-            return error_fix(error, "give every patch a name of its own");
+            error_set(error, "--patch=%s: another patch has the same name", value);
+            return error_fix(error, "give each patch its own name");
         }
     const char *at = colon + 1;
     for (int i = 0; i < 4; ++i) {

@@ -147,8 +147,8 @@ static bool legend_write(const Pictures *pictures, const char *name, const float
     size_t size = 0;
     if (!png_memory(rgb, LEGEND_WIDTH, 1, 0.0f, &bytes, &size, error))
         return false;
-    fprintf(pictures->stream,
-            "<div class=\"legend\">%s<img alt=\"colours of %s, from the least to the largest\" src=\"", name, name);
+    fprintf(pictures->stream, "<div class=\"legend\">%s<img alt=\"colour scale of %s, from lowest to highest\" src=\"",
+            name, name);
     html_png(pictures->stream, bytes, size);
     fprintf(pictures->stream, "\"/><div>%s</div></div>\n", ticks);
     free(bytes);
@@ -274,11 +274,9 @@ bool bench_pictures_write(const Bench *bench, int scene, FILE *stream, Error *er
     if (pictures.time < 0)
         return true;
     fprintf(stream, "<h3 id=\"pictures%d\">Pictures after %g s</h3>\n", scene, bench->options.times[pictures.time]);
-    fputs("<p class=\"soft\">Of each, the run with the median relMSE; below it the relative error of a pixel (too "
-          "bright in "
-          "red to yellow, too dark in blue to cyan) and FLIP. A click shows a picture alone, and leads from one to the "
-          "next "
-          "in place.</p>\n",
+    fputs("<p class=\"soft\">Of each integrator the run with the median relMSE; below it the relative error of each "
+          "pixel (red to yellow: too bright; blue to cyan: too dark) and FLIP. Click a picture to see it alone; "
+          "further clicks show the others in the same place.</p>\n",
           stream);
     if (!store_write(&pictures, error) || !pictures_write(&pictures, error))
         return false;

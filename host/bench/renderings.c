@@ -68,8 +68,7 @@ static bool scene_prepare(BenchWorkshop *shop, Error *error)
     int wanted = options->max_depth > 0 ? options->max_depth : settings->max_depth;
     scene->max_depth = depth_common(options, wanted);
     if (scene->max_depth < wanted)
-        log_message(LOG_WARNING,
-                    "%s: paths of up to %d segments instead of %d, for some integrator makes no longer ones",
+        log_message(LOG_WARNING, "%s: paths of up to %d segments instead of %d, the limit of one of the integrators",
                     scene->path, scene->max_depth, wanted);
     const int crop[4] = {0, 0, scene->width, scene->height};
     if (!scene_film_set(&shop->data, scene->width, scene->height, crop, error) || !patches_check(options, scene, error))
@@ -117,10 +116,10 @@ static bool reference_make(BenchWorkshop *shop, Error *error)
         return true;
     snprintf(reference->path, sizeof reference->path, "%.*s-mean.exr", (int)strlen(paths[0]) - 4, paths[0]);
     snprintf(reference->origin, sizeof reference->origin,
-             "made here: %s, %g s in two halves with seeds of their own, %.4g samples per pixel%s",
+             "rendered here: %s, %g s in two halves with independent seeds, %.4g samples per pixel%s",
              options->reference_integrator->name, options->reference_seconds, samples,
              bench_is_compared(options, options->reference_integrator)
-                 ? "; it is among those compared, and shares their bias if there is one"
+                 ? "; this integrator is among those compared, and the reference shares its bias, if any"
                  : "");
     return halves_join(shop->scene, paths, error);
 }
@@ -221,7 +220,7 @@ static bool reference_take(BenchScene *scene, const char *path, Error *error)
     bool good = rendering_same_size(&picture, path, &film, "the film", error);
     rendering_destroy(&picture);
     if (!good)
-        return error_fix(error, "render with --resolution of the reference, or crop it");
+        return error_fix(error, "render at the reference's --resolution, or crop the reference");
     snprintf(reference->path, sizeof reference->path, "%s", path);
     snprintf(reference->origin, sizeof reference->origin, "given: %.200s", path_file_name(path));
     return true;

@@ -69,8 +69,8 @@ static void head_write(const Bench *bench, FILE *stream)
             bench->options.scene_count > 1 ? "s" : "", finished);
     if (finished < wanted)
         fprintf(stream,
-                "<p class=\"notice\">Not finished: %d of %d renderings are there. The same command goes on where it "
-                "was ended.</p>\n",
+                "<p class=\"notice\">Not finished: %d of %d renderings are done. The same command renders the "
+                "others.</p>\n",
                 finished, wanted);
     fputs("<dl class=\"facts\">\n", stream);
     fact(stream, "machine", machine);
@@ -135,9 +135,10 @@ static void summary_mean(const Bench *bench, FILE *stream)
 static void summary_write(const Bench *bench, FILE *stream)
 {
     const BenchScene *first = &bench->scenes[0];
-    fputs("<section>\n<h2>Speed-up at equal error</h2>\n<p class=\"soft\">How many times sooner than the first an "
-          "integrator "
-          "has the relMSE that the first has after the longest time (medians over runs).</p>\n"
+    fputs("<section>\n"
+          "<h2>Speed-up at equal error</h2>\n"
+          "<p class=\"soft\">How many times sooner than the first integrator each reaches the relMSE that the first "
+          "has after the longest time (medians over runs).</p>\n"
           "<div class=\"wide\"><table><thead><tr><th>scene</th>",
           stream);
     for (int s = 0; s < first->series_count; ++s) {
@@ -151,8 +152,8 @@ static void summary_write(const Bench *bench, FILE *stream)
             summary_row(bench, i, stream);
     if (bench->options.scene_count > 1)
         summary_mean(bench, stream);
-    fputs("</tbody></table></div>\n<p class=\"soft\">* beyond the times that were measured, by error \u221d 1 / "
-          "time.</p>\n"
+    fputs("</tbody></table></div>\n"
+          "<p class=\"soft\">* extrapolated beyond the measured times by error \u221d 1 / time.</p>\n"
           "</section>\n",
           stream);
 }
@@ -216,11 +217,10 @@ static void charts_write(const Bench *bench, const BenchScene *scene, FILE *stre
                              .count = scene->series_count};
         chart_write(stream, &chart);
     }
-    fputs("</div>\n<p class=\"soft\">Medians, and bands from the 10 to the 90 % quantile over the runs; behind a name "
-          "the slope "
-          "of the least-squares line through all runs, \u22121 for independent samples. A sample of one integrator is "
-          "another "
-          "amount of work than one of another.</p>\n",
+    fputs("</div>\n"
+          "<p class=\"soft\">Medians, and bands from the 10 to the 90 % quantile over the runs; next to a name the "
+          "slope of the least-squares line through all runs, \u22121 for independent samples. Samples of different "
+          "integrators are different amounts of work.</p>\n",
           stream);
 }
 
@@ -233,17 +233,16 @@ static void scene_facts(const Bench *bench, const BenchScene *scene, FILE *strea
     fprintf(stream,
             "<dt>scene</dt><dd>%d \u00d7 %d pixels, paths of up to %d segments; primitives: %zu, lights: %zu</dd>\n",
             scene->width, scene->height, scene->max_depth, scene->primitives, scene->lights);
-    fprintf(stream, "<dt>runs</dt><dd>%d of every integrator and time, each with a seed of its own</dd>\n",
-            bench->options.runs);
+    fprintf(stream, "<dt>runs</dt><dd>%d per integrator and time, each with its own seed</dd>\n", bench->options.runs);
     fputs("<dt>reference</dt><dd>", stream);
     html_text(stream, scene->reference.path[0] ? scene->reference.origin : "not finished");
     fputs("</dd>\n<dt>its own error</dt><dd>", stream);
     if (isfinite(scene->reference.own_error)) {
         fputs("relMSE ", stream);
         html_number(stream, scene->reference.own_error, 3);
-        fputs(", from its halves; every relMSE below has it in it, and it is subtracted nowhere", stream);
+        fputs(", from its halves; every relMSE below includes it, since it is never subtracted", stream);
     } else {
-        fputs(scene->reference.path[0] ? "not known: it has no halves" : "not known", stream);
+        fputs(scene->reference.path[0] ? "unknown: it has no halves" : "unknown", stream);
     }
     fputs("</dd>\n</dl>\n", stream);
 }
@@ -259,8 +258,8 @@ static void scene_warnings(const BenchScene *scene, FILE *stream)
     }
     if (saturated + not_finite + diagnostics > 0)
         fprintf(stream,
-                "<p class=\"notice\">Over all runs: %llu contributions clamped, %llu not finite, %llu events counted "
-                "by the kernels that should not be.</p>\n",
+                "<p class=\"notice\">Over all runs: %llu contributions clamped, %llu not finite, %llu unexpected "
+                "events counted by the kernels.</p>\n",
                 saturated, not_finite, diagnostics);
 }
 
@@ -276,8 +275,8 @@ static void scene_late(const BenchOptions *options, const BenchScene *scene, FIL
         fputs("<p class=\"notice\">", stream);
         html_text(stream, series->name);
         fprintf(stream,
-                " took %.3g s instead of %g s: the first sample of every pixel is finished, whatever the time. Longer "
-                "times or a smaller film would be fairer to the others.</p>\n",
+                " took %.3g s instead of %g s: the first sample of every pixel is always completed. Longer times or a "
+                "smaller film would make the comparison fairer.</p>\n",
                 seconds, options->times[time]);
     }
 }
@@ -305,45 +304,42 @@ static bool scene_write(const Bench *bench, int number, FILE *stream, Error *err
 
 static void chain_terms_write(FILE *stream)
 {
-    fputs("<dt>longest run of rejections</dt><dd>the most proposals that one chain refused in a row, over "
-          "generations: long where chains cannot leave a path</dd>\n"
-          "<dt>different starts</dt><dd>of the paths that chains begin or go on with in every generation, the part "
-          "left when each counts once: small where a few paths are worth more than all others</dd>\n"
-          "<dt>R\u0302</dt><dd>potential scale reduction (Gelman and Rubin 1992; Vehtari et al. 2021) of the two "
-          "halves of the image, of the paths at which their chains end a generation: the largest of log luminance, "
-          "film x and film y. Groups that agree have 1; 1.01 is what 50 independent paths in each show by chance; "
-          "above 1.1, "
-          "where it is marked, chains of one half have not been where those of the other have</dd>\n",
-          stream);
+    fputs(
+        "<dt>longest run of rejections</dt><dd>the most proposals that a chain rejected in a row, over generations: "
+        "long if chains cannot leave a path</dd>\n"
+        "<dt>distinct starts</dt><dd>the fraction of distinct paths among those with which chains start or continue in "
+        "a generation: small if one path or a few started most chains</dd>\n"
+        "<dt>R\u0302</dt><dd>potential scale reduction factor (Gelman and Rubin 1992; Vehtari et al. 2021) between the "
+        "chains of the two replicas, from the paths at which they end a generation: the maximum over log luminance, "
+        "film x and film y. It is 1 if the groups agree; 50 independent paths in each show 1.01 by chance; above 1.1, "
+        "where it is marked, chains of one replica have not been where those of the other have</dd>\n",
+        stream);
 }
 
 static void method_write(const Bench *bench, FILE *stream)
 {
-    fputs("<section>\n<h2>What the figures are</h2>\n<dl class=\"facts\">\n"
+    fputs("<section>\n"
+          "<h2>What the figures mean</h2>\n"
+          "<dl class=\"facts\">\n"
           "<dt>relMSE</dt><dd>mean of (I \u2212 R)\u00b2 / (R\u00b2 + 0.01) over pixels and channels, I the image and "
-          "R the "
-          "reference, linear</dd>\n"
+          "R the reference, linear</dd>\n"
           "<dt>MAPE</dt><dd>mean of |I \u2212 R| / (|R| + 0.01)</dd>\n"
-          "<dt>FLIP</dt><dd>mean of LDR-FLIP (Andersson et al. 2020), 0 to 1, less is better; ",
+          "<dt>FLIP</dt><dd>mean of LDR-FLIP (Andersson et al. 2020), 0 to 1, lower is better; ",
           stream);
     fprintf(stream, "%g pixels per degree, of values \u00d7 2^%g clamped to 0 \u2026 1</dd>\n",
             bench->options.display.pixels_per_degree, bench->options.display.exposure);
-    fputs(
-        "<dt>SSIM</dt><dd>mean structural similarity (Wang et al. 2004) of the same values\u2019 luma, 1 is "
-        "equal</dd>\n"
-        "<dt>time to equal error</dt><dd>when the median relMSE falls to the first integrator\u2019s at the longest "
-        "time that "
-        "all have, between times by a power law</dd>\n"
-        "<dt>relative variance</dt><dd>mean of s\u00b2 / (R\u00b2 + 0.01), s\u00b2 a pixel\u2019s variance over the "
-        "runs of "
-        "one time; efficiency is one over it and the time</dd>\n"
-        "<dt>relMSE of the mean</dt><dd>of the mean of all runs of a time, less variance / runs: what remains is "
-        "squared bias "
-        "and the reference\u2019s own error, and may be negative by chance</dd>\n"
-        "<dt>\u00b1</dt><dd>one standard error</dd>\n"
-        "<dt>seconds</dt><dd>wall-clock time of rendering, pools and seeding in it; a rendering ends with what it has "
-        "begun, and the time it took is what counts</dd>\n",
-        stream);
+    fputs("<dt>SSIM</dt><dd>mean structural similarity (Wang et al. 2004) of the same values\u2019 luma, 1 for equal "
+          "images</dd>\n"
+          "<dt>time to equal error</dt><dd>when the median relMSE falls to the first integrator\u2019s at the longest "
+          "time common to all, interpolated between times by a power law</dd>\n"
+          "<dt>relative variance</dt><dd>mean of s\u00b2 / (R\u00b2 + 0.01), s\u00b2 a pixel\u2019s variance over the "
+          "runs of one time; efficiency is 1 / (variance \u00d7 time)</dd>\n"
+          "<dt>relMSE of the mean</dt><dd>relMSE of the mean of all runs of one time, minus variance / runs: what "
+          "remains is the squared bias plus the reference\u2019s own error; it may be negative by chance</dd>\n"
+          "<dt>\u00b1</dt><dd>one standard error</dd>\n"
+          "<dt>seconds</dt><dd>wall-clock time of rendering, pools included; a rendering completes the pass it has "
+          "started, and the time actually taken counts</dd>\n",
+          stream);
     chain_terms_write(stream);
     fputs("</dl>\n</section>\n", stream);
 }

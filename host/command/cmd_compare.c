@@ -24,10 +24,12 @@ enum { OPTION_OUTPUT, OPTION_SIDE_BY_SIDE, OPTION_BLOCKS, OPTION_EXPOSURE, OPTIO
 
 static const OptionSpec SPECS[] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE", "write an error image (.exr or .png)"},
-    [OPTION_SIDE_BY_SIDE] = {"side-by-side", 0, "FILE.png", "write image, reference and error image in a row"},
+    [OPTION_SIDE_BY_SIDE] = {"side-by-side", 0, "FILE.png", "write image, reference and error image side by side"},
     [OPTION_BLOCKS] = {"blocks", 0, "N", "compare the means of N x N blocks (default 16)"},
-    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "of FLIP, SSIM and --side-by-side: brighten by 2^STOPS (default 0)"},
-    [OPTION_PIXELS_PER_DEGREE] = {"pixels-per-degree", 0, "N", "of FLIP: how the pictures are seen (default 67)"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS",
+                         "for FLIP, SSIM and --side-by-side: multiply values by 2^STOPS (default 0)"},
+    [OPTION_PIXELS_PER_DEGREE] = {"pixels-per-degree", 0, "N",
+                                  "for FLIP: pixels per degree of visual angle (default 67)"},
     [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
 };
 
@@ -37,9 +39,9 @@ static const OptionTable TABLE = {
     "Prints how far IMAGE is from REFERENCE, both EXR, HDR, PFM, PNG, JPEG or TGA.",
     SPECS,
     sizeof SPECS / sizeof SPECS[0],
-    "Values are linear RGB; those that are not finite count as 0 and are counted.\n"
+    "Values are linear RGB; pixels that are not finite count as 0, and their number is printed.\n"
     "Exit status: 0 compared; 1 an image cannot be read or written, or the sizes differ;\n"
-    "2 command line not understood.",
+    "2 invalid command line.",
 };
 
 static bool side_by_side_set(CompareCommand *command, const char *value, Error *error)

@@ -12,7 +12,7 @@ static const OptionSpec SPECS[] = {{"json", 0, NULL, "print JSON"}};
 static const OptionTable TABLE = {
     "devices",
     "devices [OPTION]...",
-    "Lists the backends of this build and their devices, with what each promises, and how it divides.",
+    "Lists the backends of this build and their devices, and whether each device rounds correctly.",
     SPECS,
     sizeof SPECS / sizeof SPECS[0],
     "A device is chosen by render's --backend and --device.\nMore: man twinlight-devices.",

@@ -16,11 +16,11 @@ enum { OPTION_JSON, OPTION_LENIENT };
 
 static const OptionSpec SPECS[] = {
     [OPTION_JSON] = {"json", 0, NULL, "print JSON"},
-    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace unsupported features, with a warning"},
 };
 
 static const OptionTable TABLE = {
-    "info", "info [OPTION]... SCENE",       "Prints what SCENE, a file in pbrt-v4's text format, holds.",
+    "info", "info [OPTION]... SCENE",       "Prints what SCENE, a file in pbrt-v4's text format, contains.",
     SPECS,  sizeof SPECS / sizeof SPECS[0], NULL,
 };
 

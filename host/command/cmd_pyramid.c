@@ -21,11 +21,11 @@
 
 static const RenderOptionUse USES[] = {
     {OPTION_OUTPUT, "FILE.png", "the sheet (default: pyramid.png)"},
-    {OPTION_MAX_DEPTH, NULL, "rows up to paths of D segments, 2 to 12 (default: 5)"},
-    {OPTION_SAMPLES, NULL, "samples per pixel of every picture (default: 16)"},
-    {OPTION_RESOLUTION, NULL, "size of every picture (default: 160 pixels wide)"},
-    {OPTION_UNWEIGHTED, NULL, "every strategy as if there were no other"},
-    {OPTION_EXPOSURE, NULL, "brighten everything by 2^STOPS (default: 0)"},
+    {OPTION_MAX_DEPTH, NULL, "maximum depth of paths, in segments: 2 to 12 (default: 5)"},
+    {OPTION_SAMPLES, NULL, "samples per pixel of every image (default: 16)"},
+    {OPTION_RESOLUTION, NULL, "size of every image (default: 160 pixels wide)"},
+    {OPTION_UNWEIGHTED, NULL, "show strategies without MIS weights"},
+    {OPTION_EXPOSURE, NULL, "multiply the images by 2^STOPS (default: 0)"},
     {OPTION_BACKEND, NULL, NULL},
     {OPTION_DEVICE, NULL, NULL},
     {OPTION_THREADS, NULL, NULL},
@@ -37,7 +37,7 @@ static const RenderOptionUse USES[] = {
 static const RenderOptionSet OPTIONS = {
     .command = "pyramid",
     .usage = "pyramid [OPTION]... SCENE",
-    .summary = "Renders what each strategy of bidirectional path tracing brings to the picture of SCENE.",
+    .summary = "Renders the contribution of each strategy of bidirectional path tracing to the image of SCENE.",
     .footer =
         "Row d: paths of d segments; column s: s vertices from the light, t = d + 1 - s from the camera. Each row is "
         "twice\nas bright as the one before it.\nMore: man twinlight-pyramid.",
@@ -94,7 +94,7 @@ static bool sheet_fill(const RenderCommand *command, const Scene *scene, const B
     size_t bytes = 3 * (size_t)sheet->cell_width * (size_t)sheet->cell_height * sizeof(float);
     float *rgb = malloc(bytes);
     if (!rgb)
-        return error_memory(error, bytes, "a picture");
+        return error_memory(error, bytes, "an image");
     bool done = true;
     for (unsigned depth = 2; depth <= (unsigned)command->max_depth && done; ++depth) {
         for (unsigned s = 0; s <= depth && done && !*interrupt_flag(); ++s) {

@@ -30,8 +30,8 @@ static const RenderOptionSet OPTIONS = {
     .command = "render",
     .usage = "render [OPTION]... SCENE",
     .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
-    .footer = "SIGINT, SIGTERM and SIGHUP end the rendering early: what is there is written, and the exit status\n"
-              "is 130. A second one, a second later or more, ends the program at once.\n"
+    .footer = "SIGINT, SIGTERM and SIGHUP end the rendering early: what is finished is written, and the exit status\n"
+              "is 130. Another such signal at least a second later ends the program at once.\n"
               "More: man twinlight-render.",
     .output_ending = ".exr",
     .depth_low = 1,
@@ -60,7 +60,7 @@ typedef struct RenderJob {
 
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
 
-/* A number that no name takes would have every frame overwrite the last. */
+/* A number that no file name uses would make every frame overwrite the one before. */
 static bool frame_check(const RenderJob *job, Error *error)
 {
     if (job->command->frame < 0 || job->frame_used)
@@ -78,7 +78,7 @@ static bool names_fill(RenderJob *job, Error *error)
         if (!*names[i] || !frame_name_has(*names[i]))
             continue;
         if (command->frame < 0) {
-            error_set(error, "%s has a place for the number of a frame, and none is given", *names[i]);
+            error_set(error, "%s has a place for a frame number, but none is given", *names[i]);
             return error_fix(error, "add --frame=N");
         }
         *names[i] = frame_name_fill(&job->names, *names[i], command->frame, error);
@@ -227,7 +227,7 @@ static void summary_report(const RenderJob *job)
     log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
                 result->samples_per_pixel, seconds, samples, rays);
     if (job->left)
-        log_message(LOG_WARNING, "%s is left as it was: there is no sample yet", job->output.exr);
+        log_message(LOG_WARNING, "%s is left unchanged: no sample is finished yet", job->output.exr);
     else
         log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
 }
@@ -305,7 +305,7 @@ static void film_rescue(RenderJob *job, Error *error)
         error_set(error, "%s; what was finished, %.6g samples per pixel, is in %s", what, job->result.samples_per_pixel,
                   job->output.exr);
     else
-        error_set(error, "%s; nor could what was finished be written: %s", what, error_text(&failed));
+        error_set(error, "%s; what was finished could not be written either: %s", what, error_text(&failed));
     if (first.fix[0])
         error_fix(error, "%s", first.fix);
 }

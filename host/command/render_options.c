@@ -10,56 +10,58 @@
 static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
-                           "algorithm: mmlt, Metropolis (default), pt, path tracing, or bdpt or ibpt, bidirectional"},
-    [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "weights of strategies: power (default) or balance"},
+                           "algorithm: mmlt (Metropolis; default), pt (path tracing), bdpt or ibpt (bidirectional)"},
+    [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "MIS weights of strategies: power (default) or balance"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
-    [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: as if there were no other"},
-    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel, or of mmlt as much work (default: the scene's)"},
-    [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until the first is reached"},
-    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all together"},
+    [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},
+    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel; with mmlt as much work (default: the scene's)"},
+    [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until either is reached"},
+    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all of them together"},
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
-                       "OpenCL devices, by number or part of a name as twinlight devices has them (default: 0)"},
+                       "OpenCL devices, by number or part of a name as in twinlight devices (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
-    [OPTION_FILM] = {"film", 0, "WHERE", "who adds the paths of OpenCL devices to the film: host (default) or device"},
+    [OPTION_FILM] = {"film", 0, "WHERE", "what adds the paths of OpenCL devices to the film: host (default) or device"},
     [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME",
-                           "how mmlt runs its chains: generations (default) or paper, one start and large steps"},
-    [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: Markov chains at a time, at most (default: 524288)"},
+                           "mmlt: generations (default), or paper: one pool and large steps, as published"},
+    [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: largest number of Markov chains at a time (default: 524288)"},
     [OPTION_STEPS] = {"steps", 0, "N", "mmlt: steps of a chain between two pools (default: 64)"},
     [OPTION_POOL] = {"pool", 0, "N",
-                     "mmlt: samples from which chains begin (default: one for every 12 steps of chains)"},
+                     "mmlt: bootstrap samples of a pool (default: at least one for every 12 chain steps)"},
     [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
-    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", "mmlt: small steps of all, light, camera (default: all three)"},
-    [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print the memory of its chains and exit"},
-    [OPTION_SORT] = {"sort", 0, "ORDER", "mmlt: chains by strategy, that is, depth and strategy (default), or depth"},
-    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: chains in the order in which they were drawn"},
-    [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation for itself"},
-    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL, "mmlt: no steps across the film that keep the rest of the path"},
-    [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: chains know nothing of where the lights are"},
-    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: do not show the samples that chains begin from"},
-    [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: write which chains met contributions that are not finite"},
+    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...",
+                          "mmlt: small steps to make: all, light, camera (default: all three)"},
+    [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print how much memory its chains take, and exit"},
+    [OPTION_SORT] = {"sort", 0, "ORDER",
+                     "mmlt: order of chains in memory: strategy, by depth and strategy (default), or depth"},
+    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: keep chains in the order in which they were drawn"},
+    [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation independently"},
+    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL,
+                         "mmlt: disable shifts, steps across the film that reconnect to the rest of the path"},
+    [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: disable light guides, which keep directions near those to lights"},
+    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: show paths of more than two segments by the chains alone"},
+    [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
     [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
-    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D", "longest path in segments (default: the scene's maxdepth + 1)"},
+    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D",
+                          "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
-    [OPTION_LAYERS] =
-        {"layers", 0, "NAME,...",
-         "what the image holds besides: direct, indirect, halves, variance, by-depth (mmlt), albedo, normal, "
-         "depth; all (but by-depth) or none (default: mmlt all, else none)"},
+    [OPTION_LAYERS] = {"layers", 0, "NAME,...",
+                       "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
+                           LAYER_TEXT_OF) "or all (but by-depth) or none (default: all with mmlt, else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
-                          "add a layer without pixels that are T times as bright as the median around them"},
-    [OPTION_FRAME] = {"frame", 0, "N", "the number that file names with %d, %4d or %04d get in its place"},
-    [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, beside the image unless named (default)"},
+                          "add a layer in which pixels over T times as bright as the median around them are replaced"},
+    [OPTION_FRAME] = {"frame", 0, "N", "number that replaces %d, %4d or %04d in file names"},
+    [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, next to the image unless named (default)"},
     [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
-    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "brighten the PNG by 2^STOPS (default: 0)"},
-    [OPTION_STATS] = {"stats", 0, "FILE.json",
-                      "write what was rendered, how fast, and what was noticed; -: to standard output"},
-    [OPTION_TRACE] = {"trace", 0, "FILE.json", "write when a device did what, for chrome://tracing"},
+    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "multiply the PNG's colours by 2^STOPS (default: 0)"},
+    [OPTION_STATS] = {"stats", 0, "FILE.json", "write statistics as JSON; - for standard output"},
+    [OPTION_TRACE] = {"trace", 0, "FILE.json", "write a timeline of the devices, for chrome://tracing"},
     [OPTION_VERIFY] = {"verify", 0, NULL,
-                       "compare the backend's state with the CPU's bit for bit, instead of rendering"},
-    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace what is not supported, with a warning"},
+                       "compare the backend's state with the CPU's bit for bit instead of rendering"},
+    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace unsupported features, with a warning"},
     [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
 };
 
@@ -167,7 +169,7 @@ static bool names_set(const char *value, const char *const *names, unsigned coun
 static bool sort_set(ChainOptions *chains, const char *value, Error *error)
 {
     if (strcmp(value, "strategy") != 0 && strcmp(value, "depth") != 0) {
-        error_set(error, "--sort=%s is no order of chains", value);
+        error_set(error, "--sort=%s: there is no such order of chains", value);
         return error_fix(error, "use strategy or depth, or --no-sort");
     }
     chains->order = value[0] == 'd' ? CHAIN_ORDER_DEPTH : CHAIN_ORDER_STRATEGY;
@@ -180,22 +182,22 @@ static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
     const char *other;
     if (names_set(value, NAMES, sizeof NAMES / sizeof NAMES[0], &chains->mutations, &other))
         return true;
-    error_set(error, "--mutations=%s: %.*s is no kind of mutation", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use all, light and camera, with commas between");
+    error_set(error, "--mutations=%s: there is no kind of mutation %.*s", value, (int)strcspn(other, ","), other);
+    return error_fix(error, "use all, light and camera, separated by commas");
 }
 
 static bool layers_set(RenderCommand *command, const char *value, Error *error)
 {
-    static const char *const NAMES[LAYER_COUNT] = {"direct", "indirect", "halves", "variance",
-                                                   "albedo", "normal",   "depth",  "by-depth"};
+#define TEXT(NAME, name, text, ...) text,
+    static const char *const NAMES[LAYER_COUNT] = {LAYER_LIST(TEXT)};
+#undef TEXT
     const char *other;
     command->has_layers = true;
     command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
     if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
         return true;
     error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use direct, indirect, halves, variance, albedo, normal, depth and by-depth, with "
-                            "commas between, or all (but by-depth) or none");
+    return error_fix(error, "use " LAYER_LIST(LAYER_TEXT_OF) "separated by commas, or all (but by-depth) or none");
 }
 
 static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)
@@ -346,8 +348,8 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                                                      : NULL;
     if (!command->verify || !option)
         return true;
-    error_set(error, "--%s does not go with --verify, which renders no picture", option);
-    return error_fix(error, "leave --%s out; --samples=N says how much is compared", option);
+    error_set(error, "--%s cannot be used with --verify, which renders no image", option);
+    return error_fix(error, "leave --%s out; --samples=N sets how much is compared", option);
 }
 
 /* Chooses the backends, once all options are known. */
@@ -359,7 +361,7 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
     if (!backend_choices_make(&command->backends, table, backend, command->device, error))
         return false;
     if (command->verify && !backend_choices_have_devices(&command->backends)) {
-        error_set(error, "--verify compares devices with the CPU, and --backend=%s has none", command->backends.name);
+        error_set(error, "--verify compares devices with the CPU, but --backend=%s uses none", command->backends.name);
         return error_fix(error, "use --backend=opencl, in a build that has it");
     }
     const char *option = command->device      ? "device"
@@ -369,7 +371,7 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
                                               : NULL;
     if (!option || backend_choices_have_devices(&command->backends))
         return true;
-    error_set(error, "--%s is for devices, and --backend=%s has none", option, command->backends.name);
+    error_set(error, "--%s is for devices, but --backend=%s uses none", option, command->backends.name);
     return error_fix(error, "add --backend=opencl, or leave --%s out", option);
 }
 

@@ -22,7 +22,7 @@ typedef struct RenderCommand {
     unsigned layers; /* LAYER_BIT (render/layers.h) */
     bool has_layers; /* --layers was given */
     double despeckle; /* threshold; 0: no such layer */
-    const char *dump_bad; /* file for chains that met non-finite contributions; NULL: none */
+    const char *dump_bad; /* file for chains with non-finite contributions; NULL: none */
     bool memory; /* print the chains' memory instead of rendering */
     const char *chain_option; /* the last option of Markov chains that was given; NULL: none */
     BackendChoices backends; /* one or more */

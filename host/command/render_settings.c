@@ -13,20 +13,20 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
         return error_fix(error, "add --strategy=s,t, e.g. --strategy=1,2");
     }
     if (option && integrator == integrator_pt()) {
-        error_set(error, "--%s is for bidirectional integrators, and pt is none", option);
+        error_set(error, "--%s is for bidirectional integrators, which pt is not", option);
         return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
     }
     if (option && integrator == integrator_mmlt()) {
-        error_set(error, "--%s is not for mmlt, whose chains go over all strategies by the balance heuristic", option);
+        error_set(error, "--%s is not for mmlt, whose chains use all strategies, with the balance heuristic", option);
         return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
     }
     if (command->chain_option && integrator != integrator_mmlt()) {
-        error_set(error, "--%s is for mmlt, and %s has no Markov chains", command->chain_option, integrator->name);
+        error_set(error, "--%s is for mmlt, but %s has no Markov chains", command->chain_option, integrator->name);
         return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);
     }
     if (command->chains.large_step > 0.0 && !command->chains.paper) {
-        error_set(error,
-                  "--large-step is for --mlt-scheme=paper: generations begin anew instead of making large steps");
+        error_set(error, "--large-step is for --mlt-scheme=paper: generations start over with new pools instead of "
+                         "making large steps");
         return error_fix(error, "add --mlt-scheme=paper, or leave --large-step out");
     }
     unsigned s = command->strategy[0], t = command->strategy[1];
@@ -47,7 +47,7 @@ bool render_settings_layers(const RenderCommand *command, const Integrator *inte
         *wanted &= LAYERS_AOV;
     else if ((command->layers & ~LAYERS_AOV) != 0) {
         error_set(error, "--layers: the image of %s has no layers of light", integrator->name);
-        return error_fix(error, "use albedo, normal and depth, or --integrator=mmlt");
+        return error_fix(error, "use " AOV_LIST(LAYER_TEXT_OF) "or --integrator=mmlt");
     }
     return true;
 }
@@ -95,10 +95,10 @@ static bool depth_check(const RenderCommand *command, const Integrator *integrat
     unsigned segments = command->strategy[0] + command->strategy[1] - 1;
     if (!command->only_strategy || segments <= (unsigned)*depth)
         return true;
-    error_set(error, "--strategy=%u,%u makes paths of %u segments, and the longest have %d", command->strategy[0],
+    error_set(error, "--strategy=%u,%u makes paths of %u segments, but the maximum depth is %d", command->strategy[0],
               command->strategy[1], segments, *depth);
     if (segments > (unsigned)limit)
-        return error_fix(error, "%s makes no longer ones than %d", integrator->name, limit);
+        return error_fix(error, "paths of %s have at most %d segments", integrator->name, limit);
     return error_fix(error, "add --max-depth=%u", segments);
 }
 

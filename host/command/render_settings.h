@@ -1,5 +1,5 @@
-/* Checks whether the options of the command line go together and with the integrator, and applies those that replace
- * settings of the scene. */
+/* Checks whether the options of the command line are compatible with each other and with the integrator, and applies
+ * those that replace settings of the scene. */
 #ifndef TWINLIGHT_COMMAND_RENDER_SETTINGS_H
 #define TWINLIGHT_COMMAND_RENDER_SETTINGS_H
 

@@ -14,8 +14,8 @@ bool error_image_path_check(const char *path, Error *error)
 {
     if (path_ends(path, ".exr") || path_ends(path, ".png"))
         return true;
-    error_set(error, "the ending of %s tells no kind of image", path);
-    return error_fix(error, "use a name that ends in .exr or .png");
+    error_set(error, "%s does not end in .exr or .png", path);
+    return error_fix(error, "choose the format by the ending of the name");
 }
 
 void error_color(float relative, float rgb[3])

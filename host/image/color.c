@@ -167,8 +167,8 @@ bool color_from_samples(const float *wavelength_value_pairs, size_t n, ColorRole
     } else if (role == COLOR_REFLECTANCE) {
         spectrum_reflectance(spectrum, color);
     } else if (!spectrum_illuminant(spectrum, color)) {
-        error_set(error, "a light whose spectrum has no power between %d and %d nm", CIE_FIRST, CIE_LAST);
-        return error_fix(error, "wavelengths are in nanometres; leave the light out if it is to be dark");
+        error_set(error, "the light's spectrum has no power between %d and %d nm", CIE_FIRST, CIE_LAST);
+        return error_fix(error, "wavelengths are in nanometres; to have no light, leave it out");
     }
     for (int c = 0; c < 3; ++c) {
         double kept = role == COLOR_REFLECTANCE ? fmin(fmax(color[c], 0.0), largest) : color[c];
@@ -193,7 +193,7 @@ static bool line_read(char *line, SourcePlace place, Array *numbers, Error *erro
         }
         if (numbers->count >= SPECTRUM_NUMBERS_MAX) {
             error_at(error, place, "more than %d numbers in a spectrum", SPECTRUM_NUMBERS_MAX);
-            return error_fix(error, "thin it out: a sample every 5 nm is plenty");
+            return error_fix(error, "use fewer samples: one every 5 nm is plenty");
         }
         float *to = array_grow(numbers, 1, error);
         if (!to)

@@ -83,9 +83,9 @@ bool color_named_spectrum(const char *name, ColorRole role, float rgb[3], Error 
         if (strcmp(name, spectrum->name) != 0)
             continue;
         if (role != spectrum->role) {
-            error_set(error, "the spectrum \"%s\" stands for: %s; wanted: %s", name, ROLE_NAMES[spectrum->role],
+            error_set(error, "the spectrum \"%s\" describes: %s; needed here: %s", name, ROLE_NAMES[spectrum->role],
                       ROLE_NAMES[role]);
-            return error_fix(error, "use a spectrum of the other kind, or rgb");
+            return error_fix(error, "use a spectrum of that kind, or rgb");
         }
         memcpy(rgb, spectrum->rgb, sizeof spectrum->rgb);
         return true;

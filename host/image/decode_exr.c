@@ -113,7 +113,7 @@ static bool channels_choose(ExrReader *reader, const char *path, Error *error)
     if (exr_has(list, "Y") ? !exr_has(list, "RY") : list->num_channels == 1)
         return true;
     image_error(error, path, "it has neither channels R, G and B nor Y alone");
-    return error_fix(error, "rename or merge the layers that are wanted to R, G, B");
+    return error_fix(error, "rename or merge the layers that you need to R, G, B");
 }
 
 static bool header_read(ExrReader *reader, const char *path, Error *error)

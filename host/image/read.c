@@ -35,7 +35,7 @@ static bool image_read_kind(FILE *file, const char *path, const unsigned char *h
         return image_read_stb(file, path, STB_HDR, false, image, error);
     if (path_ends(path, ".tga") && is_tga(header, size))
         return image_read_stb(file, path, STB_TGA, false, image, error);
-    image_error(error, path, size == 0 ? "the file is empty" : "it is of no kind that is known, or truncated");
+    image_error(error, path, size == 0 ? "the file is empty" : "its format is unknown, or it is truncated");
     return error_fix(error, "use PNG, JPEG, TGA, HDR, EXR or PFM");
 }
 
@@ -52,7 +52,7 @@ static FILE *image_open(const char *path, unsigned char header[HEADER_SIZE], siz
         return NULL;
     }
     if (!S_ISREG(status.st_mode)) {
-        image_error(error, path, "it is not a file");
+        image_error(error, path, "it is not an ordinary file");
         fclose(file);
         return NULL;
     }

@@ -22,8 +22,8 @@ static const StateField CHAIN_FIELDS[] = {
     {BUFFER_PATHS, CHAIN_PROPOSED_FILM + 1u, 1, true, "film y of the proposal"},
     {BUFFER_PATHS, CHAIN_TALLY, MUTATION_COUNT, false, "proposals and acceptances"},
     {BUFFER_PATHS, CHAIN_BAD, 1, false, "first proposal that was not finite"},
-    {BUFFER_PATHS, CHAIN_RUN, 1, false, "proposals refused in a row"},
-    {BUFFER_PATHS, CHAIN_EXPECTED, 1, true, "luminance that the first proposal must have"},
+    {BUFFER_PATHS, CHAIN_RUN, 1, false, "proposals rejected in a row"},
+    {BUFFER_PATHS, CHAIN_EXPECTED, 1, true, "expected luminance of the first proposal"},
     {BUFFER_PATHS, CHAIN_SUBPATHS, CHAIN_NUMBERS - CHAIN_SUBPATHS, false, "subpaths"},
     {BUFFER_PATHS, CHAIN_NUMBERS, NUMBER_VERTICES, false, "coordinates of camera and light"},
 };

@@ -2,11 +2,11 @@
  *
  * A population estimates integrals of the target f: the sum over its chains of brightness / count times the integrand
  * at their states. So does a pool, with independent samples. At the end of a generation both are combined by a
- * partition of unity over path space: of every path, chains answer for the part n / (n + m) f / (f + threshold), where
- * n samples have made the population so far and the new pool has m, and the pool for the rest. This is unbiased for any
- * threshold. Population and pool are then resampled together into the next population. Paths with f well below the
- * threshold come from the new pool; paths well above it, which pools rarely find, are remembered, with the mean weight
- * that all pools so far have given them.
+ * partition of unity over path space: of every path, the population contributes the part n / (n + m) f / (f +
+ * threshold), where n is the number of pool samples behind it and m that of the new pool, and the pool contributes the
+ * rest. This is unbiased for any threshold. Population and pool are then resampled together into the next population.
+ * Paths with f well below the threshold come from the new pool; paths well above it, which pools rarely find, are kept,
+ * with the mean weight that all pools so far have given them.
  *
  * Compare the resampling of Andrieu, Lee and Vihola, "Uniform ergodicity of the iterated conditional SMC and geometric
  * ergodicity of particle Gibbs samplers", 2018: its probability to keep a state has the same form, but it is right only

@@ -78,9 +78,9 @@ static bool combination_known(const Combination *combination, const double sampl
     return true;
 }
 
-/* Sets the tile's weights, which add up to 1. Until variances are known they go by work, and chains count as much as
- * the pool they start from. So a large picture, of which the first pools see few pixels, shows mostly path tracing at
- * first. */
+/* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
+ * the weight of the pool they start from. So a large picture, of which the first pools visit few pixels, shows mostly
+ * path tracing at first. */
 static void weights_set(Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                         bool known)
 {
@@ -200,7 +200,7 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
 
-/* Variance of a chain's step accompanied by pool_per_step pool samples, relative to its variance within chains b: 1 +
+/* Variance of a chain's step that pool_per_step pool samples accompany, relative to b, the variance within chains: 1 +
  * (a / b) (cost of all steps / cost of all pool samples). */
 static double step_variance(double pool_per_step)
 {

@@ -23,8 +23,8 @@ void combination_destroy(Combination *combination);
  * films: of each estimator; light_sums hold light_samples paths (0: no samples in this generation). The path tracing
  * film has direct light in `sums`; the chains' film has the excess in `sums` and rare light in `rare_sums`. On return
  * the chains' film is the combination, direct light included, weighted by what `teacher` has learned, and `combination`
- * has learned this generation's variances. Both may be the same if generations share nothing. Once *stop is 1 nothing
- * more is learned, for no generation follows. Fails only when out of memory. */
+ * has learned this generation's variances. `teacher` may be `combination` itself if generations are independent. Once
+ * *stop is 1 nothing more is learned, since no generation follows. Fails only when out of memory. */
 bool combination_generation(Combination *combination, Combination *teacher, Film *const films[ESTIMATOR_COUNT],
                             const atomic_int *stop, Error *error);
 

@@ -87,7 +87,7 @@ static double light_bound(const Combination *combination, int s, size_t tile, do
     return (double)combination->sums[s].mean[tile] - deviations * error;
 }
 
-/* The largest such bound of any way to see all of the tile's light: path tracing plus rare, chains or pool plus
+/* The largest such bound over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus
  * excess. */
 static double light_bound_best(const Combination *combination, size_t tile, double deviations)
 {
@@ -182,8 +182,8 @@ static double ratio_around(const Combination *combination, int s, size_t tile)
     return light > 0.0 ? spread / light : 0.0;
 }
 
-/* Raises a tile's variance to that of the 3 x 3 tiles around it: where one has met a rare bright path, its neighbours
- * merely have not yet; docs/TUNING.md. */
+/* Raises a tile's variance to that of the 3 x 3 tiles around it: if one of them has found a rare bright path, the
+ * others may just not have found it yet; docs/TUNING.md. */
 static void spreads_share(Combination *combination, int s, double *ratios)
 {
     for (size_t i = 0; i < combination_tile_count(combination); ++i)

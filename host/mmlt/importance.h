@@ -25,12 +25,12 @@ void importance_learn(const Combination *combination, float importance[IMPORTANC
  *
  * samples: of each estimator, for which errors are predicted (combination_errors). visited[cell]: how often earlier
  * pools have visited the cell's pixels, relative to the mean. The last of `visits` is 0, which means that all pixels
- * are visited alike, while errors are unknown or if the film is too large. Fails only when out of memory. */
+ * are visited equally, while errors are unknown or if the film is too large. Fails only when out of memory. */
 bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                        const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error);
 
-/* The density ratio of a cell: how much more rarely pools with these visits sample it than if they visited all pixels
- * alike. 0: the cell has no pixels. */
+/* The density ratio of a cell: how many times less often pools with these visits sample it than if they visited all
+ * pixels equally. 0: the cell has no pixels. */
 double importance_density_ratio(const Combination *combination, const uint visits[IMPORTANCE_CELLS + 1], uint cell);
 
 #endif

@@ -48,9 +48,10 @@ static bool pool_reserve(PoolEstimator *pool, uint count, Error *error)
  * turn: rounds completed so far, or pools if those are longer than a round.
  *
  * Pools visit the same pixels again in the next round, so samples with a light subpath are chosen by position: every
- * position gets one in about 1 / POOL_LIGHTS rounds, whatever the sizes of pool and round. Parts of a pool take turns
- * in van der Corput order, randomly shifted; a new shift every TURNS keeps periods that match the sequence from adding
- * up. These samples are contiguous, so that chunks with none skip the light walk. */
+ * position gets one in about 1 / POOL_LIGHTS rounds, whatever the sizes of pool and round. The order of the parts is a
+ * van der Corput sequence with a random shift, renewed every TURNS terms, so that errors do not add up if the number of
+ * pools per round matches a period of the sequence. These samples are contiguous, so that chunks with none skip the
+ * light walk. */
 static uint lights_first(const RenderRun *run, uint order, uint64_t turn, uint64_t place, uint items)
 {
     double part = generation_random(run, (uint)(turn / TURNS), GENERATION_POOL_LIGHTS + order);

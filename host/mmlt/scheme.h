@@ -12,7 +12,7 @@
 
 typedef struct MmltScheme {
     int replicas; /* renderings with independent errors that take turns */
-    bool renews; /* every generation draws a pool and starts chains from it; else the first alone, and chains go on */
+    bool renews; /* every generation draws a pool and starts chains from it; else only the first does */
     bool grows; /* generations start small and double */
     bool combines; /* pool and path tracing are shown beside the chains, unless --no-blend */
     unsigned chains; /* at a time, without --chains */

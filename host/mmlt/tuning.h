@@ -1,5 +1,5 @@
-/* The tuned constants of MMLT: each says what it trades. What was measured, on which scenes, is in docs/TUNING.md. Those of
- * the kernels are beside the code that has them (shared/chain/). */
+/* The tuned constants of MMLT, each with its trade-off. What was measured, on which scenes, is in docs/TUNING.md. Those
+ * of the kernels are beside the code that uses them (shared/chain/, shared/path/). */
 #ifndef TWINLIGHT_MMLT_TUNING_H
 #define TWINLIGHT_MMLT_TUNING_H
 
@@ -29,7 +29,7 @@
 /* Most chains of a generation. More spread a generation over more starts and need more memory. */
 #define CHAINS_DEFAULT 524288u
 
-/* Steps of a chain in a generation. More make a start worth more, fewer explore by more starts. */
+/* Steps of a chain in a generation. More steps explore each start longer, fewer leave time for more starts. */
 #define STEPS_DEFAULT 64u
 
 /* Fraction of the camera subpath's mutations that are shifts (chain/shift.h), which survive on paths over several
@@ -72,7 +72,7 @@
 #define PRIOR_GENERATIONS 2.0
 
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
- * misses. More trusts path tracing too long, less takes noise for light; docs/TUNING.md. */
+ * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0
 
 /* A pixel's luminance is clamped to this many times its tile's mean: it may be a firefly, whose variance would count
@@ -104,7 +104,7 @@
 /* Lower bound of a cell's light, relative to the mean. */
 #define LIGHT_LEAST 0.05
 
-/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells alike;
+/* Target importance is light^-EXPONENT: 0 leaves the target f as it is, 1 would visit all cells equally;
  * docs/TUNING.md. */
 #define EXPONENT 0.5
 

@@ -49,7 +49,7 @@ static bool directive_rotate(PbrtImport *im)
     if (!parser_floats(im, 4, v))
         return false;
     if (v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0) {
-        error_at(im->error, im->place, "Rotate about an axis of length 0");
+        error_at(im->error, im->place, "Rotate has an axis of length 0");
         return error_fix(im->error, "write Rotate DEGREES X Y Z with an axis other than 0 0 0");
     }
     Matrix m = matrix_rotate(v[0], v + 1);
@@ -64,7 +64,7 @@ static bool directive_look_at(PbrtImport *im)
         return false;
     if (!matrix_look_at(v, v + 3, v + 6, &m)) {
         error_at(im->error, im->place, "LookAt gives no direction: the two points coincide, or up is along the view");
-        return error_fix(im->error, "give a point to look at other than the eye, and another up vector");
+        return error_fix(im->error, "give a point to look at other than the eye, or another up vector");
     }
     return state_concat(im, &m);
 }
@@ -342,7 +342,7 @@ static bool directive_run(PbrtImport *im, const Directive *directive)
         errors_missing(im);
     im->errors.world_order = im->errors.world_order || misplaced;
     if (directive->plain == directive_world_begin && im->in_world) {
-        error_at(im->error, im->place, "a second WorldBegin");
+        error_at(im->error, im->place, "this is a second WorldBegin");
         return error_fix(im->error, "delete it: a file holds one scene");
     }
     if (misplaced && im->in_world) {
@@ -411,7 +411,7 @@ static bool file_end(PbrtImport *im)
     size_t open = im->saved.count - file->nesting;
     if (open > 0) {
         const StateSave *save = &ARRAY_AT(&im->saved, StateSave, im->saved.count - 1);
-        error_at(im->error, save->place, "%s without its end", save->opened_by);
+        error_at(im->error, save->place, "%s has no matching end", save->opened_by);
         error_fix(im->error, "add the missing end, or delete this line");
         if (!errors_note(im, false))
             return false;

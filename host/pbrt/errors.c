@@ -16,8 +16,8 @@ bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, con
     }
     error_at(im->error, place, "%s is not supported", what);
     if (fix)
-        return error_fix(im->error, "%s; or use --lenient (%s)", fix, substitute);
-    return error_fix(im->error, "use --lenient (%s)", substitute);
+        return error_fix(im->error, "%s; or replace it by --lenient (%s)", fix, substitute);
+    return error_fix(im->error, "replace it by --lenient (%s)", substitute);
 }
 
 bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
@@ -28,7 +28,7 @@ bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const c
     size_t used = 0;
     error_at(im->error, place, "unknown %s \"%s\"", kind, name);
     if (scene_format_is_v3(kind, name))
-        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade, which is pbrt-v4's");
+        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade of pbrt-v4");
     if (nearest)
         return error_fix(im->error, "did you mean \"%s\"?", nearest);
     for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)

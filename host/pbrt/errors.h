@@ -5,7 +5,7 @@
 #include "pbrt/context.h"
 
 /* Reports something unsupported: an error that names it or, with --lenient, a counted warning that also names the
- * substitute. Returns whether to go on. `fix` may be NULL. */
+ * substitute. Returns whether to continue. `fix` may be NULL. */
 bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix);
 
 /* "error: unknown KIND "name"", with the nearest of `known` or all of them as the fix. Returns false. */

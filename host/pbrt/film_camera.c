@@ -49,7 +49,7 @@ static void pixel_bounds_read(ParamList *list, const SceneSettings *film, int cr
         int low = b[2 * k] < b[2 * k + 1] ? b[2 * k] : b[2 * k + 1];
         int high = b[2 * k] < b[2 * k + 1] ? b[2 * k + 1] : b[2 * k];
         if (low < 0 || high > limits[k])
-            log_message_at(LOG_WARNING, param_place(list, "pixelbounds"), "\"pixelbounds\" is cut to the film");
+            log_message_at(LOG_WARNING, param_place(list, "pixelbounds"), "\"pixelbounds\" is clipped to the film");
         crop[k] = low > 0 ? low : 0;
         crop[2 + k] = high < limits[k] ? high : limits[k];
     }

@@ -61,7 +61,7 @@ static void counts_report(const Scene *scene)
 {
     const SceneCounts *counts = &scene->counts;
     if (counts->degenerate_triangles > 0)
-        log_message(LOG_WARNING, "%lu primitives of no area were left out", counts->degenerate_triangles);
+        log_message(LOG_WARNING, "%lu primitives of zero area were dropped", counts->degenerate_triangles);
     if (counts->zero_area_lights > 0)
         log_message(LOG_WARNING, "%lu of them were area lights", counts->zero_area_lights);
 }

@@ -6,7 +6,7 @@
 
 typedef struct ImportOptions {
     bool lenient; /* replace unsupported features, with a warning that names the substitute, instead of failing */
-    bool all_errors; /* go on after errors, up to IMPORT_ERRORS_MAX, and print all but the last */
+    bool all_errors; /* continue after errors, up to IMPORT_ERRORS_MAX, and print all but the last */
 } ImportOptions;
 
 #endif

@@ -30,8 +30,8 @@ typedef struct Lexer {
     int line;
 } Lexer;
 
-/* Takes ownership of the window (fewer than INT_MAX bytes) and closes it on failure, which is a file in UTF-16. `file`,
- * a name for messages, must outlive the lexer and its tokens. */
+/* Takes ownership of the window (fewer than INT_MAX bytes). Fails, and closes it, if the text is UTF-16. `file`, a name
+ * for messages, must outlive the lexer and its tokens. */
 bool lexer_init(Lexer *lexer, const TextWindow *window, const char *file, Error *error);
 void lexer_destroy(Lexer *lexer);
 

@@ -177,7 +177,7 @@ static bool map_finite(LightReader *r, const float *rgb, size_t pixels, const ch
 {
     for (size_t i = 0; i < 3 * pixels; ++i)
         if (!isfinite(rgb[i])) {
-            param_error(r->list, "filename", "%s has pixels that are not finite, so it is no light", path);
+            param_error(r->list, "filename", "%s has pixels that are not finite and cannot be used as a light", path);
             return false;
         }
     return true;
@@ -266,10 +266,12 @@ static void infinite_read(LightReader *r)
     r->light.emission = emission_make(r->list, radiance, scale);
 }
 
+#define READER(NAME, name, text, feature, position) {text, name##_read},
 static const struct {
     const char *name;
     void (*read)(LightReader *r);
-} KINDS[] = {{"point", point_read}, {"spot", spot_read}, {"distant", distant_read}, {"infinite", infinite_read}};
+} KINDS[] = {LIGHT_LIST_DELTA(READER){"infinite", infinite_read}};
+#undef READER
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
 static bool light_other(PbrtImport *im, const char *kind)

@@ -87,7 +87,7 @@ static void relief_read(MaterialReader *r)
     if (channels < 3)
         param_error(r->list, "normalmap", "the normal map %s has %u channel instead of 3", path, channels);
     if (m->displacement.program != NONE)
-        log_message_at(LOG_INFO, place, "the normal map takes the place of the displacement");
+        log_message_at(LOG_INFO, place, "the displacement is ignored: the normal map takes precedence");
     m->displacement.program = NONE;
 }
 
@@ -105,7 +105,7 @@ static void coated_diffuse_read(MaterialReader *r)
     r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
     if (value_float_param(r->im, r->list, "thickness", &thickness) && !r->list->failed &&
         (thickness.program != NONE || thickness.value < 0.0f))
-        param_error(r->list, "thickness", "the thickness of a coat must be a number that is not negative");
+        param_error(r->list, "thickness", "the thickness of a coat must be a number of at least 0");
     r->material.color1.value.x = thickness.value;
     value_float_param(r->im, r->list, "g", &ignored);
     param_integer(r->list, "maxdepth", 10);
@@ -166,8 +166,7 @@ static void diffuse_transmission_read(MaterialReader *r)
     float most = vec3_max_component(vec3_add(m->color0.value, m->color1.value)) * m->scale;
     if (m->color0.program == NONE && m->color1.program == NONE && most > 1.00001f)
         log_message_at(LOG_WARNING, r->list->place,
-                       "reflectance and transmittance add up to more than 1: the material "
-                       "makes light");
+                       "reflectance and transmittance add up to more than 1: the material creates energy");
 }
 
 /* Resolves one of the two materials named by a mix. */
@@ -180,7 +179,7 @@ static uint mix_part(MaterialReader *r, const Param *param, size_t i)
         name_table_list(&r->im->materials, known, sizeof known);
         errors_missing(r->im);
         param_error(r->list, "materials", "unknown material \"%s\"", name);
-        error_fix(r->list->error, "defined before this line: %s", known);
+        error_fix(r->list->error, "define it before this line; defined so far: %s", known);
     } else if (material == MATERIAL_INTERFACE) {
         param_error(r->list, "materials", "the material \"%s\" is an \"interface\" and cannot be mixed", name);
     }
@@ -355,6 +354,6 @@ bool value_material(PbrtImport *im, uint *material)
     name_table_list(&im->materials, known, sizeof known);
     errors_missing(im);
     error_at(im->error, state->material_place, "unknown material \"%s\"", state->material_name);
-    return error_fix(im->error, "%s%s%sdefined: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
+    return error_fix(im->error, "%s%s%sdefined so far: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
                      nearest ? "\"? " : "", known);
 }

@@ -21,7 +21,7 @@ static const float *per_vertex(ParamList *list, const char *name, ParamType type
     size_t count;
     const float *values = param_floats(list, name, type, &count);
     if (values && count != per_item * vertex_count)
-        param_error(list, name, "%zu values of \"%s\" for %zu vertices", count / per_item, name, vertex_count);
+        param_error(list, name, "\"%s\" has %zu values for %zu vertices", name, count / per_item, vertex_count);
     return values;
 }
 
@@ -47,7 +47,8 @@ static uint *indices_make(ParamList *list, MeshParams *mesh, size_t corners)
     else if (!given)
         param_error(list, "indices", "%s lacks \"integer indices\"", list->owner);
     else if (mesh->index_count % corners != 0)
-        param_error(list, "indices", "%zu indices are not a multiple of %zu", mesh->index_count, corners);
+        param_error(list, "indices", "the number of indices, %zu, is not a multiple of %zu", mesh->index_count,
+                    corners);
     for (size_t i = 0; given && !list->failed && i < mesh->index_count; ++i)
         if (mesh->indices[i] < 0 || (size_t)mesh->indices[i] >= mesh->vertex_count)
             param_error(list, "indices", "vertex index %d is out of range: there are %zu vertices", mesh->indices[i],

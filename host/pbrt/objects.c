@@ -9,7 +9,7 @@
 bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_place)
 {
     if (im->open_object >= 0) {
-        error_at(im->error, im->place, "ObjectBegin inside an object definition");
+        error_at(im->error, im->place, "ObjectBegin is inside an object definition");
         return error_fix(im->error, "close the other with ObjectEnd first; objects do not nest");
     }
     if (name_table_find(&im->objects, name) != NONE) {
@@ -42,7 +42,7 @@ bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_p
 {
     Matrix ctm, inverse;
     if (im->open_object >= 0) {
-        error_at(im->error, im->place, "ObjectInstance inside an object definition");
+        error_at(im->error, im->place, "ObjectInstance is inside an object definition");
         return error_fix(im->error, "place instances after ObjectEnd; objects do not nest");
     }
     uint index = name_table_find(&im->objects, name);
@@ -51,7 +51,7 @@ bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_p
         name_table_list(&im->objects, known, sizeof known);
         errors_missing(im);
         error_at(im->error, name_place, "unknown object \"%s\"", name);
-        return error_fix(im->error, "defined before this line: %s", known);
+        return error_fix(im->error, "define it before this line; defined so far: %s", known);
     }
     if (!import_ctm_inverse(im, im->place, &ctm, &inverse))
         return false;

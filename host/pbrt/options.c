@@ -46,9 +46,7 @@ bool import_integrator(PbrtImport *im, const char *kind)
         return false;
     if (strcmp(kind, "ambientocclusion") == 0 || strcmp(kind, "function") == 0)
         log_message_at(LOG_WARNING, im->place,
-                       "the integrator \"%s\" shows something else than light; this renders "
-                       "light",
-                       kind);
+                       "the integrator \"%s\" shows something other than light; Twinlight renders light", kind);
     import_list(im, &list, "the integrator", -1);
     int depth = param_integer(&list, "maxdepth", 5);
     if (depth < 0)

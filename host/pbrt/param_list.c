@@ -173,7 +173,7 @@ void param_error(ParamList *list, const char *name, const char *format, ...)
     va_end(arguments);
     error_at(list->error, param_place(list, name), "%s", text);
     if (entry_use(list, name))
-        error_fix(list->error, "change \"%s\", or leave it out where it has a default", name);
+        error_fix(list->error, "change \"%s\", or leave it out if it has a default", name);
     else
         error_fix(list->error, "add \"%s\" to %s", name, list->owner);
     list->failed = true;

@@ -86,8 +86,8 @@ static bool type_unknown(const Token *declaration, const char *type, Error *erro
 
 static bool too_many(SourcePlace place, int limit, const char *what, Error *error)
 {
-    error_at(error, place, "more than %d %s in one directive", limit, what);
-    return error_fix(error, "delete those that it does not need");
+    error_at(error, place, "the directive has more than %d %s", limit, what);
+    return error_fix(error, "delete those that are not needed");
 }
 
 bool param_declare(ParamBuffer *buffer, const Token *declaration, Error *error)
@@ -103,7 +103,7 @@ bool param_declare(ParamBuffer *buffer, const Token *declaration, Error *error)
     size_t name_length = strcspn(name, " \t");
     if (name_length == 0) {
         error_at(error, declaration->place, "the parameter \"%s\" lacks a type or a name", text);
-        return error_fix(error, "write it as \"float radius\"");
+        return error_fix(error, "write type and name, as in \"float radius\"");
     }
     ParamType parsed;
     if (!type_parse(type, type_length, &parsed)) {

@@ -14,7 +14,7 @@ static bool format_check(TextWindow *window, const char *name, Error *error)
     other = scene_format_other(window->position, (size_t)(window->end - window->position), &fix);
     if (!other)
         return true;
-    error_at(error, (SourcePlace){.file = name}, "this is no scene of pbrt-v4's but %s", other);
+    error_at(error, (SourcePlace){.file = name}, "this is not a pbrt-v4 scene, but %s", other);
     return error_fix(error, "%s", fix);
 }
 
@@ -43,12 +43,12 @@ static bool include_cyclic(const PbrtImport *im, const FileOpened *opened)
 static bool include_counted(PbrtImport *im, SourcePlace place)
 {
     if (im->file_count >= IMPORT_INCLUDE_MAX) {
-        error_at(im->error, place, "files included more than %d deep", IMPORT_INCLUDE_MAX);
+        error_at(im->error, place, "files include each other more than %d deep", IMPORT_INCLUDE_MAX);
         return error_fix(im->error, "put what they share into one file");
     }
     if (++im->files_opened > IMPORT_FILES_MAX) {
-        error_at(im->error, place, "more than %d files included", IMPORT_FILES_MAX);
-        return error_fix(im->error, "join some of the files");
+        error_at(im->error, place, "the scene includes more than %d files", IMPORT_FILES_MAX);
+        return error_fix(im->error, "join some of them");
     }
     return true;
 }

@@ -200,14 +200,15 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
     ShapeContext context = {.ctm = *ctm, .place = im->place};
     Shape flags = shape->shape;
     if (im->scene->lights.count + shape->mesh.triangle_count >= IMPORT_LIGHTS_MAX) {
-        error_at(im->error, im->place, "instances of emissive objects make more than %u area lights",
+        error_at(im->error, im->place, "the instances of emissive objects have more than %u area lights",
                  IMPORT_LIGHTS_MAX);
         return error_fix(im->error, "take the light source out of the object");
     }
     im->copied_vertices += shape->mesh.vertex_count;
     if (im->copied_vertices > IMPORT_COPIES_MAX) {
-        error_at(im->error, im->place, "instances of emissive objects copy more than %u vertices", IMPORT_COPIES_MAX);
-        return error_fix(im->error, "give the light source a mesh of its own, of few vertices");
+        error_at(im->error, im->place, "the instances of emissive objects copy more than %u vertices",
+                 IMPORT_COPIES_MAX);
+        return error_fix(im->error, "give the light source its own mesh, with few vertices");
     }
     bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
     /* An instance is the image of its object (geometry/surface.h). A mesh's geometric normal is a cross product in

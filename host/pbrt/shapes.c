@@ -77,8 +77,8 @@ static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const Sh
     const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
     if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f)
         return true;
-    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)",
-                              "it does not shine either", "use a point light");
+    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)", "it emits no light",
+                              "use a point light");
 }
 
 static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)

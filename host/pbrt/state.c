@@ -40,7 +40,7 @@ bool state_replace(PbrtImport *im, const Matrix *matrix)
 bool state_push(PbrtImport *im, const char *opened_by)
 {
     if (im->saved.count >= IMPORT_NESTING_MAX) {
-        error_at(im->error, im->place, "%s nested more than %d deep", opened_by, IMPORT_NESTING_MAX);
+        error_at(im->error, im->place, "%s is nested more than %d deep", opened_by, IMPORT_NESTING_MAX);
         return error_fix(im->error, "close the scopes with AttributeEnd");
     }
     StateSave *save = array_grow(&im->saved, 1, im->error);
@@ -77,7 +77,7 @@ bool state_coordinate_system(PbrtImport *im, const char *name, const Matrix tran
     if (known == NONE) {
         if (im->coordinate_systems.entries.count >= IMPORT_COORDINATE_SYSTEMS_MAX) {
             error_at(im->error, im->place, "more than %d coordinate systems", IMPORT_COORDINATE_SYSTEMS_MAX);
-            return error_fix(im->error, "use a name again where the old one is not needed any more");
+            return error_fix(im->error, "reuse a name that is no longer needed");
         }
         known = (uint)(im->coordinate_matrices.count / 2);
         name = arena_text(&im->arena, name, strlen(name), im->error);
@@ -97,7 +97,7 @@ bool state_use_coordinate_system(PbrtImport *im, const char *name, SourcePlace n
         name_table_list(&im->coordinate_systems, names, sizeof names);
         errors_missing(im);
         error_at(im->error, name_place, "unknown coordinate system \"%s\"", name);
-        return error_fix(im->error, "known here: %s", names);
+        return error_fix(im->error, "define it before this line; defined so far: %s", names);
     }
     memcpy(im->state.ctm, &ARRAY_AT(&im->coordinate_matrices, Matrix, 2 * (size_t)known), sizeof im->state.ctm);
     return true;
@@ -113,9 +113,9 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
         if (im->params.params.count == 0)
             return true;
         if (im->params.params.count + (older ? older->total : 0) > IMPORT_ATTRIBUTES_MAX) {
-            error_at(im->error, im->place, "more than %d parameters of Attribute directives in force",
+            error_at(im->error, im->place, "more than %d parameters of Attribute directives are in force",
                      IMPORT_ATTRIBUTES_MAX);
-            return error_fix(im->error, "put AttributeBegin and AttributeEnd around what they are for");
+            return error_fix(im->error, "enclose the directives that they are for in AttributeBegin and AttributeEnd");
         }
         im->state.attributes[i] = param_set_make(&im->params, older, &im->arena, im->error);
         return im->state.attributes[i] != NULL;
@@ -158,7 +158,7 @@ bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Mat
 {
     if (!matrix_inverse(matrix, inverse)) {
         error_at(im->error, place, "the current transform cannot be inverted");
-        return error_fix(im->error, "look for a Scale by 0 or a Transform whose rows are not independent");
+        return error_fix(im->error, "look for a Scale by 0 or a Transform with linearly dependent rows");
     }
     if (matrix_fits_float(matrix) && matrix_fits_float(inverse))
         return true;

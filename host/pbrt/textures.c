@@ -26,7 +26,7 @@ static void ops_add(Builder *b, const TextureOp *ops, uint count)
     if (b->list->failed)
         return;
     if (count > TEXTURE_OPS_MAX - b->count) {
-        error_at(b->im->error, b->im->place, "a texture of more than %d operations", TEXTURE_OPS_MAX);
+        error_at(b->im->error, b->im->place, "the texture has more than %d operations", TEXTURE_OPS_MAX);
         error_fix(b->im->error, "bake it into an imagemap");
         b->list->failed = true;
         return;

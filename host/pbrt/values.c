@@ -47,7 +47,8 @@ static void blackbody(ParamList *list, const Param *param, ColorRole role, float
     else if (!(param->floats[0] > 0.0f))
         param_error(list, param->name, "the temperature of a blackbody must be above 0 kelvin");
     else if (role != COLOR_ILLUMINANT)
-        param_error(list, param->name, "\"%s\" is no light: a blackbody makes no sense here", param->name);
+        param_error(list, param->name, "\"%s\" is not the colour of a light: a blackbody is not possible here",
+                    param->name);
     else
         color_blackbody(param->floats[0], rgb);
 }
@@ -175,7 +176,8 @@ float value_eta(PbrtImport *im, ParamList *list, const char *name, float fallbac
             return fallback;
         eta = (rgb[0] + rgb[1] + rgb[2]) / 3.0f;
         if (rgb[0] != rgb[1] || rgb[1] != rgb[2])
-            log_message_at(LOG_INFO, param->place, "no dispersion: %s is %g for all colours", name, (double)eta);
+            log_message_at(LOG_INFO, param->place, "dispersion is not supported: %s is %g for all colours", name,
+                           (double)eta);
     }
     if (!(eta >= ETA_LEAST && eta <= 1.0f / ETA_LEAST))
         param_error(list, name, "the index of refraction \"%s\" must be from %g to %g", name, (double)ETA_LEAST,

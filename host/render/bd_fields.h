@@ -26,12 +26,12 @@
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
         {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"}, {BUFFER_PATHS, BD_IMPORTANCE, 1, true, "importance"},       \
-        {BUFFER_PATHS, BD_TARGET_IMPORTANCE, 1, true, "importance of the target"},                                     \
+        {BUFFER_PATHS, BD_TARGET_IMPORTANCE, 1, true, "target importance"},                                            \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
         {BUFFER_PATHS, BD_CANDIDATE, 1, false, "candidate"},                                                           \
         {BUFFER_PATHS, BD_CANDIDATE_LUMINANCE, 1, true, "luminance of the candidate"},                                 \
         {BUFFER_PATHS, BD_CONNECTION_SURVIVAL, 1, true, "survival of the connection"},                                 \
-        {BUFFER_PATHS, BD_GATHERED, 1, false, "segments of the gathered"},                                             \
+        {BUFFER_PATHS, BD_GATHERED, 1, false, "segments of what is gathered"},                                         \
     {                                                                                                                  \
         BUFFER_PATHS, BD_SURVIVAL, 1, true, "survival of the walk"                                                     \
     }

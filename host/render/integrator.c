@@ -16,7 +16,7 @@ const Integrator *integrator_find(const char *name, Error *error)
         snprintf(names + used, sizeof names - used, "%s%s (%s)", i > 0 ? ", " : "", integrators[i]->name,
                  integrators[i]->summary);
     }
-    error_set(error, "--integrator=%s: there is no such integrator in this version", name);
+    error_set(error, "--integrator=%s: there is no such integrator", name);
     error_fix(error, "use one of: %s", names);
     return NULL;
 }

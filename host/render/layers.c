@@ -14,10 +14,13 @@ static bool wants(const RenderLayers *layers, Layer layer)
     return (layers->wanted & LAYER_BIT(layer)) != 0;
 }
 
-static Layer layer_of(uint aov)
-{
-    return (Layer)(LAYER_ALBEDO + aov);
-}
+#define LAYER_OF(NAME, ...) [AOV_##NAME] = LAYER_##NAME,
+static const Layer LAYER_OF_AOV[AOV_COUNT] = {AOV_LIST(LAYER_OF)};
+#undef LAYER_OF
+
+#define VALUES_OF(NAME, name, text, values, ...) [AOV_##NAME] = (values),
+static const uint AOV_VALUES[AOV_COUNT] = {AOV_LIST(VALUES_OF)};
+#undef VALUES_OF
 
 static bool halves_init(RenderLayers *layers, const Film *film, Error *error)
 {
@@ -30,11 +33,11 @@ static bool halves_init(RenderLayers *layers, const Film *film, Error *error)
 static bool aovs_init(RenderLayers *layers, const Film *film, double radius, Error *error)
 {
     for (uint aov = 0; aov < AOV_COUNT; ++aov) {
-        if (!wants(layers, layer_of(aov)))
+        if (!wants(layers, LAYER_OF_AOV[aov]))
             continue;
         if (!film_init(&layers->aovs[aov], film->width, film->height, film->crop, error))
             return false;
-        film_quantum_set(&layers->aovs[aov], aov == AOV_DEPTH ? radius : 1.0);
+        film_quantum_set(&layers->aovs[aov], AOV_VALUES[aov] == AOV_DISTANCE ? radius : 1.0);
     }
     return true;
 }
@@ -130,7 +133,7 @@ bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
     bool done = true;
     for (; done && layers->aov_samples < wanted; ++layers->aov_samples)
         for (uint aov = 0; done && aov < AOV_COUNT; ++aov)
-            done = !wants(layers, layer_of(aov)) ||
+            done = !wants(layers, LAYER_OF_AOV[aov]) ||
                    aov_run(&layers->aovs[aov], run, aov, layers->aov_samples, &list, error);
     step_list_destroy(&list);
     return done;

@@ -4,24 +4,35 @@
 
 #include "film/film.h"
 #include "film/pixel_series.h"
+#include "layout/aov_list.h"
 #include "layout/frame_params.h"
 #include "render/run.h"
 
-typedef enum Layer {
-    LAYER_DIRECT, /* MMLT: what path tracing alone renders, paths of up to two segments */
-    LAYER_INDIRECT, /* MMLT: the rest */
-    LAYER_HALVES, /* two independent pictures with half of the work each */
-    LAYER_VARIANCE, /* estimated, of each pixel of the picture */
-    LAYER_ALBEDO, /* the next three: kernels/aov.cl */
-    LAYER_NORMAL,
-    LAYER_DEPTH,
-    LAYER_BY_DEPTH, /* LAYER_INDIRECT by number of segments, from the film (film_depths_reserve) */
-    LAYER_COUNT
-} Layer;
+/* X(NAME, name, text, groups): LAYER_NAME, a part of the picture's light; name_add (picture.c); its name in --layers;
+ * how many groups of three channels it has. Of MMLT: */
+#define LAYER_LIST_LIGHT(X)                                                                                            \
+    X(DIRECT, direct, "direct", 1) /* what path tracing alone renders, paths of up to two segments */                  \
+    X(INDIRECT, indirect, "indirect", 1) /* the rest */                                                                \
+    X(HALVES, halves, "halves", 2) /* two independent pictures with half of the work each */                           \
+    X(VARIANCE, variance, "variance", 1) /* estimated, of each pixel of the picture */                                 \
+    X(BY_DEPTH, by_depth, "by-depth", LAYER_DEPTHS) /* INDIRECT by number of segments (film_depths_reserve) */
+
+#define LAYER_DEPTHS (int)(SPLAT_DEPTH_MAX + 1u - SPLAT_DEPTH_MIN)
+
+/* All layers: those of light, and the variables of kernels/aov.cl, which every integrator has. */
+#define LAYER_LIST(X) LAYER_LIST_LIGHT(X) AOV_LIST(X)
+
+#define LAYER_ENUMERATE(NAME, ...) LAYER_##NAME,
+typedef enum Layer { LAYER_LIST(LAYER_ENUMERATE) LAYER_COUNT } Layer;
+#undef LAYER_ENUMERATE
 
 #define LAYER_BIT(layer) (1u << (layer))
-#define LAYERS_ALL (LAYER_BIT(LAYER_BY_DEPTH) - 1u) /* not LAYER_BY_DEPTH, which must be named */
-#define LAYERS_AOV (LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_NORMAL) | LAYER_BIT(LAYER_DEPTH))
+#define LAYER_BIT_OF(NAME, ...) | LAYER_BIT(LAYER_##NAME)
+#define LAYERS_ALL ((0u LAYER_LIST(LAYER_BIT_OF)) & ~LAYER_BIT(LAYER_BY_DEPTH)) /* BY_DEPTH must be named */
+#define LAYERS_AOV (0u AOV_LIST(LAYER_BIT_OF))
+
+/* "albedo, normal, ... ": for texts about the layers of a list. */
+#define LAYER_TEXT_OF(NAME, name, text, ...) text ", "
 
 typedef struct RenderLayers {
     unsigned wanted; /* LAYER_BIT of each */
@@ -32,7 +43,7 @@ typedef struct RenderLayers {
 } RenderLayers;
 
 /* Allocates the layers in `wanted` for a film like `film`. radius: of the scene's bounding sphere, which sets the
- * quantum of AOV_DEPTH. Call render_layers_destroy even on failure. */
+ * quantum of AOV_DISTANCE. Call render_layers_destroy even on failure. */
 bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, double radius, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 

@@ -13,21 +13,30 @@
 #define SPARE_BANDS 4
 #define SPARE_BYTES ((size_t)2 << 20)
 
-static size_t depth_groups(uint last)
+static int depth_groups(uint last)
 {
     last = last < SPLAT_DEPTH_MAX ? last : SPLAT_DEPTH_MAX;
-    return last >= SPLAT_DEPTH_MIN ? last + 1 - SPLAT_DEPTH_MIN : 0;
+    return last >= SPLAT_DEPTH_MIN ? (int)(last + 1 - SPLAT_DEPTH_MIN) : 0;
+}
+
+static bool wants(const PictureSettings *settings, Layer layer)
+{
+    return settings->layers && (settings->layers->wanted & LAYER_BIT(layer)) != 0;
 }
 
 /* Most groups that a picture with these settings has. */
 static size_t groups_of(const PictureSettings *settings, uint depth)
 {
-    unsigned wanted = settings->layers ? settings->layers->wanted : 0;
-    size_t groups = settings->despeckle > 0.0 ? 2 : 1;
-    for (unsigned layer = 0; layer < LAYER_BY_DEPTH; ++layer)
-        if ((wanted & LAYER_BIT(layer)) != 0)
-            groups += layer == LAYER_HALVES ? 2 : 1;
-    return groups + ((wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0 ? depth_groups(depth) : 0);
+    int groups = settings->despeckle > 0.0 ? 2 : 1;
+#define COUNT(NAME, name, text, count)                                                                                 \
+    if (wants(settings, LAYER_##NAME))                                                                                 \
+        groups += LAYER_##NAME == LAYER_BY_DEPTH ? depth_groups(depth) : (count);
+    LAYER_LIST_LIGHT(COUNT)
+#undef COUNT
+#define COUNT(NAME, ...) groups += wants(settings, LAYER_##NAME) ? 1 : 0;
+    AOV_LIST(COUNT)
+#undef COUNT
+    return (size_t)groups;
 }
 
 bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings, int width, int height, uint depth,
@@ -88,13 +97,35 @@ static void film_set(PictureGroup *group, const Film *film, FilmPart part, float
     group->scale = film_scale_of(film, scale);
 }
 
-static bool wants(const Picture *picture, Layer layer)
+/* A group of light: part of `film`, in channels name.R, .G and .B. */
+#define LIGHT_ADD(picture, name, film, part)                                                                           \
+    film_set(group_add(picture, PICTURE_FILM, name ".R", name ".G", name ".B", false), film, part,                     \
+             (picture)->settings.scale)
+
+static void direct_add(Picture *picture, const Film *film)
 {
-    const RenderLayers *layers = picture->settings.layers;
-    return layers && (layers->wanted & LAYER_BIT(layer)) != 0;
+    LIGHT_ADD(picture, "direct", film, FILM_OWN);
 }
 
-static void depths_add(Picture *picture, const Film *film)
+static void indirect_add(Picture *picture, const Film *film)
+{
+    LIGHT_ADD(picture, "indirect", film, FILM_LIGHT);
+}
+
+static void halves_add(Picture *picture, const Film *film)
+{
+    (void)film;
+    LIGHT_ADD(picture, "halfA", &picture->settings.layers->halves[0], FILM_ALL);
+    LIGHT_ADD(picture, "halfB", &picture->settings.layers->halves[1], FILM_ALL);
+}
+
+static void variance_add(Picture *picture, const Film *film)
+{
+    (void)film;
+    group_add(picture, PICTURE_VARIANCE, "variance.R", "variance.G", "variance.B", false);
+}
+
+static void by_depth_add(Picture *picture, const Film *film)
 {
     for (uint depth = SPLAT_DEPTH_MIN; depth <= film->depth_last; ++depth) {
         char(*names)[16] = picture->depth_names[depth];
@@ -109,37 +140,30 @@ static void depths_add(Picture *picture, const Film *film)
 /* Adds the layers that are parts of the picture's light. */
 static void parts_add(Picture *picture, const Film *film)
 {
-    float scale = picture->settings.scale;
     if (film->light_samples == 0)
         return;
-    if (wants(picture, LAYER_DIRECT))
-        film_set(group_add(picture, PICTURE_FILM, "direct.R", "direct.G", "direct.B", false), film, FILM_OWN, scale);
-    if (wants(picture, LAYER_INDIRECT))
-        film_set(group_add(picture, PICTURE_FILM, "indirect.R", "indirect.G", "indirect.B", false), film, FILM_LIGHT,
-                 scale);
-    if (wants(picture, LAYER_HALVES)) {
-        const Film *halves = picture->settings.layers->halves;
-        film_set(group_add(picture, PICTURE_FILM, "halfA.R", "halfA.G", "halfA.B", false), &halves[0], FILM_ALL, scale);
-        film_set(group_add(picture, PICTURE_FILM, "halfB.R", "halfB.G", "halfB.B", false), &halves[1], FILM_ALL, scale);
-    }
-    if (wants(picture, LAYER_VARIANCE))
-        group_add(picture, PICTURE_VARIANCE, "variance.R", "variance.G", "variance.B", false);
-    depths_add(picture, film);
+#define ADD(NAME, name, text, groups)                                                                                  \
+    if (wants(&picture->settings, LAYER_##NAME))                                                                       \
+        name##_add(picture, film);
+    LAYER_LIST_LIGHT(ADD)
+#undef ADD
+}
+
+static void variable_add(Picture *picture, uint aov, const char *red, const char *green, const char *blue)
+{
+    bool one = !green[0];
+    PictureGroup *group = group_add(picture, PICTURE_FILM, red, green, blue, !one);
+    film_set(group, &picture->settings.layers->aovs[aov], FILM_ALL, 1.0f);
+    picture->channel_count -= one ? 2 : 0; /* not three equal ones */
 }
 
 static void variables_add(Picture *picture)
 {
-    const RenderLayers *layers = picture->settings.layers;
-    if (wants(picture, LAYER_ALBEDO))
-        film_set(group_add(picture, PICTURE_FILM, "albedo.R", "albedo.G", "albedo.B", true), &layers->aovs[AOV_ALBEDO],
-                 FILM_ALL, 1.0f);
-    if (wants(picture, LAYER_NORMAL))
-        film_set(group_add(picture, PICTURE_FILM, "normal.X", "normal.Y", "normal.Z", true), &layers->aovs[AOV_NORMAL],
-                 FILM_ALL, 1.0f);
-    if (wants(picture, LAYER_DEPTH)) {
-        film_set(group_add(picture, PICTURE_FILM, "Z", "", "", false), &layers->aovs[AOV_DEPTH], FILM_ALL, 1.0f);
-        picture->channel_count -= 2; /* one channel, not three equal ones */
-    }
+#define ADD(NAME, name, text, values, red, green, blue)                                                                \
+    if (wants(&picture->settings, LAYER_##NAME))                                                                       \
+        variable_add(picture, AOV_##NAME, red, green, blue);
+    AOV_LIST(ADD)
+#undef ADD
 }
 
 void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory)

@@ -6,10 +6,9 @@
 #include "image/exr.h"
 #include "render/layers.h"
 
-/* Groups of three channels: the picture, direct and indirect light, two halves, variance, three AOVs, the despeckled
- * picture, and one per depth. */
-#define PICTURE_GROUPS_FIXED 10
-#define PICTURE_GROUPS_MAX (PICTURE_GROUPS_FIXED + (int)(SPLAT_DEPTH_MAX + 1u - SPLAT_DEPTH_MIN))
+/* Most groups of three channels: the picture, its layers, and the despeckled picture. */
+#define PICTURE_GROUPS_OF(NAME, name, text, groups) +groups
+#define PICTURE_GROUPS_MAX (2 LAYER_LIST_LIGHT(PICTURE_GROUPS_OF) + AOV_COUNT)
 
 /* What to make of a film. */
 typedef struct PictureSettings {

@@ -50,9 +50,9 @@ void render_run_save_if_due(RenderRun *run)
     bool saved = run->callbacks->save(run->callbacks->context, run->film, &error);
     /* One warning per series of failures. */
     if (!saved && !run->save_failed)
-        log_message(LOG_WARNING, "%s; rendering goes on, and saving is tried again", error_text(&error));
+        log_message(LOG_WARNING, "%s; rendering continues, and saving will be tried again", error_text(&error));
     if (saved && run->save_failed)
-        log_message(LOG_INFO, "the image could be saved again");
+        log_message(LOG_INFO, "saving the image succeeded again");
     run->save_failed = !saved;
     run->last_save = timing_now();
 }

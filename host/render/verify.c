@@ -259,8 +259,8 @@ static bool block_verify_end(Verifier *verifier, Error *error)
         return true;
     if (!block_verify_steps(verifier, &never, &prefixes, error))
         return false;
-    return error_set(error, "the two backends differ after the last step, but not when run again step by step: one of "
-                            "them does not give the same bits twice");
+    return error_set(error, "the two backends differ after the last step, but not when they are run again step by "
+                            "step: one of them does not reproduce its own bits");
 }
 
 bool verify_run(const BackendMember sides[2], const FrameParams *frame, const StepList *list, uint64_t items,

@@ -6,6 +6,7 @@
 #include "scene/center.h"
 
 #include "base/matrix.h"
+#include "light/delta.h"
 
 #include <math.h>
 
@@ -107,7 +108,7 @@ bool scene_center(Scene *scene, const Box *world)
     }
     for (size_t i = 0; i < scene->lights.count; ++i) {
         Light *light = &ARRAY_AT(&scene->lights, Light, i);
-        if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+        if (light_has_position(light->kind))
             light->position = vec3_sub(light->position, offset);
     }
     for (size_t i = 0; i < scene->texture_ops.count; ++i)

@@ -3,6 +3,7 @@
 
 #include "bsdf/material.h"
 #include "geometry/box.h"
+#include "light/delta.h"
 #include "scene/camera_setup.h"
 #include "scene/center.h"
 #include "scene/coat_table.h"
@@ -178,7 +179,7 @@ static float light_reach(const SceneParams *params, const Light *light)
 {
     if (light->kind == LIGHT_AREA)
         return 0.0f;
-    if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+    if (light_has_position(light->kind))
         return vec3_max_abs(light->position);
     return vec3_max_abs(params->world_center) + 1.5f * params->world_radius;
 }
@@ -236,7 +237,7 @@ static uint geometry_features(const Scene *scene)
     return features;
 }
 
-#define FEATURE_OF(NAME, text, feature) [LIGHT_##NAME] = (feature),
+#define FEATURE_OF(NAME, name, text, feature, position) [LIGHT_##NAME] = (feature),
 static const uint FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
 #undef FEATURE_OF
 

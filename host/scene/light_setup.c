@@ -125,6 +125,26 @@ double light_spot_solid_angle(double cos_total, double cos_falloff)
     return 2.0 * M_PI * ((1.0 - cos_falloff) + 0.5 * (cos_falloff - cos_total));
 }
 
+/* Flux of delta lights whose emission has luminance 1; disk: area of the bounding sphere's disk. */
+static double point_power(const Light *light, double disk)
+{
+    (void)light;
+    (void)disk;
+    return 4.0 * M_PI;
+}
+
+static double spot_power(const Light *light, double disk)
+{
+    (void)disk;
+    return light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
+}
+
+static double distant_power(const Light *light, double disk)
+{
+    (void)light;
+    return disk;
+}
+
 /* Luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
  * bounding sphere. */
 static bool light_power(Scene *scene, Light *light, double *power, Error *error)
@@ -135,15 +155,12 @@ static bool light_power(Scene *scene, Light *light, double *power, Error *error)
     case LIGHT_AREA:
         *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
         break;
-    case LIGHT_POINT:
-        *power = mean * 4.0 * M_PI;
+#define POWER(NAME, name, text, feature, position)                                                                     \
+    case LIGHT_##NAME:                                                                                                 \
+        *power = mean * name##_power(light, disk);                                                                     \
         break;
-    case LIGHT_SPOT:
-        *power = mean * light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
-        break;
-    case LIGHT_DISTANT:
-        *power = mean * disk;
-        break;
+        LIGHT_LIST_DELTA(POWER)
+#undef POWER
     default:
         if (light->kind == LIGHT_INFINITE_IMAGE && !environment_setup(scene, light, &mean, error))
             return false;

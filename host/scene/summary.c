@@ -7,7 +7,7 @@
 static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk"};
 #define TEXT(NAME, name, text, traits) text,
 static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {MATERIAL_LIST(TEXT)};
-#define LIGHT_TEXT(NAME, text, feature) text,
+#define LIGHT_TEXT(NAME, name, text, feature, position) text,
 static const char *const LIGHT_NAMES[LIGHT_KINDS] = {LIGHT_LIST(LIGHT_TEXT)};
 #undef LIGHT_TEXT
 static const char *const FEATURE_NAMES[FEATURE_COUNT] = {FEATURE_LIST(TEXT)};

@@ -174,7 +174,7 @@ bool texture_image_add(Scene *scene, const Image *image, const TextureImageOptio
 }
 
 /* Finds an entry for `path`. With same_sampling its options must be equal; else only its texels must be usable, and
- * bytes are for every encoding. NULL if there is none. */
+ * stored bytes suit every encoding. NULL if there is none. */
 static const CacheEntry *cache_find(const TextureCache *cache, const Scene *scene, const char *path,
                                     const TextureImageOptions *options, bool same_sampling)
 {

@@ -20,8 +20,8 @@ static void strays_report(const Scene *scene)
     if (count > 0)
         log_message(LOG_WARNING,
                     "%u of the primitives and instances %s as far as %.3g from the origin, all others no further than "
-                    "%.3g: if that is not meant, look for a stray vertex or a wrong transform; light from infinity is "
-                    "found the more rarely, and the scene is slower",
+                    "%.3g: rendering is slower, and light from infinity noisier; if this is unintended, look for a "
+                    "stray vertex or a wrong transform",
                     count, count == 1 ? "reaches" : "reach", (double)strays, (double)others);
 }
 
@@ -32,7 +32,7 @@ void scene_advise(const Scene *scene)
         delta = delta || material_is_delta(&ARRAY_AT(&scene->materials, Material, i));
     if (delta && (scene->features & FEATURE_DELTA_LIGHT) != 0)
         log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
-                              "and after a rough surface is found by no integrator and is missing; give a sun its size "
-                              "(an infinite light's image), or a lamp a small sphere");
+                              "and after a rough surface is found by no integrator and is missing: replace a sun by an "
+                              "infinite light's image, a lamp by a small emissive sphere");
     strays_report(scene);
 }

@@ -13,8 +13,8 @@ SHARED_FUNCTION float dielectric_relative_eta(float eta, Vec3 wo)
     return wo.z > 0.0f ? eta : 1.0f / eta;
 }
 
-/* Radiance is scaled by eta^2 when it enters a medium of relative index eta. Against the direction of light, as a path
- * carries radiance from wi to wo, that is a factor 1 / eta^2 (Veach 1997, section 5.2). Importance is not scaled. */
+/* Radiance is scaled by eta^2 when it enters a medium of relative index eta. That which goes from wi to wo comes out of
+ * that medium, so its factor is 1 / eta^2 (Veach 1997, section 5.2). Importance is not scaled. */
 SHARED_FUNCTION float refraction_scale(float eta, uint transport)
 {
     return transport == TRANSPORT_RADIANCE ? 1.0f / (eta * eta) : 1.0f;

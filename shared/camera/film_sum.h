@@ -24,8 +24,8 @@
 #define SUM_FAR ((ulong)1 << 61)
 #define UNITS_SMALL ((ulong)1 << 40)
 
-/* Larger contributions are clamped. One path may bring all that a sum can show; of the largest negative contributions
- * that takes 2^14. */
+/* Larger contributions are clamped. A single path may fill a sum; it takes 2^14 of the largest negative contributions
+ * to do so. */
 #define CONTRIBUTION_MAX SUM_MAX
 #define NEGATIVE_MAX ((ulong)1 << 48)
 
@@ -62,8 +62,8 @@ SHARED_FUNCTION size_t film_depth_words(uint pixels, uint kinds, uint depth_last
     return depth_last >= SPLAT_DEPTH_MIN ? film_depth_place(pixels, kinds, depth_last + 1u, 0u) : 0u;
 }
 
-/* Words of a film's sums in one buffer (BUFFER_FILM): the sums, the three counters, the pixels' counts, two per word,
- * then `more` (0, 1 or 2) of the light sums and the rare sums. The sums by depth follow. */
+/* Words of a film's sums in one buffer (BUFFER_FILM), except for the sums by depth, which follow: the sums, the three
+ * counters, the pixels' counts, two per word, the light sums if `more` is 1 or 2, and the rare sums if it is 2. */
 SHARED_FUNCTION ulong film_words(uint pixels, uint more)
 {
     return (1u + more) * 3u * (ulong)pixels + 3u + ((ulong)pixels + 1u) / 2u;

@@ -23,7 +23,7 @@
 #define CHAIN_PROPOSED_FILM (BD_HEADER_WORDS + 11u) /* 2 */
 #define CHAIN_TALLY (BD_HEADER_WORDS + 13u) /* proposals | accepted << 16, for each kind of mutation, 4 */
 #define CHAIN_BAD (BD_HEADER_WORDS + 17u) /* step of the first proposal whose f was not finite; NONE: none */
-#define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals refused in a row: run_after */
+#define CHAIN_RUN (BD_HEADER_WORDS + 18u) /* proposals rejected in a row: run_after */
 /* f that the first proposal of a pass must have, a replay of the current path; 0: not known. */
 #define CHAIN_EXPECTED (BD_HEADER_WORDS + 19u)
 /* What a connection needs to know of a subpath, in two banks for each side: chain_subpath. */

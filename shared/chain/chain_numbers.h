@@ -3,7 +3,7 @@
  * Coordinates are integers modulo 2^32. A small step adds an integer that is as probable as its negative, so detailed
  * balance holds exactly, and a coordinate that is left alone keeps its bits. A large step adds a uniform integer, which
  * makes the sum uniform. What is added is a function of (seed, chain, step), so a proposal replaces the current
- * coordinates in place, and a refused one is subtracted again. */
+ * coordinates in place, and is subtracted again if it is rejected. */
 #ifndef TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 #define TWINLIGHT_CHAIN_CHAIN_NUMBERS_H
 

@@ -105,8 +105,8 @@ SHARED_FUNCTION uint chain_key_shown(const SceneView *scene, uint key, Vec2 film
     return chain_key(d, s) | shown << 16;
 }
 
-/* Layers (SPLAT_*) of a splat, all or nothing of it at random: in expectation what the pool shows of the path has
- * SPLAT_LIGHT and its excess SPLAT_EXCESS; what path tracing does not show of it also has SPLAT_RARE. */
+/* Layers (SPLAT_*) of a whole splat, chosen at random: in expectation, the part of the path that the pool shows has
+ * SPLAT_LIGHT and its excess SPLAT_EXCESS; the part that path tracing does not show also has SPLAT_RARE. */
 SHARED_FUNCTION uint chain_splat_layers(__global const FrameParams *frame, uint key, float f, float u)
 {
     bool by_pool = partition_draw(u, f, partition_threshold(frame, PARTITION_POOL));
@@ -153,8 +153,8 @@ SHARED_FUNCTION void chain_splat_current(const SceneView *scene, __global const 
 
 /* ---- the rule ---------------------------------------------------------------------------------------------------- */
 
-/* Makes the proposal the current path. Its target is f and its contribution `color` = f * (color / f); it starts with
- * `visits` expected visits. */
+/* Makes the proposal, with target f and contribution `color`, the current path, with `visits` expected visits so
+ * far. */
 SHARED_FUNCTION void chain_take(__global const FrameParams *frame, __global uint *restrict paths, uint item, float f,
                                 Vec3 color, float visits)
 {
@@ -181,9 +181,9 @@ SHARED_FUNCTION float chain_target(const SceneView *scene, Vec2 film, Vec3 color
 }
 
 /* Decides on the proposal, whose contribution is `color`. Accepts with probability a = min(1, f' / f * change), where
- * `change` is the change of volume by a mutation that is no step (shift_ratio). The film gets expected values: a of the
- * proposal and 1 - a of the current path, which is summed up until the chain leaves it. So each step makes one splat:
- * of the path that the chain leaves, or of the proposal that it refuses. */
+ * `change` is the Jacobian of a shift (shift_ratio), 1 for steps. The film gets expected values: a of the proposal and
+ * 1 - a of the current path, which is summed up until the chain leaves it. So each step makes one splat: of the path
+ * that the chain leaves, or of the rejected proposal. */
 SHARED_FUNCTION void chain_decide(const SceneView *scene, __global uint *restrict paths, __global uint *restrict splats,
                                   __global uint *restrict diagnostics, uint item, Vec3 color, float change)
 {

@@ -1,10 +1,10 @@
 /* The pool from which chains start: independent bidirectional samples, each a pair of walks with all connections
- * between them, of which one path is kept with probability proportional to what it carries (reservoir sampling). Only
- * frame->pool.lights of them have a light walk; the others have a camera walk with the lights that it hits and is
- * connected to.
+ * between them, of which one path is kept with probability proportional to its contribution weight (reservoir
+ * sampling). Only frame->pool.lights of them have a light walk; the others have only a camera walk, which hits lights
+ * or is connected to them.
  *
  * The random numbers of a sample are coordinates of a chain: all connections share one light and one point on the lens,
- * and the film position is two of the numbers. So the kept path can be made again from the sample's number, its depth d
+ * and the film position is two of the numbers. So the kept path can be rebuilt from the sample's number, its depth d
  * and its number s of light vertices. */
 #ifndef TWINLIGHT_CHAIN_POOL_H
 #define TWINLIGHT_CHAIN_POOL_H
@@ -21,8 +21,8 @@
 #define POOL_LUMINANCE 2u /* target f of the kept path, as a chain has it */
 #define POOL_WORDS 3u
 
-/* A path of d segments with s vertices from the light. In the upper half a chain stores what path tracing shows of
- * it. */
+/* A path of d segments with s vertices from the light. In the upper 16 bits a chain stores which part of it path
+ * tracing shows. */
 SHARED_FUNCTION uint chain_key(uint d, uint s)
 {
     return d | s << 8;
@@ -62,8 +62,8 @@ SHARED_FUNCTION bool pool_has_light(__global const FrameParams *frame, uint item
     return (item < first ? item + behind : item - first) < frame->pool.lights;
 }
 
-/* Multiplies what Russian roulette goes by with what the sample's paths count for (density ratio, weight of light
- * walks), so that roulette does not make paths rarer that few samples have. docs/TUNING.md */
+/* Scales the throughput that Russian roulette uses by the weights of the sample's paths (density ratio, weight of light
+ * walks), so that roulette does not make paths even rarer that few samples can make. docs/TUNING.md */
 SHARED_FUNCTION void pool_roulette_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                          float density_ratio)
 {

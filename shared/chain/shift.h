@@ -1,21 +1,21 @@
 /* Shifts: mutations that move a path across the film and reconnect it to the rest of the path, which stays where it is.
  *
- * A step of the numbers that draw directions moves a path off the peaks of the lobes of several glossy or curved
- * surfaces: a turn of the ray at z_1 is magnified at every vertex behind. Such proposals are refused, and a chain at
- * such a path, which carries the more the rarer it is, stays where it is and shows as a single bright dot. A shift
- * moves film and lens, and with them z_1. It takes those numbers at z_1 that draw the direction to the same z_2, and
- * those at z_2 that draw the direction to the same z_3. From z_3 on the path is unchanged.
+ * On a path over several glossy or curved surfaces, a small step of the numbers that sample directions moves the path
+ * off the peaks of the lobes: a rotation of the ray at z_1 is magnified at every following vertex. Such proposals are
+ * rejected, and a chain at such a path, which is the brighter the rarer it is, stays there and shows as a single bright
+ * dot. A shift moves film and lens, and with them z_1. It uses those numbers at z_1 that sample the direction to the
+ * same z_2, and those at z_2 that sample the direction to the same z_3. From z_3 on the path is unchanged.
  *
- * The map from one path's numbers to the other's changes volumes: by the area density with which they draw z_2, and
- * likewise z_3. The ratio of both paths' densities enters the acceptance probability (Green, "Reversible jump Markov
- * chain Monte Carlo computation and Bayesian model determination", 1995). Reconnection to another path's vertices comes
- * from gradient-domain rendering: Kettunen et al., "Gradient-domain path tracing", 2015. Mutations that invert the
- * sampling of directions: Otsu et al., "Fusing state spaces for Markov chain Monte Carlo rendering", 2017; Bitterli et
- * al., "Reversible jump Metropolis light transport using inverse mappings", 2018.
+ * The Jacobian of the map from one path's numbers to the other's is the ratio of the area densities with which they
+ * sample z_2 and z_3. It enters the acceptance probability (Green, "Reversible jump Markov chain Monte Carlo
+ * computation and Bayesian model determination", 1995). Reconnection to another path's vertices comes from
+ * gradient-domain rendering: Kettunen et al., "Gradient-domain path tracing", 2015. Mutations that invert the sampling
+ * of directions: Otsu et al., "Fusing state spaces for Markov chain Monte Carlo rendering", 2017; Bitterli et al.,
+ * "Reversible jump Metropolis light transport using inverse mappings", 2018.
  *
  * A path can be shifted if it has z_2, and if z_1 and, where z_3 exists, z_2 have lobes that draw all directions near
- * theirs. Other paths take an ordinary step of the camera subpath instead; it is refused if it leads to a path that can
- * be shifted, which would never step back. */
+ * theirs. Other paths take an ordinary step of the camera subpath instead; it is rejected if it leads to a path that
+ * can be shifted, since no step leads back from there. */
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
 #define TWINLIGHT_CHAIN_SHIFT_H
 
@@ -23,9 +23,9 @@
 #include "chain/chain_numbers.h"
 #include "path/bd_walk.h"
 
-/* Tolerance for the position of a kept vertex, in ulps. Both directions of a shift must find the same vertices, or
- * chains gather at those that only one direction leads to. So a kept vertex must be found on its old primitive, not on
- * a neighbour that hides it, and no further from its old position than rounding explains. The ulps are those of
+/* Tolerance for the position of a kept vertex, in ulps. A shift and its reverse must find the same vertices, or chains
+ * accumulate at those that only one of them finds. So a kept vertex must be found on its old primitive, not on a
+ * neighbour that hides it, and no further from its old position than rounding explains. The ulps are those of
  * coordinates, by which rays start beside their vertex, and of directions, whose numbers are 2^-23 apart: the lower
  * their density, the larger the steps of the direction. docs/TUNING.md */
 #define SHIFT_ULPS 32.0f
@@ -142,7 +142,7 @@ SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const
            shift_found(vertices, stride, item, shift_point(shift_bank(paths, stride, item), depth), pdf_w, walk_hit);
 }
 
-/* Factor of the acceptance ratio; 0: refuse the proposal. */
+/* Factor of the acceptance ratio; 0: reject the proposal. */
 SHARED_FUNCTION float shift_ratio(__global const uint *restrict paths, __global const uint *restrict vertices,
                                   uint stride, uint item)
 {

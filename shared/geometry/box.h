@@ -1,5 +1,5 @@
-/* Axis-aligned boxes around primitives: for the scene's bounds, as a condition on hits, and widened for hierarchies
- * that any traversal may walk. */
+/* Axis-aligned boxes around primitives: for the scene's bounds, as a condition on hits, and widened for hierarchies,
+ * whatever the traversal. */
 #ifndef TWINLIGHT_GEOMETRY_BOX_H
 #define TWINLIGHT_GEOMETRY_BOX_H
 

@@ -4,7 +4,7 @@
  * The buffer is made of quads, four words that are read at once. Node n begins at quad n * BVH_NODE_QUADS; the header
  * takes the place of node 0. A node has up to four children: quads 0 ... 5 are the low and high planes of their boxes
  * along x, y, z, one lane per child; quad 6 holds the children's words; quad 7 pads nodes to a device's cache lines of
- * 128 bytes. Lanes without a child have a box that nothing meets. A child's word is the number of an inner node, or
+ * 128 bytes. Lanes without a child have a box that no ray hits. A child's word is the number of an inner node, or
  * BVH_LEAF with the number of items, less one, and the first of them. Item i, a primitive or an instance, begins at
  * quad i * BVH_ITEM_QUADS:
  *
@@ -17,7 +17,7 @@
  *
  * Boxes are widened by box_margin for their own coordinates, rays add the margin for their origins (bvh_ray), and hits
  * lie in boxes (box_admits_hit). So the answer is the smallest (t, instance, primitive) of the shared primitive test,
- * whatever the rounding of box tests, which decides no bit of it. */
+ * whatever the rounding of box tests. */
 #ifndef TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 #define TWINLIGHT_GEOMETRY_BVH_TRAVERSE_H
 
@@ -253,8 +253,7 @@ SHARED_FUNCTION bool bvh_instance_enter(const SceneView *scene, BvhWalk *walk, B
     return true;
 }
 
-/* Tests the items of a leaf. Returns the word to continue with; BVH_EMPTY if `any` hit was asked for and one is
- * found. */
+/* Tests the items of a leaf. Returns the word to continue with; BVH_EMPTY if `any` hit suffices and one is found. */
 SHARED_FUNCTION uint bvh_leaf(const SceneView *scene, __global const Float4 *bvh, uint word, bool any, BvhWalk *walk,
                               BvhEntry *stack)
 {

@@ -3,7 +3,7 @@
  * Two measures together keep a ray from hitting the surface that it leaves. Its origin is moved off the surface by a
  * few units in the last place of its largest coordinate (Waechter and Binder, "A Fast and Robust Method for Avoiding
  * Self-Intersection", Ray Tracing Gems, chapter 6, 2019), which exceeds the rounding error of the point itself. And
- * every primitive refuses an intersection whose tangent plane contains an end of the ray to within the rounding of its
+ * every primitive rejects an intersection whose tangent plane contains an end of the ray to within the rounding of its
  * own arithmetic. The offset cannot cover that error: a point near (0,0,0) may lie on a triangle whose corners are 10^4
  * away. */
 #ifndef TWINLIGHT_GEOMETRY_RAY_H

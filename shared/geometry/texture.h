@@ -151,7 +151,7 @@ SHARED_FUNCTION Vec2 texture_map(__global const TextureOp *op, const TexturePoin
     return vec2((PI + float_atan2(p.y, p.x)) * INV_2PI, p.z);
 }
 
-/* 1 when floor(x) is odd, else 0; exact for every float, 0 for what is not finite. */
+/* 1 when floor(x) is odd, else 0; exact for every float, 0 for NaN and infinities. */
 SHARED_FUNCTION uint texture_cell_odd(float x)
 {
     float cell = float_floor(x);

@@ -1,12 +1,12 @@
 /* The triangle test: watertight without fused arithmetic, both sides hit.
  *
  * After Woop, Benthin and Wald 2013, the corners are sheared so that the ray becomes the z axis, once per corner and in
- * the same way for every triangle that shares it; then the origin of the plane is located by 2D edge functions
- * p.x q.y - p.y q.x. Rounding is monotone, so a computed edge function that is not zero has the sign of the exact one
- * of the sheared corners, and exchanging p and q negates it exactly. A point that the sheared triangle contains is
- * therefore never refused, and since the sheared triangles of a mesh share their corners bit for bit, nothing slips
- * through an edge or a corner. (The paper evaluates again in double where an edge function is zero; here zero counts
- * as inside for both neighbours, and the smaller primitive number takes the hit.) */
+ * the same way for every triangle that shares it; then the origin of the plane is located by 2D edge functions p.x q.y
+ * - p.y q.x. Rounding is monotone, so a computed edge function that is not zero has the sign of the exact one of the
+ * sheared corners, and exchanging p and q negates it exactly. A point that the sheared triangle contains is therefore
+ * never rejected, and since the sheared triangles of a mesh share their corners bit for bit, no ray passes through an
+ * edge or a corner. (The paper evaluates again in double where an edge function is zero; here zero counts as inside for
+ * both neighbours, and the smaller primitive number takes the hit.) */
 #ifndef TWINLIGHT_GEOMETRY_TRIANGLE_H
 #define TWINLIGHT_GEOMETRY_TRIANGLE_H
 

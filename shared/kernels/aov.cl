@@ -1,5 +1,5 @@
-/* Auxiliary variables (AOVs) of a pixel, for denoisers and compositors: albedo, normal and distance of the first
- * visible surface. A pass: pt_start_paths, (rays traced) aov_splat. */
+/* Auxiliary variables (AOVs) of a pixel, properties of the first visible surface (layout/aov_list.h). A pass:
+ * pt_start_paths, (rays traced) aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 
@@ -7,51 +7,103 @@
 #include "bsdf/material.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
+#include "layout/aov_list.h"
 #include "light/light.h"
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* An estimate of the directional albedo: the fraction of uniform incident light that the surface scatters along `back`,
- * towards the viewer. It is the weight of one direction drawn from the Bsdf. */
-SHARED_FUNCTION Vec3 aov_albedo(const SceneView *scene, Random4 random, const Bsdf *bsdf, Frame shading, Vec3 back)
+/* What a camera ray meets first. */
+typedef struct AovHit {
+    Surface surface;
+    Vec3 back; /* towards the viewer; unit */
+    float distance; /* from the ray's origin */
+    uint primitive;
+    uint pixel, sample;
+} AovHit;
+
+/* The random numbers that a path of light would draw at this hit. */
+SHARED_FUNCTION Random4 aov_random(const SceneView *scene, const AovHit *hit, uint purpose)
 {
+    return path_random(scene->frame, hit->pixel, hit->sample, path_random_block(1u, purpose));
+}
+
+/* The surface's Bsdf and shading frame. */
+SHARED_FUNCTION void aov_material(const SceneView *scene, const AovHit *hit, Bsdf *bsdf, Frame *shading)
+{
+    Surface surface = hit->surface;
+    material_resolve(scene, random_float(aov_random(scene, hit, RANDOM_MIX).x[0]), &surface, bsdf, shading);
+}
+
+SHARED_FUNCTION bool aov_lamp(const SceneView *scene, const AovHit *hit)
+{
+    __global const Shape *shape = scene->shapes + hit->surface.shape;
+    if (!SCENE_HAS(scene, FEATURE_AREA_LIGHT) || shape->first_light == NONE)
+        return false;
+    uint light = shape->first_light + hit->primitive - shape->first_primitive;
+    return !vec3_is_zero(light_emitted(scene, light, hit->surface.ng, hit->back));
+}
+
+/* ---- variables: aov_name of AOV_LIST ----------------------------------------------------------------------------- */
+
+/* An estimate of the directional albedo: the fraction of uniform incident light that the surface scatters towards the
+ * viewer. It is the weight of one direction drawn from the Bsdf; 1 for a lamp. */
+SHARED_FUNCTION Vec3 aov_albedo(const SceneView *scene, const AovHit *hit)
+{
+    if (aov_lamp(scene, hit))
+        return vec3_splat(1.0f);
+    Bsdf bsdf;
+    Frame shading;
     BsdfSample sample;
-    bool drawn = bsdf_sample(scene, bsdf, frame_to_local(shading, back), random_float(random.x[0]),
+    aov_material(scene, hit, &bsdf, &shading);
+    Random4 random = aov_random(scene, hit, RANDOM_SCATTER);
+    bool drawn = bsdf_sample(scene, &bsdf, frame_to_local(shading, hit->back), random_float(random.x[0]),
                              vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_IMPORTANCE, &sample);
     return drawn ? sample.weight : vec3_splat(0.0f);
 }
 
-SHARED_FUNCTION bool aov_lamp(const SceneView *scene, const Surface *surface, uint primitive, Vec3 back)
+/* The shading normal on the viewer's side. */
+SHARED_FUNCTION Vec3 aov_normal(const SceneView *scene, const AovHit *hit)
 {
-    uint first = scene->shapes[surface->shape].first_light;
-    if (!SCENE_HAS(scene, FEATURE_AREA_LIGHT) || first == NONE)
-        return false;
-    uint light = first + primitive - scene->shapes[surface->shape].first_primitive;
-    return !vec3_is_zero(light_emitted(scene, light, surface->ng, back));
-}
-
-/* The albedo (1 for a lamp), the shading normal on the viewer's side, or the distance. */
-SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit hit)
-{
-    __global const FrameParams *frame = scene->frame;
-    Surface surface = surface_from_hit(scene, &ray, hit);
-    Vec3 back = vec3_negate(ray.d);
-    if (frame->pass.aov == AOV_DEPTH)
-        return vec3_splat(vec3_length(vec3_sub(surface.p, ray.o)));
-    if (frame->pass.aov == AOV_ALBEDO && aov_lamp(scene, &surface, hit.primitive, back))
-        return vec3_splat(1.0f);
-    Random4 mix = path_random(frame, pixel, sample, path_random_block(1u, RANDOM_MIX));
     Bsdf bsdf;
     Frame shading;
-    material_resolve(scene, random_float(mix.x[0]), &surface, &bsdf, &shading);
-    if (frame->pass.aov == AOV_NORMAL)
-        return vec3_face_forward(shading.n, back);
-    return aov_albedo(scene, path_random(frame, pixel, sample, path_random_block(1u, RANDOM_SCATTER)), &bsdf, shading,
-                      back);
+    aov_material(scene, hit, &bsdf, &shading);
+    return vec3_face_forward(shading.n, hit->back);
 }
 
-/* From: closest hits. To: one sample of the variable. Rays that miss give zero albedo and normal, and no sample of the
- * distance. */
+SHARED_FUNCTION Vec3 aov_depth(const SceneView *scene, const AovHit *hit)
+{
+    (void)scene;
+    return vec3_splat(hit->distance);
+}
+
+/* ---- the kernel -------------------------------------------------------------------------------------------------- */
+
+/* AOV_LIGHTLIKE or AOV_DISTANCE. */
+SHARED_FUNCTION uint aov_values(uint aov)
+{
+#define VALUES_OF(NAME, name, text, values, red, green, blue) | (values) << AOV_##NAME
+    return (0u AOV_LIST(VALUES_OF)) >> aov & 1u;
+#undef VALUES_OF
+}
+
+SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit hit)
+{
+    AovHit found;
+    found.surface = surface_from_hit(scene, &ray, hit);
+    found.back = vec3_negate(ray.d);
+    found.distance = vec3_length(vec3_sub(found.surface.p, ray.o));
+    found.primitive = hit.primitive;
+    found.pixel = pixel;
+    found.sample = sample;
+#define VALUE(NAME, name, text, values, red, green, blue)                                                              \
+    if (scene->frame->pass.aov == AOV_##NAME)                                                                          \
+        return aov_##name(scene, &found);
+    AOV_LIST(VALUE)
+#undef VALUE
+    return vec3_splat(0.0f);
+}
+
+/* From: closest hits. To: one sample of the variable; of an AOV_DISTANCE none if the ray meets nothing. */
 __kernel void aov_splat(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                         __global const uint *restrict tables, __global const uint *restrict texels,
                         __global const uint *restrict paths, __global const uint *restrict rays,
@@ -68,9 +120,10 @@ __kernel void aov_splat(__global const FrameParams *restrict frame, __global con
         KERNEL_SCENE(frame, geometry, tables, texels);
         value = aov_value(scene, pixel, sample, ray_load(rays, stride, item), hit);
     }
-    if (frame->pass.aov != AOV_DEPTH)
+    bool distance = aov_values(frame->pass.aov) == AOV_DISTANCE;
+    if (!distance)
         value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
-    state_store(splats, stride, SPLAT_PIXEL, item, met || frame->pass.aov != AOV_DEPTH ? pixel : NONE);
+    state_store(splats, stride, SPLAT_PIXEL, item, met || !distance ? pixel : NONE);
     state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
 }
 

@@ -117,8 +117,8 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     connection_advance(paths, stride, item, frame->path.max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat. With frame->film.split_depths also in the course of a path; what
- * was gathered is cleared then. */
+/* From: what was gathered for the pixel. To: its splat. With frame->film.split_depths it also runs in the course of a
+ * path, and then clears what was gathered. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

@@ -129,7 +129,7 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
 }
 
 /* From: the finished light walk. To: the camera's first ray, if the camera subpath is new and the light subpath is
- * there. */
+ * complete. */
 __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                                __global const uint *restrict geometry, __global const uint *restrict tables,
                                __global const uint *restrict texels, __global uint *restrict paths,
@@ -198,8 +198,8 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, __global uint *restri
 }
 
 /* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s
- * = 0, at the last vertex, what the light sends. A walk ends at its last vertex, by absorption, or where it can make no
- * path. */
+ * = 0, at the last vertex, the emission found there. A walk ends at its last vertex, by absorption, or where it can no
+ * longer make a path. */
 __kernel void mlt_walk(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
                        __global const uint *restrict geometry, __global const uint *restrict tables,
                        __global const uint *restrict texels, __global uint *restrict paths,

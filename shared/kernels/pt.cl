@@ -103,8 +103,8 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
     return partition_shown(path_tracing, limit);
 }
 
-/* s = 0: the camera's path hits `radiance`, which light sampling would have found with density `pdf_other` (0:
- * never). */
+/* s = 0: the camera's path hits a light of `radiance`, which light sampling would have found with density `pdf_other`
+ * (0: never). */
 SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                   Vec3 radiance, float pdf_other)
 {
@@ -344,8 +344,9 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
         path_splat(paths, splats, diagnostics, frame->pass.stride, item, 0u);
 }
 
-/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's
- * sample before. With frame->film.split_depths also in the course of a path: what its latest segment has brought. */
+/* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's sample
+ * before. With frame->film.split_depths it also runs in the course of a path, for the contribution of the latest
+ * segment. */
 __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

@@ -19,9 +19,8 @@ SHARED_FUNCTION float rounding_scale(uint x, int exponent)
     return bits_float(float_bits((float)x) + ((uint)exponent << 23));
 }
 
-/* The a in [0, b) for which a 2^25 is r modulo b; b is odd, 0 < r < b. If r is odd, or b less an odd number, a / b is
- * next to k / 2^25 for an odd k: halfway between two floats if a is more than b / 2, and next to a float if it is
- * less. */
+/* The a in [0, b) with a 2^25 = r (mod b); b is odd, 0 < r < b. If r or b - r is small and odd, a / b is next to k /
+ * 2^25 for an odd k: halfway between two floats if a is more than b / 2, and next to a float if it is less. */
 SHARED_FUNCTION uint rounding_hard_dividend(uint b, uint r)
 {
     for (int i = 0; i < 25; ++i)
@@ -44,8 +43,8 @@ SHARED_FUNCTION uint rounding_hard_radicand(int r, uint *shift)
     return (uint)(square >> *shift);
 }
 
-/* Operands of item i, by i modulo 8: 0 ... 3 any bits; 4 a denormal and any bits; 5 quotients around the least normal
- * number, and denormal radicands; 6, 7 quotients and roots next to where rounding changes. */
+/* Operands of item i, by i modulo 8: 0 ... 3 any bits; 4 a denormal and any bits; 5 quotients around the smallest
+ * normal number, and denormal radicands; 6, 7 quotients and roots next to where rounding changes. */
 SHARED_FUNCTION RoundingOperands rounding_operands(uint i)
 {
     Random4 random = random_four(i, 0u, 0u, 0u, 0x726f756eu, 0x64696e67u);

@@ -10,8 +10,8 @@
     X(DIAGNOSTIC_NOT_FINITE, "not_finite") /* contributions that were NaN or infinite and counted as zero */           \
     X(DIAGNOSTIC_ZERO_DIRECTION, "zero_direction") /* rays without direction, which were not traced */                 \
     X(DIAGNOSTIC_RAY_RANGE, "ray_range") /* rays that were not finite or out of range, whose paths were ended */       \
-    X(DIAGNOSTIC_LOST_CHAIN, "lost_chain") /* chains whose first path carries nothing when it is replayed */           \
-    X(DIAGNOSTIC_REPLAY, "replay") /* chains of an earlier pass whose replayed path carries something else */
+    X(DIAGNOSTIC_LOST_CHAIN, "lost_chain") /* chains whose first path contributes nothing when it is replayed */       \
+    X(DIAGNOSTIC_REPLAY, "replay") /* chains of an earlier pass whose replayed path has another luminance */
 
 #define DIAGNOSTIC_ENUMERATE(constant, name) constant,
 enum { DIAGNOSTIC_LIST(DIAGNOSTIC_ENUMERATE) DIAGNOSTIC_COUNT };

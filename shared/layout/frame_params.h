@@ -1,6 +1,6 @@
-/* The parameters of kernels, grouped by who reads them: the scene and the camera, the film, paths and their MIS weights,
- * what the estimators of one image share, pools, chains, and the pass. Plain data of 4-byte members, as all structs of
- * layout/scene_types.h. */
+/* The parameters of kernels, grouped by who reads them: the scene and the camera, the film, paths and their MIS
+ * weights, the partition among the estimators of an image, pools, chains, and the pass. Plain data of 4-byte members,
+ * as all structs of layout/scene_types.h. */
 #ifndef TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 #define TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 
@@ -14,12 +14,6 @@
 #define PATH_STREAM_POOL 2u /* samples that chains start from */
 #define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
 #define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
-
-/* Auxiliary variables of a pixel, besides light (kernels/aov.cl). */
-#define AOV_ALBEDO 0u
-#define AOV_NORMAL 1u
-#define AOV_DEPTH 2u
-#define AOV_COUNT 3u
 
 /* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
@@ -63,9 +57,9 @@ typedef struct PathParams {
     uint unweighted; /* 1: all MIS weights are 1 */
 } PathParams;
 
-/* How the estimators of MMLT share a path's contribution (path/partition.h). */
+/* How the estimators of MMLT divide a path's contribution (path/partition.h). */
 typedef struct PartitionParams {
-    uint split_direct; /* 1: path tracing splats light of up to two segments apart (kernels/pt.cl) */
+    uint split_direct; /* 1: path tracing splats paths of up to two segments separately (kernels/pt.cl) */
     float clamp_threshold; /* of a path's luminance times importance: pools show up to it, chains the excess */
 } PartitionParams;
 
@@ -83,7 +77,7 @@ typedef struct ChainParams {
     float shifts; /* fraction of the camera subpath's mutations that are shifts (chain/shift.h) */
     float large_step; /* probability of a large step */
     uint keep; /* 1: a pass hands the chains' coordinates on to the next */
-    float brightness; /* what a chain's step brings to the film: mean contribution weight of the pool's samples */
+    float brightness; /* weight of a chain's step on the film: mean contribution weight of the pool's samples */
 } ChainParams;
 
 typedef struct PassParams {

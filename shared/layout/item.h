@@ -47,8 +47,8 @@ SHARED_FUNCTION ItemPlace item_place_visited(__global const FrameParams *frame, 
     return place;
 }
 
-/* The density ratio of a pool at a pixel: how much more rarely the pool visits it than if it visited all alike. A
- * sample there counts for as much more. */
+/* The density ratio of a pool at a pixel: how many times less often the pool visits it than if it visited all pixels
+ * equally. Samples there are weighted by it. */
 SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __global const Guide *guide, uint pixel)
 {
     uint all = frame->pool.visits;
@@ -64,7 +64,7 @@ SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __gl
     return (float)all / ((float)each * (float)(width * height));
 }
 
-/* The place of item `item`, counted from the beginning of the pixels' order, if all pixels are visited alike. */
+/* The place of item `item`, counted from the beginning of the pixels' order, if all pixels are visited equally. */
 SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uint item)
 {
     uint crop_width = frame->film.crop_x1 - frame->film.crop_x0,
@@ -77,7 +77,7 @@ SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uin
     return place;
 }
 
-/* The place of item `item` of a pass: a pool's, or one that visits all pixels alike. */
+/* The place of item `item` of a pass: a pool's, or one that visits all pixels equally. */
 SHARED_FUNCTION ItemPlace pool_item_place(__global const FrameParams *frame, __global const Guide *guide, uint item)
 {
     item += frame->pass.pixel_first;

@@ -19,7 +19,7 @@
     X(COATED_DIFFUSE, coated_diffuse, "coateddiffuse", TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE)              \
     X(DIFFUSE_TRANSMISSION, diffuse_transmission, "diffusetransmission", TRAIT_COSINE)
 
-/* All BSDFs, and what is not a BSDF by itself. */
+/* All BSDFs, and the materials that are not BSDFs themselves. */
 #define MATERIAL_LIST(X)                                                                                               \
     BSDF_LIST(X)                                                                                                       \
     X(MIX, mix, "mix", 0u)

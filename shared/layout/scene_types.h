@@ -204,17 +204,22 @@ typedef struct Material {
 
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
-/* X(NAME, text, feature): LIGHT_NAME, its name in `twinlight info`, and the group of lights that it is dispatched with.
- * Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment. */
-#define LIGHT_LIST(X)                                                                                                  \
-    X(AREA, "area", FEATURE_AREA_LIGHT)                                                                                \
-    X(POINT, "point", FEATURE_DELTA_LIGHT)                                                                             \
-    X(SPOT, "spot", FEATURE_DELTA_LIGHT)                                                                               \
-    X(DISTANT, "distant", FEATURE_DELTA_LIGHT)                                                                         \
-    X(INFINITE, "infinite", FEATURE_INFINITE_LIGHT)                                                                    \
-    X(INFINITE_IMAGE, "infinite image", FEATURE_INFINITE_LIGHT)
+/* X(NAME, name, text, feature, position): LIGHT_NAME; its name in `twinlight info`; the group of lights that it is
+ * dispatched with; whether Light.position is its place. Delta lights have functions light_name_sample, _emit and
+ * _emit_pdf_w (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by `text`). */
+#define LIGHT_LIST_DELTA(X)                                                                                            \
+    X(POINT, point, "point", FEATURE_DELTA_LIGHT, 1u)                                                                  \
+    X(SPOT, spot, "spot", FEATURE_DELTA_LIGHT, 1u)                                                                     \
+    X(DISTANT, distant, "distant", FEATURE_DELTA_LIGHT, 0u)
 
-#define LIGHT_ENUMERATE(NAME, text, feature) LIGHT_##NAME,
+/* All lights. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment. */
+#define LIGHT_LIST(X)                                                                                                  \
+    X(AREA, area, "area", FEATURE_AREA_LIGHT, 0u)                                                                      \
+    LIGHT_LIST_DELTA(X)                                                                                                \
+    X(INFINITE, infinite, "infinite", FEATURE_INFINITE_LIGHT, 0u)                                                      \
+    X(INFINITE_IMAGE, infinite_image, "infinite image", FEATURE_INFINITE_LIGHT, 0u)
+
+#define LIGHT_ENUMERATE(NAME, name, text, feature, position) LIGHT_##NAME,
 enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
 #undef LIGHT_ENUMERATE
 

@@ -1,4 +1,5 @@
 SHARED_FILES += \
+	shared/layout/aov_list.h \
 	shared/layout/diagnostics.h \
 	shared/layout/distribution.h \
 	shared/layout/frame_params.h \

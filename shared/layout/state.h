@@ -66,7 +66,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_WORDS 5u
 
 /* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), and linear RGB. A splat is in one of three
- * layers: a sample of its pixel; light that any path could have brought to the pixel; or, from chains, the excess of a
+ * layers: a sample of its pixel; light from a path that could have reached any pixel; or, from chains, the excess of a
  * path over what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess uses the sums of
  * samples. A splat may be in a fourth layer as well: what path tracing does not show of the path. */
 #define SPLAT_SAMPLE 0u

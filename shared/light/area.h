@@ -156,8 +156,8 @@ SHARED_FUNCTION AreaPoint sphere_light_sample_area(const SceneView *scene, const
 }
 
 /* Squared distance from the centre, in squared radii, beyond which a point counts as outside. A point on the sphere
- * itself, which sees the rest of the inside, must not fall outside by rounding; sampling by area is right on both
- * sides. */
+ * itself, which can see the rest of the sphere from inside, must not fall outside by rounding; sampling by area is
+ * right on both sides. */
 #define SPHERE_OUTSIDE 1.0001f
 
 /* Squared sine of the half-angle of the cone that a whole sphere subtends at `ref`; 0 if `ref` is not outside or the

@@ -1,9 +1,74 @@
-/* Lights without extent: point, spot, distant. No sampled direction can hit them. */
+/* Lights without extent. No sampled direction can hit them. For each of LIGHT_LIST_DELTA (layout/scene_types.h):
+ *   light_NAME_sample: sets the light that arrives at `ref`, for light_sample: wi, p, infinite, radiance;
+ *   light_NAME_emit: draws a ray that leaves it, for light_emit: w, pdf_w, p, pdf_p, radiance, delta_* and infinite;
+ *   light_NAME_emit_pdf_w: pdf_w of that, from w. */
 #ifndef TWINLIGHT_LIGHT_DELTA_H
 #define TWINLIGHT_LIGHT_DELTA_H
 
 #include "layout/path_types.h"
-#include "layout/scene_view.h"
+#include "light/emission.h"
+
+/* Whether a delta light of this kind is at Light.position; the others are at infinity. */
+SHARED_FUNCTION bool light_has_position(uint kind)
+{
+#define POSITION_OF(NAME, name, text, feature, position) | (position) << LIGHT_##NAME
+    return ((0u LIGHT_LIST_DELTA(POSITION_OF)) >> kind & 1u) != 0u;
+#undef POSITION_OF
+}
+
+/* For light_NAME_sample of lights with a position: sets all but radiance. False: ref is that position. */
+SHARED_FUNCTION bool position_light_sample(__global const Light *source, Vec3 ref, LightSample *sample,
+                                           float *distance2)
+{
+    Vec3 d = vec3_sub(source->position, ref);
+    *distance2 = vec3_length_squared(d);
+    if (!(*distance2 > 0.0f))
+        return false;
+    sample->p = source->position;
+    sample->infinite = 0u;
+    sample->wi = vec3_scale(d, 1.0f / float_sqrt(*distance2));
+    return true;
+}
+
+/* For light_NAME_emit: all but w, pdf_w and the factor that radiance has in that direction. */
+SHARED_FUNCTION void position_light_emit(__global const Light *source, LightEmission *emission)
+{
+    emission->p = source->position;
+    emission->pdf_p = 1.0f;
+    emission->delta_position = 1u;
+    emission->radiance = source->emission;
+}
+
+/* ---- point ------------------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION bool light_point_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+{
+    float distance2;
+    if (!position_light_sample(source, ref, sample, &distance2))
+        return false;
+    sample->radiance = vec3_scale(source->emission, 1.0f / distance2);
+    return true;
+}
+
+SHARED_FUNCTION float light_point_emit_pdf_w(__global const Light *source, Vec3 w)
+{
+    (void)source;
+    (void)w;
+    return INV_4PI;
+}
+
+SHARED_FUNCTION bool light_point_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
+                                      Vec2 u_direction, LightEmission *emission)
+{
+    (void)scene;
+    (void)u_point;
+    position_light_emit(source, emission);
+    emission->w = warp_sphere(u_direction);
+    emission->pdf_w = INV_4PI;
+    return true;
+}
+
+/* ---- spot -------------------------------------------------------------------------------------------------------- */
 
 /* pbrt-v4's falloff: a cubic step in the cosine, from 0 at the cone's edge to 1 inside the falloff angle. Without
  * falloff cos_falloff = cos_total, which gives a step. */
@@ -17,31 +82,138 @@ SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_fall
     return t * t * (3.0f - 2.0f * t);
 }
 
-/* sample->radiance is the arriving radiance integrated over solid angle, so pdf_w is 1. */
-SHARED_FUNCTION bool delta_light_sample(const SceneView *scene, uint light, Vec3 ref, LightSample *sample)
+SHARED_FUNCTION bool light_spot_sample(__global const Light *source, Vec3 ref, LightSample *sample)
 {
-    __global const Light *source = scene->lights + light;
+    float distance2;
+    if (!position_light_sample(source, ref, sample, &distance2))
+        return false;
+    float cosine = -vec3_dot(source->direction, sample->wi);
+    float falloff = spot_falloff(cosine, source->cos_total, source->cos_falloff);
+    sample->radiance = vec3_scale(source->emission, falloff / distance2);
+    return true;
+}
+
+/* Integral over cosines of the unnormalised density from which a spot's directions are drawn: 1 inside the falloff
+ * angle, linear in the cosine down to 0 at the edge. The cubic falloff has the same integral, and is at most 9/8 of the
+ * line. */
+SHARED_FUNCTION float spot_emit_integral(__global const Light *spot)
+{
+    return (1.0f - spot->cos_falloff) + 0.5f * (spot->cos_falloff - spot->cos_total);
+}
+
+SHARED_FUNCTION float spot_emit_pdf_w(__global const Light *spot, float cosine)
+{
+    float pdf = INV_2PI / spot_emit_integral(spot);
+    if (cosine >= spot->cos_falloff)
+        return pdf;
+    if (!(cosine > spot->cos_total))
+        return 0.0f;
+    return pdf * ((cosine - spot->cos_total) / (spot->cos_falloff - spot->cos_total));
+}
+
+/* Mapped through the disk, as in warp_cone: the squared radius is the fraction of spot_emit_integral within the
+ * angle. */
+SHARED_FUNCTION Vec3 spot_emit_direction(__global const Light *spot, Vec2 u)
+{
+    float r;
+    Vec2 d = warp_disk_polar(u, &r);
+    float integral = spot_emit_integral(spot), inner = 1.0f - spot->cos_falloff;
+    float versine = r * r * integral; /* 1 - cos */
+    float scale = float_sqrt(integral * (2.0f - versine));
+    if (versine > inner) {
+        float width = spot->cos_falloff - spot->cos_total;
+        float t = float_sqrt(float_max(1.0f - 2.0f * ((versine - inner) / width), 0.0f));
+        versine = float_min(inner + width * (1.0f - t), 2.0f);
+        scale = float_sqrt(versine * (2.0f - versine)) / r;
+    }
+    return frame_to_world(frame_from_normal(spot->direction), vec3(d.x * scale, d.y * scale, 1.0f - versine));
+}
+
+SHARED_FUNCTION float light_spot_emit_pdf_w(__global const Light *source, Vec3 w)
+{
+    return spot_emit_pdf_w(source, vec3_dot(source->direction, w));
+}
+
+SHARED_FUNCTION bool light_spot_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
+                                     Vec2 u_direction, LightEmission *emission)
+{
+    (void)scene;
+    (void)u_point;
+    position_light_emit(source, emission);
+    if (!(spot_emit_integral(source) > 0.0f))
+        return false;
+    emission->w = vec3_normalize(spot_emit_direction(source, u_direction));
+    float cosine = vec3_dot(source->direction, emission->w);
+    emission->pdf_w = spot_emit_pdf_w(source, cosine);
+    emission->radiance = vec3_scale(source->emission, spot_falloff(cosine, source->cos_total, source->cos_falloff));
+    return emission->pdf_w > 0.0f;
+}
+
+/* ---- distant ----------------------------------------------------------------------------------------------------- */
+
+SHARED_FUNCTION bool light_distant_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+{
+    (void)ref;
+    sample->infinite = 1u;
+    sample->wi = vec3_negate(source->direction);
+    sample->radiance = source->emission;
+    return true;
+}
+
+SHARED_FUNCTION float light_distant_emit_pdf_w(__global const Light *source, Vec3 w)
+{
+    (void)source;
+    (void)w;
+    return 1.0f;
+}
+
+SHARED_FUNCTION bool light_distant_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
+                                        Vec2 u_direction, LightEmission *emission)
+{
+    (void)u_direction;
+    emission->w = source->direction;
+    emission->radiance = source->emission;
+    emission->pdf_w = 1.0f;
+    emission->delta_direction = 1u;
+    return light_emit_from_disc(scene, u_point, emission);
+}
+
+/* ---- all --------------------------------------------------------------------------------------------------------- */
+
+/* sample->radiance is the arriving radiance integrated over solid angle, so pdf_w is 1. */
+SHARED_FUNCTION bool delta_light_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+{
+    bool reached = false;
     sample->ng = vec3_splat(0.0f);
     sample->pdf_w = 1.0f;
     sample->delta = 1u;
-    sample->p = source->position;
-    if (source->kind == LIGHT_DISTANT) {
-        sample->infinite = 1u;
-        sample->wi = vec3_negate(source->direction);
-        sample->radiance = source->emission;
-    } else {
-        Vec3 d = vec3_sub(source->position, ref);
-        float distance2 = vec3_length_squared(d);
-        if (!(distance2 > 0.0f))
-            return false;
-        sample->infinite = 0u;
-        sample->wi = vec3_scale(d, 1.0f / float_sqrt(distance2));
-        float falloff = 1.0f;
-        if (source->kind == LIGHT_SPOT)
-            falloff = spot_falloff(-vec3_dot(source->direction, sample->wi), source->cos_total, source->cos_falloff);
-        sample->radiance = vec3_scale(source->emission, falloff / distance2);
-    }
-    return !vec3_is_zero(sample->radiance) && vec3_finite(sample->radiance);
+#define SAMPLE(NAME, name, text, feature, position)                                                                    \
+    if (source->kind == LIGHT_##NAME)                                                                                  \
+        reached = light_##name##_sample(source, ref, sample);
+    LIGHT_LIST_DELTA(SAMPLE)
+#undef SAMPLE
+    return reached && !vec3_is_zero(sample->radiance) && vec3_finite(sample->radiance);
+}
+
+SHARED_FUNCTION bool delta_light_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
+                                      Vec2 u_direction, LightEmission *emission)
+{
+#define EMIT(NAME, name, text, feature, position)                                                                      \
+    if (source->kind == LIGHT_##NAME)                                                                                  \
+        return light_##name##_emit(scene, source, u_point, u_direction, emission);
+    LIGHT_LIST_DELTA(EMIT)
+#undef EMIT
+    return false;
+}
+
+SHARED_FUNCTION float delta_light_emit_pdf_w(__global const Light *source, Vec3 w)
+{
+#define PDF(NAME, name, text, feature, position)                                                                       \
+    if (source->kind == LIGHT_##NAME)                                                                                  \
+        return light_##name##_emit_pdf_w(source, w);
+    LIGHT_LIST_DELTA(PDF)
+#undef PDF
+    return 0.0f;
 }
 
 #endif

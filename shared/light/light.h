@@ -24,7 +24,7 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
         return infinite_light_sample(scene, light, u, sample);
     if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
-        return delta_light_sample(scene, light, ref, sample);
+        return delta_light_sample(scene->lights + light, ref, sample);
     return false;
 }
 

@@ -1,9 +1,9 @@
-/* Light guides: the numbers that draw a direction from a cosine lobe count from the direction to a light, so that (0,
- * 0) draws that direction, and a step away from (0, 0) is a step away from the light.
+/* Light guides: the numbers that sample a direction from a cosine lobe are relative to the direction to a light: (0, 0)
+ * samples that direction, and a step away from (0, 0) is a step away from the light.
  *
  * A light behind glass cannot be connected to any vertex; walks hit it by chance, in a small part of all directions. If
- * the numbers counted from the surface's own axes, those that hit the light would differ from point to point, and a
- * chain that had found the light would lose it with the first step across the film; counted from the light they are the
+ * the numbers were relative to the surface's own axes, those that hit the light would differ from point to point, and a
+ * chain that had found the light would lose it with the first step across the film; relative to the light they are the
  * same everywhere. The offset is an addition of integers modulo 2^32, hence a permutation, and preserves all
  * probabilities (Cranley and Patterson, "Randomization of number theoretic methods for multiple integration", 1976,
  * shift points in this way to randomise them). */
@@ -14,8 +14,8 @@
 #include "math/rng.h"
 #include "math/warp.h"
 
-/* The vector from p to the light guide that would send most to p if nothing lay between. Not normalised; zero at the
- * guide itself and where there is none. */
+/* The vector from p to the light guide that would contribute most at p if it were unoccluded. Not normalised; zero at
+ * the guide itself and where there is none. */
 SHARED_FUNCTION Vec3 light_guide_from(uint count, __global const Guide *guide, Vec3 p)
 {
     Vec3 best = vec3_splat(0.0f);
@@ -37,9 +37,9 @@ SHARED_FUNCTION uint light_guide_bits(float x)
     return (uint)(float_min(x, 0.99999994f) * 4294967296.0f);
 }
 
-/* Offsets random.x[1] and x[2], which draw a direction at p by warp_cosine_hemisphere in the frame `shading`, to count
- * from the light guide. A light below the surface counts as its mirror image, so that the offset is continuous where
- * the light rises. */
+/* Offsets random.x[1] and x[2], which draw a direction at p by warp_cosine_hemisphere in the frame `shading`, so that
+ * they are relative to the light guide. A light below the surface is replaced by its mirror image, so that the offset
+ * is continuous where the light crosses the horizon. */
 SHARED_FUNCTION Random4 light_guide_numbers(const SceneView *scene, Vec3 p, Frame shading, Random4 random)
 {
     Vec3 d = light_guide_from(scene->frame->scene.guide_count, scene->guide, p);

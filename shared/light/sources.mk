@@ -2,6 +2,7 @@ SHARED_FILES += \
 	shared/light/light_guide.h \
 	shared/light/area.h \
 	shared/light/delta.h \
+	shared/light/emission.h \
 	shared/light/emit.h \
 	shared/light/infinite.h \
 	shared/light/light.h

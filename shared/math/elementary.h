@@ -88,7 +88,7 @@ SHARED_FUNCTION uint angle_reduce_large(uint bits, float *upper, float *lower)
 }
 
 /* x - k pi/2 as upper + lower, |upper| <= pi/4, for x >= 0 given by its bits. Returns k modulo 4. Up to 201 pi/2 is
- * taken off in three parts, the first two of 17 bits, so that k times them is exact (Cody and Waite 1980). */
+ * subtracted in three parts, the first two of 17 bits, so that k times them is exact (Cody and Waite 1980). */
 SHARED_FUNCTION uint angle_reduce(uint bits, float *upper, float *lower)
 {
     if (bits >= 0x43480000u) /* 200 */

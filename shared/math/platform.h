@@ -68,8 +68,8 @@ typedef uint64_t ulong;
 #define SHARED_FUNCTION static inline __attribute__((unused))
 #endif
 
-/* Index of the work item that a kernel runs for, which whoever calls a kernel sets (backend_cpu/kernel_loop.h). One
- * copy per translation unit and thread. */
+/* Index of the work item that a kernel runs for, set by the caller of the kernel (backend_cpu/kernel_loop.h). One copy
+ * per translation unit and thread. */
 static _Thread_local uint platform_item __attribute__((unused));
 #define get_global_id(dimension) ((size_t)platform_item)
 
@@ -101,7 +101,8 @@ SHARED_FUNCTION float bits_float(uint bits)
 
 /* Vectors of four lanes: 16 bytes, 16-byte aligned, and allowed to alias any type. + - * and the operators of integers
  * work lane by lane; a scalar operand is broadcast. float4_mad may or may not be fused, and float4_min and float4_max
- * may differ for NaN and for zeros of both signs: only bounding boxes use them, which decide no bit of a result. */
+ * may differ for NaN and for zeros of both signs: only tests of bounding boxes use them, which do not affect
+ * results. */
 typedef float Float4 __attribute__((vector_size(16), may_alias));
 #define float4_splat(x) ((Float4){(x), (x), (x), (x)})
 #define float4_mad(a, b, c) ((a) * (b) + (c))

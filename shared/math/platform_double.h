@@ -25,7 +25,7 @@ SHARED_FUNCTION double bits_float(uint bits)
     return (double)narrow;
 }
 
-/* A float in state keeps its 32-bit word for whatever reads words: the film, other passes. Its double is kept beside
+/* A float in state keeps its 32-bit word for code that reads words: the film, other passes. Its double is kept beside
  * it: state lies in the lower quarter of an aligned block, and the double of the word at offset p at half the block
  * plus 2 p. If the word does not match its double, because it was copied as a word, the word counts. */
 #define STATE_BLOCK ((size_t)1 << 26)

@@ -48,8 +48,8 @@ SHARED_FUNCTION uint bd_random_vertex(uint side, uint i, uint what)
     return BD_RANDOM_VERTICES + (2u * i + side) * 2u + what;
 }
 
-/* The number that decides mix materials at the vertex after `depth` segments of a side. The same for all in scenes
- * without any. */
+/* The number that decides mix materials at the vertex after `depth` segments of a side; a constant in scenes without
+ * mix materials. */
 SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint *paths, uint item, uint side,
                                     uint depth)
 {

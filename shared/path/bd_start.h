@@ -112,8 +112,8 @@ SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
     return (uint)cell << 9 | (rest & 0x1ffu);
 }
 
-/* The first ray of a camera walk from any film position. random: film, lens. Its throughput is that of splats that are
- * divided by samples per pixel, like those of light paths. */
+/* The first ray of a camera walk from any film position. random: film, lens. Its throughput is meant for splats that
+ * are divided by the samples per pixel, like those of light paths. */
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, __global uint *restrict paths,
                                      __global uint *restrict rays, __global uint *restrict diagnostics, uint stride,
                                      uint item, Random4 random)

@@ -50,7 +50,7 @@
 #define BD_SURVIVAL 32u /* probability of the walk under way to survive roulette so far */
 #define BD_IMPORTANCE 33u /* target importance where the camera's path began */
 #define BD_TARGET_IMPORTANCE 34u /* target importance at the film position of the connection under way (t = 1) */
-#define BD_GATHERED 35u /* frame->film.split_depths: depth of the path that brought BD_RADIANCE */
+#define BD_GATHERED 35u /* frame->film.split_depths: depth of the paths in BD_RADIANCE */
 #define BD_HEADER_WORDS 36u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */

@@ -77,9 +77,8 @@ SHARED_FUNCTION float solid_angle_to_area(Vec3 w, Vec3 n, float distance2)
     return float_abs(vec3_dot(w, n)) / distance2;
 }
 
-/* Factor from a solid-angle density at `p` to an area density at the vertex before it, which is `from` with normal
- * `ng`, on the light's side y_0 with flags EMITTER_*. For the position of a delta light no existing strategy uses
- * it. */
+/* Factor that turns a solid-angle density at `p` into an area density at the vertex before it: `from` with normal `ng`
+ * or, with flags EMITTER_*, y_0. At the position of a delta light no strategy uses that density. */
 SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
 {
     if ((emitter_flags & EMITTER_INFINITE) != 0u)

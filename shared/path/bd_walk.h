@@ -70,8 +70,8 @@ typedef struct WalkStep {
     uint delta;
 } WalkStep;
 
-/* Minimum probability of a pool's walk to survive roulette. A pool clamps what chains see of a path, and they have no
- * roulette, so what it shows of a survivor exceeds the threshold by the inverse of that probability. docs/TUNING.md */
+/* Minimum probability with which a pool's walk survives roulette. Pools clamp the contribution that a path has in
+ * chains, without roulette, so a survivor may show the threshold divided by that probability. docs/TUNING.md */
 #define POOL_SURVIVED_LEAST 0.35f
 
 /* The minimum probability with which roulette lets the walk continue. */

@@ -1,6 +1,6 @@
-/* MIS weights of the three strategies of instant bidirectional path tracing - a light hit, a light drawn, the light's
- * path seen from the lens - from running products, so that a path's state does not grow with its length. Equal to
- * path/strategy.h with STRATEGIES_IBPT, which needs the densities of every vertex. */
+/* MIS weights of the three strategies of instant bidirectional path tracing (a light is hit, a point on a light is
+ * sampled, the light subpath is connected to the lens) from running products, so that a path's state does not grow with
+ * its length. Equal to path/strategy.h with STRATEGIES_IBPT, which needs the densities of every vertex. */
 #ifndef TWINLIGHT_PATH_IB_WEIGHT_H
 #define TWINLIGHT_PATH_IB_WEIGHT_H
 

@@ -1,7 +1,7 @@
 /* The partition of a path's contribution among MMLT's estimators.
  *
- * A path that carries much shows as a bright dot if the pool or path tracing finds it by chance. Each of these two
- * shows a path up to its clamping threshold, and the chains, which visit many paths like it, show the rest: as its
+ * A path with a large contribution shows as a bright dot if the pool or path tracing finds it by chance. Each of these
+ * two shows a path up to its clamping threshold, and the chains, which visit many paths like it, show the rest: as its
  * excess (what the pool leaves) where an image combines chains and pool, as its rare part (what path tracing leaves)
  * where it combines chains and path tracing. The part shown and the part left of a path add up to one; both are
  * computed here alone.

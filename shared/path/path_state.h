@@ -21,7 +21,7 @@
 #define PATH_BSDF 31u /* STORED_BSDF_WORDS */
 #define PATH_LIMIT 43u /* frame->partition.split_direct: clamping threshold of its contribution's luminance */
 #define PATH_SURVIVED 44u /* frame->partition.split_direct: probability to survive Russian roulette so far */
-#define PATH_GATHERED 45u /* frame->film.split_depths: depth of the path that brought PATH_RADIANCE */
+#define PATH_GATHERED 45u /* frame->film.split_depths: depth of the path in PATH_RADIANCE */
 #define PATH_WORDS 46u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */

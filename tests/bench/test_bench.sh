@@ -8,10 +8,10 @@ set -u
 
 expect 2 'no scene is given' bench
 expect 2 'does not end in .html' bench -o report.txt "$scene"
-expect 2 'does not come after a shorter time' bench --times=2s,1s "$scene"
+expect 2 'is not longer than the time before it' bench --times=2s,1s "$scene"
 expect 2 'pt is named twice' bench --integrators=pt,bdpt,pt "$scene"
 expect 2 '--patch=wall:1,2,3: not a patch' bench --patch=wall:1,2,3 "$scene"
-expect 2 'a patch of that name already' bench --patch=a:1,2,3,4 --patch=a:5,6,7,8 "$scene"
+expect 2 'another patch has the same name' bench --patch=a:1,2,3,4 --patch=a:5,6,7,8 "$scene"
 expect 2 '2 references for 1 scenes' bench --reference=a.exr --reference=b.exr "$scene"
 expect 2 '--runs=0: out of range' bench --runs=0 "$scene"
 expect 1 'nowhere/report.html' bench -o nowhere/report.html "$scene"
@@ -91,7 +91,7 @@ for name, s in series.items():
     assert digits in text, digits
 scene = report["scenes"][0]
 assert 0 < scene["reference_rel_mse"] < 10
-assert scene["reference_origin"].startswith("made here: bdpt") and "among" not in scene["reference_origin"]
+assert scene["reference_origin"].startswith("rendered here: bdpt") and "among" not in scene["reference_origin"]
 assert any(r.get("chains", {}).get("mutations", 0) > 0 for r in scene["runs"])
 PYTHON
     result 'the report is not well-formed, or has figures that are not those of its images' $?

@@ -74,8 +74,8 @@ static TextbookValue textbook_reflection(Double3 wo, Double3 wi, double ax, doub
     return value;
 }
 
-/* Walter et al. 2007, eq. 16, 17 and 21: eta_i, eta_o are absolute; f for importance times (eta_o/eta_i)^2, that is,
- * for radiance. */
+/* Walter et al. 2007, eq. 16, 17 and 21: eta_i, eta_o are absolute; f for radiance, which is that for importance times
+ * (eta_o / eta_i)^2. */
 static TextbookValue textbook_refraction(Double3 wo, Double3 wi, double ax, double ay, double eta_o, double eta_i)
 {
     Double3 h = {-(eta_o * wo.x + eta_i * wi.x), -(eta_o * wo.y + eta_i * wi.y), -(eta_o * wo.z + eta_i * wi.z)};

@@ -30,7 +30,7 @@ expect 2 'no scene is given' render
 expect 2 'more than one scene' render "$scene" "$scene"
 expect 2 'option --fast' render --fast "$scene"
 expect 2 'did you mean --seed?' render --sedd=1 "$scene"
-expect 2 'is short for several: --strategy, --steps, --stats' render --st=1 "$scene"
+expect 2 'is ambiguous: it may stand for --strategy, --steps, --stats' render --st=1 "$scene"
 expect 2 'unknown option --verbose' render --verbose "$scene"
 expect 2 'add --frame=N' render -o a.%04d.exr "$scene"
 expect 2 '--frame=-1: not a whole number' render --frame=-1 "$scene"
@@ -66,8 +66,8 @@ expect 2 '--batch=0: out of range' render --batch=0 "$scene"
 expect 2 'devices takes no file' devices "$scene"
 expect 2 '--chains is for mmlt' render --integrator=pt --chains=64 "$scene"
 expect 2 '--large-step is for --mlt-scheme=paper' render --integrator=mmlt --large-step=0.5 "$scene"
-expect 2 '--mutations=all,lens: lens is no kind of mutation' render --integrator=mmlt --mutations=all,lens "$scene"
-expect 2 '--sort=pool is no order of chains' render --integrator=mmlt --sort=pool "$scene"
+expect 2 '--mutations=all,lens: there is no kind of mutation lens' render --integrator=mmlt --mutations=all,lens "$scene"
+expect 2 '--sort=pool: there is no such order of chains' render --integrator=mmlt --sort=pool "$scene"
 expect 2 '--mlt-scheme=best: there is no such scheme' render --integrator=mmlt --mlt-scheme=best "$scene"
 expect 2 '--heuristic is not for mmlt' render --integrator=mmlt --heuristic=balance "$scene"
 expect 0 '524288 chains of up to 8 segments' render --integrator=mmlt --memory "$scene"
@@ -85,7 +85,7 @@ done
 expect 2 'bdpt has no such strategy' render --integrator=bdpt --strategy=1,1 "$scene"
 expect 2 'ibpt has no such strategy' render --integrator=ibpt --strategy=2,2 "$scene"
 expect 2 'add --max-depth=7' render --integrator=bdpt --strategy=4,4 --max-depth=5 "$scene"
-expect 2 'no longer ones than 31' render --integrator=bdpt --strategy=20,20 --max-depth=60 "$scene"
+expect 2 'paths of bdpt have at most 31 segments' render --integrator=bdpt --strategy=20,20 --max-depth=60 "$scene"
 expect 2 '--unweighted without --strategy' render --integrator=bdpt --unweighted "$scene"
 expect 2 'no scene is given' info
 expect 2 'more than one scene' info "$scene" "$scene"
@@ -217,6 +217,7 @@ completes() {
 }
 completion=${scene%/scenes/*}/man/bash/twinlight
 [ "$(completes pyr)" = pyramid ] && [ "$(completes render --integ)" = --integrator= ] &&
+    [ "$(completes render --unw)" = --unweighted ] && [ "$(completes render --png)" = --png= ] &&
     [ "$(completes render --backend = op)" = opencl ] && [ "$(completes compare --no)" = "$(
         "$program" compare --help | grep -o -- '--no[a-z-]*' | paste -s -d ' ')" ]
 result 'completion in bash' $?
@@ -383,7 +384,7 @@ else
             result "$other by $integrator: OpenCL's image is not the CPU's" $?
         done
     done
-    expect 1 'there is no OpenCL device of that number' render --backend=opencl --device=99 "$scene"
+    expect 1 'there is no OpenCL device with that number' render --backend=opencl --device=99 "$scene"
     expect 1 'no OpenCL device has that in its name' render --backend=opencl --device=nonesuch "$scene"
     expect 1 'use --batch=' render --backend=opencl --batch=67108864 --quiet -o batch.exr "$scene"
     file_missing batch.exr
@@ -495,7 +496,7 @@ bright() {
         'Shape "sphere" "float radius" .5' >bright.pbrt
 }
 bright 'Film "rgb" "float iso" [ 1e22 ]' 1e20
-expect 0 '256 of 256 pixels (100 %) are brighter than a float can say' render --resolution=16x16 --spp=1 --integrator=pt \
+expect 0 '256 of 256 pixels (100 %) exceed the range of a float' render --resolution=16x16 --spp=1 --integrator=pt \
     -o bright.exr bright.pbrt
 bright '"float lensradius" [ 1e20 ] "float focaldistance" [ 3 ]' 1
 expect 1 "the camera's lens has a radius of 1e+20" render --resolution=16x16 --spp=1 --integrator=pt -o bright.exr bright.pbrt

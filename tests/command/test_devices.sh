@@ -19,7 +19,7 @@ if ! "$program" --version | grep -q opencl; then
 fi
 for option in --output=verify.exr --png=verify.png --stats=verify.json --trace=verify.json --time=1s --save-every=1s \
     --film=host; do
-    expect 2 'does not go with --verify' render --verify "$option" "$scene"
+    expect 2 'cannot be used with --verify' render --verify "$option" "$scene"
 done
 
 # ---- no driver, or one without devices ----------------------------------------------------------------------------
@@ -31,7 +31,7 @@ done
     expect 1 'there is no OpenCL device' render --integrator=pt --backend=opencl --device=0,1 "$scene"
     expect 1 'there is no OpenCL device' render --integrator=pt --backend=all --device=0 "$scene"
     expect 1 'there is no OpenCL device' render --verify "$scene"
-    expect 0 'opencl has no device here' render --integrator=pt --backend=all --resolution=16x12 --samples=1 -o alone.exr "$scene"
+    expect 0 'opencl has no device on this machine' render --integrator=pt --backend=all --resolution=16x12 --samples=1 -o alone.exr "$scene"
     expect 0 'no device' devices
     [ "$failures" -eq 0 ]
 )
@@ -52,7 +52,7 @@ done
 expect 2 '--device names 0 twice' render --integrator=pt --backend=opencl --device=0,1,0 "$scene"
 expect 1 '0 and basic are the same device' render --integrator=pt --backend=opencl --device=0,basic "$scene"
 expect 1 'PTHREAD and 1 are the same device' render --integrator=pt --backend=all --device=PTHREAD,1 "$scene"
-expect 1 '--device=7: there is no OpenCL device of that number' render --integrator=pt --backend=opencl --device=0,7 "$scene"
+expect 1 '--device=7: there is no OpenCL device with that number' render --integrator=pt --backend=opencl --device=0,7 "$scene"
 expect 1 'more than one OpenCL device has that' render --integrator=pt --backend=opencl --device=c "$scene"
 
 # ---- the same image -----------------------------------------------------------------------------------------------
@@ -126,12 +126,12 @@ expect 0 '"probed_divisions": 6291456' devices --json
 plant one 's/float_bits(float_sqrt(x\.c))/float_bits(float_sqrt(x.c)) ^ (first + (uint)i == 777777u ? 1u : 0u)/' kernels/rounding.cl
 plant products 's|x\.a / x\.b|x.a * (1.0f / x.b)|' kernels/rounding.cl
 plant roots 's/float_bits(float_sqrt(x\.c))/float_bits(x.c * rsqrt(x.c))/' kernels/rounding.cl
-TWINLIGHT_KERNELS=$work/one expect 0 'but 1 of 6291456 are not; sqrt(0x1.' devices
+TWINLIGHT_KERNELS=$work/one expect 0 'but 1 of 6291456 results are wrong: sqrt(0x1.' devices
 TWINLIGHT_KERNELS=$work/products expect 0 'root no, though promised, by a probe of 6291456 divisions and roots' devices
-[ "$(grep -c 'same image, bit for bit      not expected' out)" -eq 2 ] && grep -qE 'are not; -?0x[0-9a-fp.+-]+ / -?0x' err
+[ "$(grep -c 'same image, bit for bit      not expected' out)" -eq 2 ] && grep -qE 'are wrong: -?0x[0-9a-fp.+-]+ / -?0x' err
 result 'products with reciprocals pass for quotients' $?
 TWINLIGHT_KERNELS=$work/roots expect 0 '"rounds_division": false' devices --json
-TWINLIGHT_KERNELS=$work/nowhere expect 0 'cannot be probed: ' devices
+TWINLIGHT_KERNELS=$work/nowhere expect 0 'cannot probe the divisions' devices
 
 # ---- verify -------------------------------------------------------------------------------------------------------
 
@@ -224,7 +224,7 @@ XDG_CACHE_HOME=$work/file expect 1 'POCL_CACHE_DIR' render --integrator=pt --bac
 if [ "$(id -u)" -ne 0 ]; then
     mkdir sealed
     chmod a-w sealed
-    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to one' render --integrator=pt --backend=opencl \
+    POCL_CACHE_DIR=$work/sealed XDG_CACHE_HOME=$work/file expect 1 'set POCL_CACHE_DIR to a writable folder' render --integrator=pt --backend=opencl \
         "$scene"
 fi
 POCL_CACHE_DIR=$work/pocl

@@ -47,24 +47,24 @@ characters() {
 # ---- rejected at a limit ------------------------------------------------------------------------------------------
 
 { echo WorldBegin && lines AttributeBegin; } >hostile.pbrt
-refused '65538:1: error: AttributeBegin nested more than 65536 deep'
+refused '65538:1: error: AttributeBegin is nested more than 65536 deep'
 { echo WorldBegin && line AttributeBegin; } >hostile.pbrt
-refused '2:983041: error: AttributeBegin nested more than 65536 deep'
+refused '2:983041: error: AttributeBegin is nested more than 65536 deep'
 { echo WorldBegin && lines 'ObjectBegin "a"'; } >hostile.pbrt
-refused '3:1: error: ObjectBegin inside an object definition'
+refused '3:1: error: ObjectBegin is inside an object definition'
 { echo WorldBegin && line '['; } >hostile.pbrt
 refused '2:1: error: expected a directive, found ['
 { echo 'WorldBegin Shape "sphere"' && lines '"float a" 1'; } >hostile.pbrt
-refused '1026:1: error: more than 1024 parameters in one directive'
+refused '1026:1: error: the directive has more than 1024 parameters'
 { echo 'WorldBegin Shape "sphere" "string a" [' && line '""'; } >hostile.pbrt
-refused '2:3073: error: more than 1024 strings in one directive'
+refused '2:3073: error: the directive has more than 1024 strings'
 { echo WorldBegin && lines 'Attribute "shape" "float a" 1'; } >hostile.pbrt
-refused '1026:1: error: more than 1024 parameters of Attribute directives in force'
+refused '1026:1: error: more than 1024 parameters of Attribute directives are in force'
 { echo WorldBegin && seq -f 'CoordinateSystem "%.0f"' $((mebibytes * 40000)); } >hostile.pbrt
 refused '65537:1: error: more than 65536 coordinate systems'
 echo >empty.inc
 { echo WorldBegin && lines 'Include "empty.inc"'; } >hostile.pbrt
-refused '65537:9: error: more than 65536 files included'
+refused '65537:9: error: the scene includes more than 65536 files'
 
 # ---- endless tokens -----------------------------------------------------------------------------------------------
 

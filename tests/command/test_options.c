@@ -203,7 +203,7 @@ static const struct {
     const char *line, *message;
 } BAD_LINES[] = {
     {"--sample-count=4 a", "error: unknown option --sample-count"},
-    {"--s=4 a", "error: option --s is short for several: --samples, --save-every, --seed"},
+    {"--s=4 a", "error: option --s is ambiguous: it may stand for --samples, --save-every, --seed"},
     {"-z a", "error: unknown option -z"},
     {"--nthreads=4 a", "error: unknown option --nthreads"},
     {"a --samples", "error: option --samples needs a value"},

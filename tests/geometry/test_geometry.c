@@ -185,7 +185,7 @@ START_TEST(test_self_intersection)
 }
 END_TEST
 
-/* A case that offsets by the point's own last place do not cover: a hit near (0,0,0) of a triangle whose corners are
+/* A case that an offset by ulps of the point itself does not cover: a hit near (0,0,0) of a triangle whose corners are
  * far away. */
 START_TEST(test_large_floor)
 {

@@ -383,13 +383,13 @@ START_TEST(test_refused)
         "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0\x08\2\0\0\0\x12\x34\x56\x78\0\0\0\1IDAT";
     const char pfm_short[] = "PF\n16384 16384\n-1\n";
     read_bad("no/such/file.png", "No such file or directory");
-    read_bad(test_folder, "not a file");
+    read_bad(test_folder, "not an ordinary file");
     test_file_write(test_path("empty.png"), "", 0);
     read_bad(test_path("empty.png"), "empty");
     test_file_write(test_path("text.png"), "hello, world, this is no picture\n", 33);
-    read_bad(test_path("text.png"), "of no kind that is known");
+    read_bad(test_path("text.png"), "its format is unknown");
     test_file_write(test_path("gif.tga"), gif, sizeof gif);
-    read_bad(test_path("gif.tga"), "of no kind that is known");
+    read_bad(test_path("gif.tga"), "its format is unknown");
     test_file_write(test_path("huge.png"), png_huge, sizeof png_huge - 1);
     read_bad(test_path("huge.png"), "");
     test_file_write(test_path("huge.pfm"), pfm_huge, sizeof pfm_huge - 1);

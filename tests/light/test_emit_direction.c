@@ -147,14 +147,14 @@ START_TEST(test_records)
     int differs = 0, count = 5000;
     setup(&f, _i);
     uint kind = ARRAY_AT(&f.scene.lights, Light, 0).kind;
-    bool far = kind >= LIGHT_DISTANT;
+    bool far = !light_has_position(kind);
     for (uint i = 0; i < (uint)count; ++i) {
         LightEmission e;
         if (!light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e))
             continue;
         TEST_NEAR(vec3_length(e.w), 1.0, 1e-6);
         TEST_TRUE(e.infinite == far && e.cosine == 1.0f && vec3_is_zero(e.ng));
-        TEST_TRUE(e.delta_position == (kind == LIGHT_POINT || kind == LIGHT_SPOT));
+        TEST_TRUE(e.delta_position == !far);
         TEST_TRUE(e.delta_direction == (kind == LIGHT_DISTANT));
         TEST_TRUE(light_emit_pdf_p(&f.view, 0, NULL) == e.pdf_p);
         TEST_TRUE(e.pdf_p == (far ? light_emit_pdf_disc(&f.view) : 1.0f));
@@ -162,7 +162,7 @@ START_TEST(test_records)
         if (kind >= LIGHT_INFINITE)
             differs +=
                 fabs((double)environment_radiance(&f.view, vec3_negate(e.w)).y / (double)e.radiance.y - 1.0) > 1e-3;
-        if (kind != LIGHT_POINT && kind != LIGHT_SPOT)
+        if (far)
             continue;
         /* intensity, as light_sample finds it at distance 1 */
         LightSample s;

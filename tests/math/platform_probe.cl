@@ -1,6 +1,7 @@
 /* Kernels that math/test_platform_bits.c runs both as C and as OpenCL C. Item i of a kernel reads words 4 i ... 4 i + 3
  * of `in` and writes PROBE_WORDS words of `out`, which are zeroed before; `table` holds tabulated distributions. */
 #include "layout/distribution.h"
+#include "layout/frame_params.h"
 #include "layout/struct_members.h"
 #include "math/rng.h"
 #include "math/warp.h"

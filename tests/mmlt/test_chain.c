@@ -359,8 +359,8 @@ START_TEST(test_zero_never_accepted)
 }
 END_TEST
 
-/* A chain whose path carries a million times as much as its neighbourhood stays there: its run counts every step since
- * it started, up to the counter's maximum, and the longest run is remembered after it has ended. */
+/* A chain whose path is a million times as bright as its neighbourhood stays there: its run counts every step since it
+ * started, up to the counter's maximum, and the longest run is remembered after it has ended. */
 START_TEST(test_stuck)
 {
     Toy toy;

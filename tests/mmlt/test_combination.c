@@ -143,9 +143,9 @@ START_TEST(test_blind)
 END_TEST
 
 /* An estimator without samples in a generation has weight zero, and the others share its weight. Before variances are
- * known, path tracing's weight goes by a fraction of its work, and that of chains and of the pool by the pool's work:
- * in difficult light path tracing is far worse than the others, and in large images it makes up most of the early
- * work. */
+ * known, path tracing's weight is proportional to a fraction of its work, and that of chains and of the pool to the
+ * pool's work: in difficult light path tracing is far worse than the others, and in large images it makes up most of
+ * the early work. */
 START_TEST(test_absent)
 {
     Estimators estimators;

@@ -159,8 +159,8 @@ static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
     return vec3_mad(p, -depth / affine_vector(camera->camera_from_world, back).z, back);
 }
 
-/* A subpath's part of the path of (s, t), and the densities around its delta vertices, except at the ends of the
- * connection. */
+/* Loads the camera subpath of strategy (s, t) into `path`: vertices, and the densities around delta vertices, except at
+ * the ends of the connection. */
 static void camera_part(const Walks *walks, uint item, uint s, uint t, RealPath *path)
 {
     const DensityView view =

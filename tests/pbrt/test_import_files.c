@@ -61,7 +61,7 @@ START_TEST(nesting_is_bounded)
     size_t n = (size_t)sprintf(text, "WorldBegin\n");
     for (int i = 0; i < DEEP; ++i)
         n += (size_t)sprintf(text + n, "AttributeBegin\n");
-    ck_assert_str_eq(import_error(text), "test.pbrt:65538:1: error: AttributeBegin nested more than 65536 deep");
+    ck_assert_str_eq(import_error(text), "test.pbrt:65538:1: error: AttributeBegin is nested more than 65536 deep");
     free(text);
 }
 END_TEST
@@ -79,7 +79,7 @@ START_TEST(includes_are_bounded)
     }
     scene_init(&scene);
     ck_assert(!pbrt_import_text("Include \"0\"", 11, "t", test_folder, &options, &scene, &error));
-    ck_assert_ptr_nonnull(strstr(error.message, "/62:1:9: error: files included more than 64 deep"));
+    ck_assert_ptr_nonnull(strstr(error.message, "/62:1:9: error: files include each other more than 64 deep"));
     scene_destroy(&scene);
 }
 END_TEST

@@ -55,7 +55,7 @@ START_TEST(pixel_bounds)
     ck_assert_mem_eq(scene.settings.crop, wanted, sizeof wanted);
     ASSERT_FLOAT(scene.settings.film_scale, 3.0f);
     const char *log = import_log();
-    ck_assert_ptr_nonnull(strstr(log, "\"pixelbounds\" is cut to the film"));
+    ck_assert_ptr_nonnull(strstr(log, "\"pixelbounds\" is clipped to the film"));
     ck_assert_ptr_nonnull(strstr(log, "info: the film \"gbuffer\" is written as rgb"));
     scene_destroy(&scene);
 }

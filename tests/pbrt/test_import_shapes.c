@@ -118,7 +118,7 @@ START_TEST(degenerate_triangles_are_counted)
     ck_assert_uint_eq(scene.lights.count, 1);
     ck_assert_uint_eq(scene.counts.degenerate_triangles, 2);
     ck_assert_uint_eq(scene.counts.zero_area_lights, 2);
-    ck_assert_ptr_nonnull(strstr(import_log(), "warning: 2 primitives of no area were left out"));
+    ck_assert_ptr_nonnull(strstr(import_log(), "warning: 2 primitives of zero area were dropped"));
     scene_destroy(&scene);
 }
 END_TEST

@@ -8,8 +8,8 @@ typedef struct Coverage {
     double x[WIDTH], y[HEIGHT];
 } Coverage;
 
-/* Checks the factor between image and prediction, and the root mean square residual, for which noise is the only
- * cause. */
+/* Checks the factor between image and prediction, and the root mean square residual, which must be explained by
+ * noise. */
 static void coverage_check(const char *name, const RenderedImage *image, const Coverage *cover, double rest_limit)
 {
     double both = 0.0, square = 0.0, rest = 0.0;

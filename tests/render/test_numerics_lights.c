@@ -101,8 +101,8 @@ static void rare_text(char *text, size_t size, double probability)
 }
 
 /* A chain that has found the mirror can hardly leave it, since almost every step misses it. Generations limit its life,
- * so that the mean is right and no pixel keeps what a stuck chain has accumulated. Chains do not show what pools do not
- * find, so there must be enough of it for Student's test: the rarer mirror is only in the long test. */
+ * so that the mean is right and no pixel keeps what a stuck chain has accumulated. Chains do not show light that pools
+ * do not find, so pools must find it often enough for Student's test: the rarer mirror is in the long test only. */
 START_TEST(test_rare)
 {
     char text[2048], name[48];
