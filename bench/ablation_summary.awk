@@ -3,15 +3,16 @@
 #
 # The mean of the logarithms over a variant's seeds is compared with that over all of the baseline's. Their standard
 # error comes from the variance between seeds of one variant, pooled over all variants of the scene that have several:
-# (sum of squares / degrees of freedom) (1 / seeds + 1 / baseline's seeds). "times" is the ratio over or under which
-# two standard errors lie.
+# (sum of squares / degrees of freedom) (1 / seeds + 1 / baseline's seeds). "within a factor of": two standard errors.
 BEGIN { FS = OFS = "\t"; print "variant", "scene", "seeds", "trimmed", "within a factor of", "all pixels", "blocks" }
-/^#/ || $1 == "variant" || NF < 6 { next }
+FNR == 1 || $3 == "seed" { summary = 0 }
+$3 == "seeds" { summary = 1 } # of an earlier table
+/^#/ || $1 == "variant" || NF < 6 || summary { next }
 {
     if (!($1 in variant)) { variant[$1] = 1; order[++variants] = $1 }
     if (!($2 in known)) { known[$2] = 1; scene[++scenes] = $2 }
     n = ++count[$1, $2]
-    for (k = 1; k <= 3; ++k) { sum[$1, $2, k] += log($(k + 3)) }
+    for (k = 1; k <= 3; ++k) sum[$1, $2, k] += log($(k + 3))
     square[$1, $2] += log($4) ^ 2
 }
 function mean(v, s, k) { return sum[v, s, k] / count[v, s] }

@@ -31,10 +31,10 @@ shift
 VARIANTS=${VARIANTS:-$(awk -F'\t' '/^[^#]/ && !seen[$1]++ { print $1 }' "$list")}
 tab=$(printf '\t')
 
-# tree_make: the scratch tree and its build.
+# tree_make: the scratch tree and its build. Files get new times, for one there may be of another variant.
 tree_make() {
     mkdir -p "$WORK/source" "$REFERENCES"
-    (cd "$source" && tar -cf - --exclude=./.git --exclude=./build .) | tar -xf - -C "$WORK/source"
+    (cd "$source" && tar -cf - --exclude=./.git --exclude=./build .) | tar -xmf - -C "$WORK/source"
     mkdir -p "$WORK/source/build"
     [ -f "$WORK/source/build/Makefile" ] ||
         (cd "$WORK/source/build" && ../configure -q CC="${CC:-gcc}")

@@ -30,6 +30,7 @@ check_PROGRAMS += \
 	tests/test_options \
 	tests/test_partition \
 	tests/test_platform_bits \
+	tests/test_plan \
 	tests/test_pool \
 	tests/test_reference \
 	tests/test_render \
@@ -130,6 +131,7 @@ tests_test_layers_SOURCES = tests/render/test_layers.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
 tests_test_options_SOURCES = tests/command/test_options.c
 tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
+tests_test_plan_SOURCES = tests/mmlt/test_plan.c
 tests_test_pool_SOURCES = tests/mmlt/test_pool.c
 tests_test_reference_SOURCES = tests/render/test_reference.c
 tests_test_render_SOURCES = tests/render/test_render.c

@@ -19,12 +19,8 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     }
     size_t tiles = combination_tile_count(combination);
     combination->known = calloc(tiles, sizeof *combination->known);
-    combination->density_ratio = malloc(tiles * sizeof *combination->density_ratio);
-    combination->gaps = calloc(tiles, sizeof *combination->gaps);
-    if (!combination->known || !combination->density_ratio || !combination->gaps)
-        return error_memory(error, tiles * (sizeof *combination->known + 2 * sizeof *combination->gaps), "tiles");
-    for (size_t i = 0; i < tiles; ++i)
-        combination->density_ratio[i] = 1.0;
+    if (!combination->known)
+        return error_memory(error, tiles * sizeof *combination->known, "tiles");
     for (int s = 0; s < SERIES_COUNT; ++s)
         if (!pixel_series_init(&combination->pixels[s], film_pixels(film), 1, error) ||
             !pixel_series_init(&combination->sums[s], combination_tile_count(combination), 1, error))
@@ -40,8 +36,6 @@ void combination_destroy(Combination *combination)
     }
     pixel_series_destroy(&combination->direct);
     free(combination->known);
-    free(combination->density_ratio);
-    free(combination->gaps);
     *combination = (Combination){0};
 }
 

@@ -50,8 +50,6 @@ static void series_learn(Combination *combination, int s, const Film *film, cons
     image_of(combination, film, sums, picture, tiles);
     pixel_series_add(&combination->pixels[s], picture, NULL, samples);
     pixel_series_add(&combination->sums[s], tiles, NULL, samples);
-    for (size_t i = 0; s == ESTIMATOR_POOL && i < combination_tile_count(combination); ++i)
-        combination->gaps[i] += fmax(combination->density_ratio[i] - samples / (double)film_pixels(film), 0.0);
 }
 
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
@@ -79,17 +77,14 @@ static double freedom_of(const Combination *combination, int s)
     return combination->pixels[s].pictures[0] > 0 ? combination->pixels[s].pictures[0] - 1.0 : 0.0;
 }
 
-/* Lower confidence bound of a tile's light: its mean less `deviations` standard errors and MISSING_UNCERTAIN more in
- * proportion to its relative error; the mean itself if deviations is 0. 0 until the series' variance is known. */
+/* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
+ * known. */
 static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
 {
     if (!(freedom_of(combination, s) >= 1.0))
         return 0.0;
-    double mean = (double)combination->sums[s].mean[tile],
-           error = sqrt(pixel_series_variance(&combination->sums[s], tile));
-    if (deviations > 0.0)
-        deviations += MISSING_UNCERTAIN * (error < mean ? error / mean : 1.0);
-    return mean - deviations * error;
+    double error = sqrt(pixel_series_variance(&combination->sums[s], tile));
+    return (double)combination->sums[s].mean[tile] - deviations * error;
 }
 
 /* The largest such bound over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus
@@ -118,22 +113,6 @@ static double light_square(const Combination *combination, size_t pixel, const C
     return light * light + dark;
 }
 
-/* Corrects the variance of pools too small to visit all pixels. Which pixels they visit changes from pool to pool but
- * evens out over several. If a fraction q of a tile's pixels is visited, the variance of a pixel of mean m is
- * overestimated by m^2 (1 / q - 1); q = pool samples / (pixels x density ratio). */
-static void pool_correct(Combination *combination)
-{
-    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        CombinationTile *tile = &combination->known[i];
-        double gap = freedom_of(combination, ESTIMATOR_POOL) > 0.0
-                         ? combination->gaps[i] / (freedom_of(combination, ESTIMATOR_POOL) + 1.0)
-                         : 0.0;
-        double light = (double)combination->sums[ESTIMATOR_POOL].mean[i], *pool = &tile->spread[ESTIMATOR_POOL];
-        double less = gap * (double)combination->direct.pixels * light * light / (TILE_SIDE * TILE_SIDE);
-        *pool = fmax(*pool - less, POOL_SPREAD_LEAST * *pool);
-    }
-}
-
 /* Sums the tiles' variances, each pixel's weighted by the squared luminance of its tile over its own. */
 static void tiles_sum(Combination *combination)
 {
@@ -155,7 +134,6 @@ static void tiles_sum(Combination *combination)
             tile->spread[s] += weight * pixel_series_spread(&combination->pixels[s], i);
         tile->direct += weight * pixel_series_spread(&combination->direct, i);
     }
-    pool_correct(combination);
 }
 
 /* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
@@ -173,8 +151,7 @@ static double ratio_median(const Combination *combination, int s, double *ratios
  * its samples or less: adds the variance of one such event. */
 static double missing_spread(const Combination *combination, int s, size_t tile)
 {
-    double deviations =
-        MISSING_DEVIATIONS * freedom_of(combination, s) / (freedom_of(combination, s) + MISSING_GENERATIONS);
+    const double deviations = MISSING_DEVIATIONS;
     const PixelSeries *sums = combination->sums;
     double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {

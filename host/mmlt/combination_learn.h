@@ -25,9 +25,6 @@ typedef struct Combination {
     int size[2], tiles[2];
     PixelSeries pixels[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances of pixels, and summed over tiles */
     PixelSeries direct; /* of pixels */
-    double *density_ratio; /* per tile: mean density ratio of the latest pools' visits */
-    /* per tile: max(0, density ratio - pool samples per pixel), summed over pools */
-    double *gaps;
     CombinationTile *known; /* one per tile */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation, mean over the tiles */

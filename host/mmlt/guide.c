@@ -22,20 +22,19 @@ bool mmlt_guide_due(const Generation *generation)
     return own >= 2 && (own & (own - 1)) == 0;
 }
 
-bool mmlt_guide_renew(MmltGuide *guide, const Generation *generation, Combination combinations[REPLICAS],
+bool mmlt_guide_renew(MmltGuide *guide, const Generation *generation, const Combination *known,
                       const double samples[ESTIMATOR_COUNT], float change[IMPORTANCE_CELLS], Error *error)
 {
     int replica = generation->replica, other = generation->other;
     double visited[IMPORTANCE_CELLS];
     memcpy(change, guide->importance[replica], IMPORTANCE_CELLS * sizeof *change);
-    importance_learn(&combinations[other], guide->importance[replica]);
+    importance_learn(known, guide->importance[replica]);
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
         change[i] = guide->importance[replica][i] / change[i];
         visited[i] = guide->visited[other][i] / guide->visited_all[other];
     }
-    if (!importance_visits(&combinations[other], samples, visited, guide->visits[replica], error))
+    if (!importance_visits(known, samples, visited, guide->visits[replica], error))
         return false;
-    importance_tell(guide->visits[replica], &combinations[replica]);
     mmlt_guide_show(guide, replica);
     return true;
 }

@@ -24,10 +24,10 @@ void mmlt_guide_show(MmltGuide *guide, int replica);
  * more is known, so that the target changes rarely. */
 bool mmlt_guide_due(const Generation *generation);
 
-/* Renews the replica's importance and visits from what the other knows, and shows them. combinations: of all replicas;
- * that of this one is told what its pools visit. samples: of each estimator, in proportion, as planned. change:
- * receives the importance's ratio new over old, per cell. Fails only when out of memory. */
-bool mmlt_guide_renew(MmltGuide *guide, const Generation *generation, Combination combinations[REPLICAS],
+/* Renews the replica's importance and visits from what the other knows, and shows them. known: the other's. samples: of
+ * each estimator, in proportion, as planned. change: receives the importance's ratio new over old, per cell. Fails only
+ * when out of memory. */
+bool mmlt_guide_renew(MmltGuide *guide, const Generation *generation, const Combination *known,
                       const double samples[ESTIMATOR_COUNT], float change[IMPORTANCE_CELLS], Error *error);
 
 /* Counts the visits of a pool of `samples`. */

@@ -108,9 +108,9 @@ bool importance_visits(const Combination *combination, const double samples[ESTI
     if (!(sum > 0.0) || VISITS_MOST * pixels > 0x1p31)
         return true;
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
-        double part = VISITS_EVEN + (1.0 - VISITS_EVEN) * deviation[i] * pixels / sum;
+        double each = rint(VISITS_MEAN * deviation[i] * pixels / sum);
         visits[i] = (uint)all;
-        all += cell_pixels(combination, i) * (uint64_t)fmin(fmax(rint(VISITS_MEAN * part), 1.0), VISITS_MOST);
+        all += cell_pixels(combination, i) * (uint64_t)fmin(fmax(each, 1.0), VISITS_MOST);
     }
     visits[IMPORTANCE_CELLS] = (uint)all;
     return true;
@@ -124,20 +124,4 @@ double importance_density_ratio(const Combination *combination, const uint visit
         return 0.0;
     uint all = visits[IMPORTANCE_CELLS];
     return all > 0 ? (double)all / pixels / ((double)(visits[cell + 1] - visits[cell]) / count) : 1.0;
-}
-
-void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Combination *combination)
-{
-    const uint width = (uint)combination->size[0], height = (uint)combination->size[1];
-    for (int y = 0; y < combination->tiles[1]; ++y)
-        for (int x = 0; x < combination->tiles[0]; ++x) {
-            uint column = (uint)x * TILE_SIDE, row = (uint)y * TILE_SIDE, count = 0;
-            double sum = 0.0;
-            for (uint j = row; j < row + TILE_SIDE && j < height; ++j)
-                for (uint i = column; i < column + TILE_SIDE && i < width; ++i, ++count) {
-                    uint cell = j * IMPORTANCE_SIDE / height * IMPORTANCE_SIDE + i * IMPORTANCE_SIDE / width;
-                    sum += importance_density_ratio(combination, visits, cell);
-                }
-            combination->density_ratio[(size_t)y * (size_t)combination->tiles[0] + (size_t)x] = sum / count;
-        }
 }

@@ -33,7 +33,4 @@ bool importance_visits(const Combination *combination, const double samples[ESTI
  * pixels equally. 0: the cell has no pixels. */
 double importance_density_ratio(const Combination *combination, const uint visits[IMPORTANCE_CELLS + 1], uint cell);
 
-/* Sets the tiles' density ratios in `combination` to those of the pools it learns from next. */
-void importance_tell(const uint visits[IMPORTANCE_CELLS + 1], Combination *combination);
-
 #endif

@@ -107,7 +107,7 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     float change[IMPORTANCE_CELLS];
     bool changed = !mmlt->options.chains_only && mmlt_guide_due(generation);
     if (changed) {
-        if (!mmlt_guide_renew(&mmlt->guide, generation, mmlt->combinations, samples, change, error))
+        if (!mmlt_guide_renew(&mmlt->guide, generation, &mmlt->combinations[generation->other], samples, change, error))
             return false;
         pool_estimator_restart(&mmlt->pool, generation);
     }

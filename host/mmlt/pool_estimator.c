@@ -1,6 +1,5 @@
 #include "mmlt/pool_estimator.h"
 
-#include "base/sample_statistics.h"
 #include "chain/chain.h"
 #include "film/pixel_order.h"
 #include "math/rng.h"
@@ -138,27 +137,14 @@ static bool pool_run(PoolEstimator *pool, const Generation *generation, uint cou
 
 /* ---- brightness -------------------------------------------------------------------------------------------------- */
 
-/* Mean contribution weight of the latest pool's samples first, first + every, ... */
-static double pool_brightness(const PoolEstimator *pool, uint first, uint every)
+/* Mean contribution weight of the latest pool's samples. */
+static double pool_brightness(const PoolEstimator *pool)
 {
-    double sum = 0.0, count = 0.0;
-    for (uint i = first; i < pool->count; i += every) {
+    double sum = 0.0;
+    for (uint i = 0; i < pool->count; ++i)
         if (pool->words[(size_t)POOL_KEY * pool->count + i] != 0)
             sum += (double)bits_float(pool->words[(size_t)POOL_WEIGHT * pool->count + i]);
-        count += 1.0;
-    }
-    return count > 0.0 ? sum / count : 0.0;
-}
-
-/* Robust pool_brightness for the clamping threshold of one small pool: the median of means over parts, which a rare
- * bright path in one part does not change. */
-static double pool_brightness_robust(const PoolEstimator *pool)
-{
-    double parts[PILOT_PARTS];
-    for (uint part = 0; part < PILOT_PARTS; ++part)
-        parts[part] = pool_brightness(pool, part, PILOT_PARTS);
-    sample_sort(parts, PILOT_PARTS);
-    return parts[PILOT_PARTS / 2];
+    return sum / pool->count;
 }
 
 bool pool_estimator_pilot(PoolEstimator *pool, const Generation *generation, uint most, bool *whole, Error *error)
@@ -166,7 +152,7 @@ bool pool_estimator_pilot(PoolEstimator *pool, const Generation *generation, uin
     if (!pool_run(pool, generation, most < PILOT_SAMPLES ? most : PILOT_SAMPLES, whole, error))
         return false;
     if (*whole)
-        pool->pilot_brightness = pool_brightness_robust(pool);
+        pool->pilot_brightness = pool_brightness(pool);
     return true;
 }
 
@@ -175,7 +161,7 @@ bool pool_estimator_run(PoolEstimator *pool, const Generation *generation, uint 
     if (!pool_run(pool, generation, count, whole, error))
         return false;
     if (*whole)
-        pool->brightness = pool_brightness(pool, 0, 1);
+        pool->brightness = pool_brightness(pool);
     return true;
 }
 

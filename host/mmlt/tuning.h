@@ -15,9 +15,8 @@
  * more to the chains; docs/TUNING.md. */
 #define CLAMP_FACTOR 2.0
 
-/* The pilot pool: most samples, and parts whose median brightness counts. */
+/* Most samples of the pilot pool. */
 #define PILOT_SAMPLES 4096u
-#define PILOT_PARTS 16u
 
 /* Terms of the van der Corput sequence in lights_first; then a new random shift. */
 #define TURNS 16u
@@ -73,24 +72,15 @@
 #define PRIOR_GENERATIONS 2.0
 
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
- * misses; half as many after MISSING_GENERATIONS, 0 at first. A higher value trusts path tracing for too long, a lower
- * one takes noise for light; docs/TUNING.md. */
+ * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0
-#define MISSING_GENERATIONS 5.0
 
-/* This many further standard errors, times the brighter estimator's relative error (at most 1): chains that have been
- * in few tiles are no evidence; docs/TUNING.md. */
-#define MISSING_UNCERTAIN 3.0
-
-/* A pixel's luminance is clamped to this many times its tile's mean: it may be noise. */
+/* A pixel's luminance is clamped to this many times its tile's mean: it may be a firefly, whose variance would count
+ * little if its luminance counted in full; docs/TUNING.md. */
 #define LIGHT_OVER_TILE 4.0
 
 /* Chain steps per pixel at which the pixel's own mean counts as much as its tile's. */
 #define LIGHT_STEPS 16.0
-
-/* Lower bound of a pool's corrected variance (pool_correct), relative to the observed one: the correction is an
- * estimate too. */
-#define POOL_SPREAD_LEAST 0.25
 
 /* Errors are relative to light^2 plus this fraction of the squared mean light. */
 #define DARK_PART 0.1
@@ -118,11 +108,8 @@
  * docs/TUNING.md. */
 #define EXPONENT 0.5
 
-/* Fraction of a pool's visits that all pixels share evenly, for paths not yet found; the rest goes where errors are
- * large; docs/TUNING.md. */
-#define VISITS_EVEN 0.25
-
-/* Mean visits per pixel before they are rounded to whole numbers. */
+/* Mean visits per pixel before they are rounded to whole numbers. A pixel has at least one, so that the inverse of this
+ * is the part of a pool that goes everywhere, for paths not yet found; docs/TUNING.md. */
 #define VISITS_MEAN 4.0
 
 #endif

@@ -1,0 +1,111 @@
+/* Sizes of generations, and of their pools and path tracing, without renderings. */
+#include "support/test_util.h"
+
+#include "mmlt/plan.h"
+#include "mmlt/tuning.h"
+
+#define PIXELS 16384u
+#define GENERATIONS_MOST 1000u
+
+/* Pixels that are sampled, most chains at a time, and samples of the pool or 0. */
+static const struct {
+    unsigned samples, chains, pool;
+} PLANS[] = {
+    {1, CHAINS_DEFAULT, 0}, {16, CHAINS_DEFAULT, 0}, {1000, CHAINS_DEFAULT, 0}, {1000, 512, 0}, {16, 64, 5000}};
+
+static uint64_t work_of(const Plan *plan)
+{
+    const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)plan->chains * plan->options->steps,
+                                             [ESTIMATOR_POOL] = plan_pool_samples(plan, plan->chains),
+                                             [ESTIMATOR_PATHS] = plan_paths_samples(plan, plan->chains) * PIXELS};
+    return (uint64_t)estimators_work(samples);
+}
+
+/* Generations begin small, come in pairs of one size, are at most as large as chains are allowed and as a fraction of
+ * the work so far, and end where --samples says, whatever the clock says. */
+START_TEST(test_sizes)
+{
+    const ChainOptions options = {.chains = PLANS[_i].chains, .steps = STEPS_DEFAULT, .pool = PLANS[_i].pool};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PLANS[_i].samples);
+    ck_assert_uint_le(plan.chains, CHAINS_FIRST);
+    uint pair = 0, index = 0;
+    while (plan.done < plan.total && index < GENERATIONS_MOST) {
+        uint64_t work = work_of(&plan), left = plan.total - plan.done;
+        ck_assert_uint_gt(plan.chains, 0);
+        ck_assert_uint_le(plan.chains, options.chains);
+        if (index % 2 == 0)
+            pair = plan.chains;
+        else if (work < left)
+            ck_assert_uint_eq(plan.chains, pair);
+        if (index >= 4 && index % 2 == 0 && plan.chains > CHAINS_FIRST)
+            ck_assert_double_le((double)work, 1.1 * WHOLE_SAMPLE_PART * (double)plan.done);
+        plan_count(&plan, work);
+        plan_next(&plan, ++index, 1e9, 1.0); /* a clock by which no generation would grow */
+    }
+    printf("%u samples: %u generations, the last pair of %u chains, %.3f times the work wanted\n", PLANS[_i].samples,
+           index, pair, (double)plan.done / (double)plan.total);
+    ck_assert_uint_ge(plan.done, plan.total);
+    ck_assert_double_lt((double)plan.done / (double)plan.total, 1.5);
+}
+END_TEST
+
+/* With a limit of time alone generations double in pairs while one takes less than a part of the time so far. */
+START_TEST(test_clock)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    uint chains = plan.chains;
+    plan_next(&plan, 1, 0.01, 1.0); /* the second of a pair */
+    ck_assert_uint_eq(plan.chains, chains);
+    plan_next(&plan, 2, 0.49 * GENERATION_PART, 1.0);
+    ck_assert_uint_eq(plan.chains, 2 * chains);
+    plan_next(&plan, 4, 0.51 * GENERATION_PART, 1.0);
+    ck_assert_uint_eq(plan.chains, 2 * chains);
+}
+END_TEST
+
+/* Pools have whole samples of all pixels if they have one at least; --pool is their size. */
+START_TEST(test_pools)
+{
+    ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = 12};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 16);
+    plan.rates.pool = 1.0 / 12.0;
+    ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS / 4), PIXELS / 4);
+    ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS + PIXELS / 4), PIXELS);
+    ck_assert_uint_eq(plan_pool_samples(&plan, 3 * PIXELS - PIXELS / 4), 3 * PIXELS);
+    plan.rates.paths = 0.5;
+    ck_assert_double_eq_tol(plan_paths_samples(&plan, PIXELS), 6.0, 1e-9);
+    options.pool = 777;
+    ck_assert_uint_eq(plan_pool_samples(&plan, 3 * PIXELS), 777);
+}
+END_TEST
+
+/* The published scheme has all of its chains from the start to the end, and one pool. */
+START_TEST(test_published)
+{
+    const ChainOptions options = {
+        .chains = PAPER_CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .pool = 8, .chains_only = true};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(true), PIXELS, 1000);
+    for (uint index = 1; index < 8; ++index) {
+        ck_assert_uint_eq(plan.chains, PAPER_CHAINS_DEFAULT);
+        plan_count(&plan, 1000);
+        plan_next(&plan, index, 0.0, 1.0);
+    }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("plan");
+    TCase *tcase = tcase_create("plan");
+    tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
+    tcase_add_test(tcase, test_clock);
+    tcase_add_test(tcase, test_pools);
+    tcase_add_test(tcase, test_published);
+    suite_add_tcase(suite, tcase);
+    return test_run(suite);
+}
