@@ -20,7 +20,7 @@ typedef struct Grid {
     int columns, rows;
     Vertex (*vertex)(const void *shape, int i, int j);
     const void *shape;
-    bool closed; /* the first and the last row are one point each */
+    bool tip_first, tip_last; /* the first, the last row is one point */
 } Grid;
 
 /* A profile turned about the y axis: a Catmull-Rom spline through points (r, y), from the outer side of the foot up;
@@ -29,6 +29,7 @@ typedef struct Lathe {
     const double (*points)[2];
     int count;
     double u_repeat, v_repeat; /* texture coordinates go from 0 to these */
+    int first, last; /* only from point first to point last; last 0: to the end */
 } Lathe;
 
 enum { LATHE_SEGMENTS = 36, LATHE_STEPS = 2 };
@@ -75,13 +76,13 @@ static Vertex lathe_vertex(const void *shape, int i, int j)
 {
     const Lathe *lathe = shape;
     double p[2], tangent[2], angle = TAU * (i % LATHE_SEGMENTS) / LATHE_SEGMENTS;
-    profile_at(lathe, j, p, tangent);
+    profile_at(lathe, LATHE_STEPS * lathe->first + j, p, tangent);
     double r = p[0] > 1e-9 ? p[0] : 0.0, length = hypot(tangent[0], tangent[1]);
     double outward = tangent[1] / length, up = -tangent[0] / length;
     return (Vertex){.p = {r * cos(angle), p[1], r * sin(angle)},
                     .n = {outward * cos(angle), up, outward * sin(angle)},
                     .uv = {lathe->u_repeat * (LATHE_SEGMENTS - i) / LATHE_SEGMENTS,
-                           lathe->v_repeat * j / (LATHE_STEPS * (lathe->count - 1))}};
+                           lathe->v_repeat * j / (LATHE_STEPS * (lathe->last - lathe->first))}};
 }
 
 /* ---- the pane ----------------------------------------------------------------------------------------------------- */
@@ -119,7 +120,7 @@ static void grid_header_write(const Grid *grid, FILE *file)
     for (const char *name = "xyz"; *name; ++name)
         fprintf(file, "property float n%c\n", *name);
     fprintf(file, "property float u\nproperty float v\nelement face %d\nproperty list uchar int vertex_indices\n",
-            2 * grid->columns * (grid->closed ? grid->rows - 1 : grid->rows));
+            grid->columns * (2 * grid->rows - grid->tip_first - grid->tip_last));
     fprintf(file, "end_header\n");
 }
 
@@ -148,9 +149,9 @@ static bool grid_write(const Grid *grid, const char *folder, const char *name)
     for (int j = 0; j < grid->rows; ++j)
         for (int i = 0; i < grid->columns; ++i) {
             int a = j * (grid->columns + 1) + i, b = a + grid->columns + 1;
-            if (j < grid->rows - 1 || !grid->closed)
+            if (j < grid->rows - 1 || !grid->tip_last)
                 fprintf(file, "3 %d %d %d\n", a, b, b + 1);
-            if (j > 0 || !grid->closed)
+            if (j > 0 || !grid->tip_first)
                 fprintf(file, "3 %d %d %d\n", a, b + 1, a + 1);
         }
     return fclose(file) == 0;
@@ -158,7 +159,13 @@ static bool grid_write(const Grid *grid, const char *folder, const char *name)
 
 static bool lathe_write(Lathe lathe, const char *folder, const char *name)
 {
-    Grid grid = {LATHE_SEGMENTS, LATHE_STEPS * (lathe.count - 1), lathe_vertex, &lathe, true};
+    lathe.last = lathe.last > 0 ? lathe.last : lathe.count - 1;
+    Grid grid = {.columns = LATHE_SEGMENTS,
+                 .rows = LATHE_STEPS * (lathe.last - lathe.first),
+                 .vertex = lathe_vertex,
+                 .shape = &lathe,
+                 .tip_first = lathe.points[lathe.first][0] == 0.0,
+                 .tip_last = lathe.points[lathe.last][0] == 0.0};
     return grid_write(&grid, folder, name);
 }
 
@@ -188,6 +195,40 @@ static const double BOWL[][2] = {{0, 0},         {0.06, 0},      {0.085, 0.001},
                                  {0.2, 0.085},   {0.228, 0.135}, {0.24, 0.16},   {0.242, 0.164}, {0.239, 0.1655},
                                  {0.234, 0.162}, {0.222, 0.137}, {0.194, 0.089}, {0.146, 0.041}, {0.095, 0.013},
                                  {0.05, 0.007},  {0, 0.006}};
+
+/* Vessels with water: outside, and inside down to the water and below it. The glass's surface in air ends at the point
+ * of the waterline, its surface in water begins there, and so does the water's, which the glass draws up a little. */
+static const double GOBLET[][2] = {
+    {0, 0},           {0.028, 0},       {0.0355, 0.0006}, {0.0375, 0.002},  {0.0355, 0.0034}, {0.021, 0.0056},
+    {0.0095, 0.0095}, {0.0055, 0.017},  {0.0043, 0.032},  {0.0042, 0.055},  {0.005, 0.077},   {0.0095, 0.09},
+    {0.0225, 0.1005}, {0.035, 0.118},   {0.0405, 0.139},  {0.0405, 0.158},  {0.0375, 0.182},  {0.0352, 0.198},
+    {0.0347, 0.2004}, {0.034, 0.2008},  {0.0335, 0.1998}, {0.0338, 0.196},  {0.0359, 0.182},  {0.0389, 0.158},
+    {0.0389, 0.14},   {0.0336, 0.1195}, {0.0213, 0.1026}, {0.0095, 0.0957}, {0, 0.094}};
+enum { GOBLET_WATERLINE = 24 };
+static const double GOBLET_WATER[][2] = {
+    {0.0389, 0.14}, {0.0379, 0.1389}, {0.0364, 0.1382}, {0.033, 0.138}, {0, 0.138}};
+
+static const double TUMBLER[][2] = {{0, 0},           {0.027, 0},       {0.0305, 0.0008}, {0.032, 0.0035},
+                                    {0.0332, 0.02},   {0.0354, 0.05},   {0.0376, 0.08},   {0.0388, 0.096},
+                                    {0.0387, 0.0982}, {0.0377, 0.0991}, {0.0367, 0.0982}, {0.0364, 0.0955},
+                                    {0.0353, 0.08},   {0.0344, 0.068},  {0.0331, 0.05},   {0.0312, 0.023},
+                                    {0.0295, 0.0165}, {0.025, 0.0142},  {0, 0.0138}};
+enum { TUMBLER_WATERLINE = 13 };
+static const double TUMBLER_WATER[][2] = {
+    {0.0344, 0.068}, {0.0334, 0.0669}, {0.0319, 0.0662}, {0.029, 0.066}, {0, 0.066}};
+
+static const double CARAFE[][2] = {
+    {0, 0},          {0.043, 0},       {0.0515, 0.001},  {0.0555, 0.006},  {0.0575, 0.03},  {0.057, 0.06},
+    {0.0515, 0.1},   {0.037, 0.14},    {0.0235, 0.17},   {0.0182, 0.195},  {0.0185, 0.22},  {0.0225, 0.243},
+    {0.0282, 0.257}, {0.0287, 0.2593}, {0.0277, 0.2602}, {0.0266, 0.2588}, {0.0207, 0.243}, {0.0167, 0.22},
+    {0.0164, 0.195}, {0.0215, 0.17},   {0.0345, 0.14},   {0.0416, 0.122},  {0.0492, 0.1},   {0.0546, 0.06},
+    {0.055, 0.03},   {0.0525, 0.013},  {0.045, 0.0095},  {0, 0.009}};
+enum { CARAFE_WATERLINE = 21 };
+static const double CARAFE_WATER[][2] = {{0.0416, 0.122}, {0.041, 0.1209}, {0.0396, 0.1202}, {0.036, 0.12}, {0, 0.12}};
+
+static const double LEMON[][2] = {{0, 0},          {0.0045, 0.001}, {0.0085, 0.0065}, {0.0135, 0.013},
+                                  {0.0235, 0.025}, {0.029, 0.042},  {0.0285, 0.055},  {0.0225, 0.069},
+                                  {0.0125, 0.078}, {0.006, 0.0825}, {0, 0.084}};
 
 /* ---- hammered metal --------------------------------------------------------------------------------------------------- */
 
@@ -273,18 +314,45 @@ static bool sun_write(const char *folder, Error *error)
     return good;
 }
 
+typedef struct Part {
+    const char *name;
+    Lathe lathe;
+} Part;
+
+static const Part PARTS[] = {
+    {"jar.ply", {POINTS(JAR), 1, 1, 0, 0}},
+    {"vase.ply", {POINTS(VASE), 1, 1, 0, 0}},
+    {"bottle.ply", {POINTS(BOTTLE), 1, 1, 0, 0}},
+    {"bowl.ply", {POINTS(BOWL), 5, 4, 0, 0}},
+    {"lemon.ply", {POINTS(LEMON), 1, 1, 0, 0}},
+    {"goblet.ply", {POINTS(GOBLET), 1, 1, 0, GOBLET_WATERLINE}},
+    {"goblet-wet.ply", {POINTS(GOBLET), 1, 1, GOBLET_WATERLINE, 0}},
+    {"goblet-water.ply", {POINTS(GOBLET_WATER), 1, 1, 0, 0}},
+    {"tumbler.ply", {POINTS(TUMBLER), 1, 1, 0, TUMBLER_WATERLINE}},
+    {"tumbler-wet.ply", {POINTS(TUMBLER), 1, 1, TUMBLER_WATERLINE, 0}},
+    {"tumbler-water.ply", {POINTS(TUMBLER_WATER), 1, 1, 0, 0}},
+    {"carafe.ply", {POINTS(CARAFE), 1, 1, 0, CARAFE_WATERLINE}},
+    {"carafe-wet.ply", {POINTS(CARAFE), 1, 1, CARAFE_WATERLINE, 0}},
+    {"carafe-water.ply", {POINTS(CARAFE_WATER), 1, 1, 0, 0}},
+};
+
+static bool parts_write(const char *folder)
+{
+    Grid pane = {PANE_COLUMNS, PANE_ROWS, pane_vertex, NULL, false, false};
+    bool good = grid_write(&pane, folder, "pane.ply");
+    for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS && good; ++i)
+        good = lathe_write(PARTS[i].lathe, folder, PARTS[i].name);
+    return good;
+}
+
 int main(int argc, char **argv)
 {
     Error error = {0};
-    Grid pane = {PANE_COLUMNS, PANE_ROWS, pane_vertex, NULL, false};
     if (argc != 2) {
         fprintf(stderr, "usage: make_parts FOLDER\n");
         return 2;
     }
-    if (!lathe_write((Lathe){POINTS(JAR), 1, 1}, argv[1], "jar.ply") ||
-        !lathe_write((Lathe){POINTS(VASE), 1, 1}, argv[1], "vase.ply") ||
-        !lathe_write((Lathe){POINTS(BOTTLE), 1, 1}, argv[1], "bottle.ply") ||
-        !lathe_write((Lathe){POINTS(BOWL), 5, 4}, argv[1], "bowl.ply") || !grid_write(&pane, argv[1], "pane.ply")) {
+    if (!parts_write(argv[1])) {
         fprintf(stderr, "make_parts: cannot write %s/parts\n", argv[1]);
         return 1;
     }

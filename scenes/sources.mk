@@ -3,6 +3,7 @@ scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA = \
 	scenes/cornell.pbrt \
 	scenes/door.pbrt \
+	scenes/glass.pbrt \
 	scenes/glossy.pbrt \
 	scenes/lamp.pbrt \
 	scenes/pool.pbrt \
@@ -14,10 +15,20 @@ dist_sceneparts_DATA = \
 	scenes/parts/bottle.ply \
 	scenes/parts/bowl.ply \
 	scenes/parts/box.pbrt \
+	scenes/parts/carafe-water.ply \
+	scenes/parts/carafe-wet.ply \
+	scenes/parts/carafe.ply \
+	scenes/parts/goblet-water.ply \
+	scenes/parts/goblet-wet.ply \
+	scenes/parts/goblet.ply \
 	scenes/parts/hammered.png \
 	scenes/parts/jar.ply \
+	scenes/parts/lemon.ply \
 	scenes/parts/pane.ply \
 	scenes/parts/sun.exr \
+	scenes/parts/tumbler-water.ply \
+	scenes/parts/tumbler-wet.ply \
+	scenes/parts/tumbler.ply \
 	scenes/parts/vase.ply
 
 # `make scene-parts` makes scenes/parts/ in the source folder again; `make scene-references` the pictures to compare with.

@@ -1,4 +1,4 @@
-/* Every scene of scenes/ by every integrator, against the images in scenes/reference/, which are path traced or
+/* Every scene that has an image in scenes/reference/ by every integrator, against that image, which is path traced or
  * bidirectionally path traced (scenes/make_references.sh). */
 #include "base/sample_statistics.h"
 #include "support/render_fixture.h"
