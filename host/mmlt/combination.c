@@ -263,7 +263,7 @@ StepRates combination_rates(const Combination *combination)
             double samples[ESTIMATOR_COUNT] = {
                 [ESTIMATOR_CHAINS] = PLAN_PARTS - paths - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = paths};
             for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-                samples[s] /= estimator_cost(s);
+                samples[s] /= estimator_cost((EstimatorKind)s);
             double error = error_of(combination, samples);
             if (error < least) {
                 least = error;

@@ -7,7 +7,7 @@
 #include "render/layers.h"
 
 /* Most groups of three channels: the picture, its layers, and the despeckled picture. */
-#define PICTURE_GROUPS_OF(NAME, name, text, groups) +groups
+#define PICTURE_GROUPS_OF(NAME, name, text, groups) +(groups) // NOLINT(bugprone-macro-parentheses)
 #define PICTURE_GROUPS_MAX (2 LAYER_LIST_LIGHT(PICTURE_GROUPS_OF) + AOV_COUNT)
 
 /* What to make of a film. */

@@ -109,7 +109,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
                                   Random4 random, WalkStep *step)
 {
     bool plays = roulette.depth >= scene->frame->path.roulette_depth;
-    BsdfSample sample;
+    BsdfSample sample = {0};
     uint transport = side == SIDE_CAMERA ? TRANSPORT_RADIANCE : TRANSPORT_IMPORTANCE;
     Vec2 u = scatter_point(random), u_base = u;
     if (side == SIDE_CAMERA && scene->frame->scene.guide_count > 0u && bsdf_has_base(&vertex->bsdf))

@@ -119,7 +119,7 @@ static Hit emitter_hit(const Partition *p, const Ray *ray, float distance)
     Hit hit = hit_none(FLOAT_MAX);
     if (primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE)
         triangle_query(p->view.positions[primitive.a], p->view.positions[primitive.b], p->view.positions[primitive.c],
-                       &query, &hit.t, &hit.u, &hit.v);
+                       &query, &hit);
     else if (primitive_curved_from(&p->view, &primitive, &query, 0.0f, &hit) &&
              float_abs(hit.t - distance) > 1e-3f * distance)
         primitive_curved_from(&p->view, &primitive, &query, hit.t, &hit);

@@ -171,7 +171,7 @@ START_TEST(test_light_samples_alone)
     SceneView view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels);
     double sum = 0.0;
     for (int i = 0; i < ROWS * ROWS; ++i) {
-        LightSample s;
+        LightSample s = {0};
         float a = (float)((i % ROWS + test_random_unit(&state)) / ROWS);
         float b = (float)((i / ROWS + test_random_unit(&state)) / ROWS);
         if (light_sample(&view, 0, vec3(0, 0, 0), vec2(a, b), &s) && s.wi.z > 0.0f)
