@@ -15,8 +15,8 @@
 /* Relative difference of what a path carries in path tracing and as the chain has it. s < 2: both make the same
  * vertices by the same numbers. Else path tracing goes from the camera to vertices that the light subpath has made, and
  * its directions, by differences of rounded positions, are off by 1e-7 of the scene over the length of the segment; the
- * densities of glossy lobes and of short or grazing segments multiply that. With ten times the samples one path in
- * 50,000 exceeds these bounds; they are for the samples below. */
+ * densities of glossy lobes and of short or grazing segments multiply that. With ten times the samples, seven of the
+ * scenes have a path that exceeds these bounds, by up to 4.7 %; they are for the samples below. */
 #define SAME_ERROR 1e-4
 #define BACK_ERROR 3e-3
 
@@ -119,6 +119,17 @@ START_TEST(test_scenes)
 }
 END_TEST
 
+/* Scenes of which paths of all strategies are found, many of them above the clamping threshold. */
+static void lights_check(const BidirectionalScene *scene, const char *film, const char *filter, unsigned samples)
+{
+    Tally tally = {0};
+    scene_check(scene->name, bidirectional_text(scene), film, filter, samples, &tally);
+    tally_print(scene->name, &tally);
+    for (int k = 0; k < 3; ++k)
+        ck_assert_uint_gt(tally.by_s[k], 20);
+    ck_assert_uint_gt(tally.clamped, 100);
+}
+
 /* ---- lamps with holes -------------------------------------------------------------------------------------------- */
 
 #define EMITS "AreaLightSource \"diffuse\" \"rgb L\" [ 5 5 5 ] \"bool twosided\" true\n"
@@ -156,12 +167,7 @@ static const BidirectionalScene LAMPS[] = {
 
 START_TEST(test_lamps)
 {
-    Tally tally = {0};
-    scene_check(LAMPS[_i].name, bidirectional_text(&LAMPS[_i]), FILM_WHOLE, BIDIRECTIONAL_FILTERS[2], 12000, &tally);
-    tally_print(LAMPS[_i].name, &tally);
-    for (int k = 0; k < 3; ++k)
-        ck_assert_uint_gt(tally.by_s[k], 20);
-    ck_assert_uint_gt(tally.clamped, 100);
+    lights_check(&LAMPS[_i], FILM_WHOLE, BIDIRECTIONAL_FILTERS[2], 12000);
 }
 END_TEST
 
@@ -185,12 +191,7 @@ static const BidirectionalScene SKIES[] = {
 
 START_TEST(test_skies)
 {
-    Tally tally = {0};
-    scene_check(SKIES[_i].name, bidirectional_text(&SKIES[_i]), FILM_CROP, BIDIRECTIONAL_FILTERS[3], 2000, &tally);
-    tally_print(SKIES[_i].name, &tally);
-    for (int k = 0; k < 3; ++k)
-        ck_assert_uint_gt(tally.by_s[k], 20);
-    ck_assert_uint_gt(tally.clamped, 100);
+    lights_check(&SKIES[_i], FILM_CROP, BIDIRECTIONAL_FILTERS[3], 2000);
 }
 END_TEST
 
