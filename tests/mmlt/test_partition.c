@@ -16,7 +16,7 @@
  * vertices by the same numbers. Else path tracing goes from the camera to vertices that the light subpath has made, and
  * its directions, by differences of rounded positions, are off by 1e-7 of the scene over the length of the segment; the
  * densities of glossy lobes and of short or grazing segments multiply that. With ten times the samples, seven of the
- * scenes have a path that exceeds these bounds, by up to 4.7 %; they are for the samples below. */
+ * scenes have a path that exceeds these bounds, off by up to 4.7 %; they are for the samples below. */
 #define SAME_ERROR 1e-4
 #define BACK_ERROR 3e-3
 
