@@ -287,7 +287,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
         path_random(frame, state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
                     path_random_block(depth, RANDOM_SCATTER));
     Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, item);
-    BsdfSample sample;
+    BsdfSample sample = {0};
     if (!bsdf_sample(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, item), random_float(random.x[0]),
                      vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_RADIANCE, &sample)) {
         path_end(paths, rays, stride, item);

@@ -167,8 +167,10 @@ done
 # A stop before anything is rendered, detected by the list of chains, does not replace an existing image.
 begin --quiet --threads=1 --resolution=400x400 --max-depth=31 --dump-bad=bad.json "$slow"
 cp a.exr s.exr
-until [ -n "$(find . -name 'bad.json.*~')" ]; do
+list=
+until [ -n "$list" ] && sleep 0.2 && [ -e "$list" ]; do # a file that only tries the folder is gone by then
     kill -s 0 $process || break
+    list=$(find . -name 'bad.json.*~' | head -n 1)
 done
 kill -s TERM $process
 wait $process
