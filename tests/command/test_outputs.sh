@@ -168,7 +168,7 @@ done
 begin --quiet --threads=1 --resolution=400x400 --max-depth=31 --dump-bad=bad.json "$slow"
 cp a.exr s.exr
 list=
-until [ -n "$list" ] && sleep 0.2 && [ -e "$list" ]; do # a file that only tries the folder is gone by then
+until [ -n "$list" ] && sleep 0.02 && [ -e "$list" ]; do # a file that only tries the folder is gone by then
     kill -s 0 $process || break
     list=$(find . -name 'bad.json.*~' | head -n 1)
 done
