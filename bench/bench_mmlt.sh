@@ -31,7 +31,7 @@ run() {
     run_scene=$2
     shift 2
     "$twinlight" render --quiet --integrator=mmlt --max-depth="$DEPTH" --resolution="$RESOLUTION" --seed="$run" \
-        --time="${SECONDS_EACH}s" --chains="$CHAINS" --layers=none --no-png -o "$folder/out.exr" \
+        --time="${SECONDS_EACH}s" --mlt=chains="$CHAINS" --layers=none --no-png -o "$folder/out.exr" \
         --stats="$folder/$run_name.$run.json" "$@" "$run_scene" 2>/dev/null
 }
 
@@ -73,15 +73,12 @@ for scene in "$@"; do
         for scheme in paper generations; do
             rm -f "$folder"/*.json
             for run in $(seq "$RUNS"); do
-                blend=$([ $scheme = paper ] || echo --no-blend)
-                # shellcheck disable=SC2086 # an option or none
-                {
-                    run neither "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-sort --no-group
-                    run sorted "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-group
-                    run grouped "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --no-sort
-                    run both "$scene" --backend="$backend" --mlt-scheme=$scheme $blend
-                    run depth "$scene" --backend="$backend" --mlt-scheme=$scheme $blend --sort=depth
-                }
+                mlt=--mlt=scheme=$scheme,combine=off # paper never combines
+                run neither "$scene" --backend="$backend" "$mlt,sort=none,group=off"
+                run sorted "$scene" --backend="$backend" "$mlt,group=off"
+                run grouped "$scene" --backend="$backend" "$mlt,sort=none"
+                run both "$scene" --backend="$backend" "$mlt"
+                run depth "$scene" --backend="$backend" "$mlt,sort=depth"
             done
             printf '%s\t%s\t%s' "$name" "$backend" "$scheme"
             row

@@ -27,6 +27,7 @@ check_PROGRAMS += \
 	tests/test_light \
 	tests/test_math \
 	tests/test_metrics \
+	tests/test_mlt_option \
 	tests/test_options \
 	tests/test_partition \
 	tests/test_platform_bits \
@@ -129,6 +130,7 @@ tests_test_compare_SOURCES = tests/compare/test_compare.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
+tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c
 tests_test_options_SOURCES = tests/command/test_options.c
 tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
 tests_test_plan_SOURCES = tests/mmlt/test_plan.c

@@ -132,3 +132,24 @@ bool option_strategy(const char *option, const char *text, unsigned strategy[2],
     strategy[1] = (unsigned)numbers[1];
     return true;
 }
+
+bool option_names(const char *text, char separator, const char *const *names, unsigned count, unsigned *bits,
+                  const char **other)
+{
+    const char end[2] = {separator, '\0'};
+    *bits = 0;
+    for (const char *name = text;; ++name) {
+        size_t length = strcspn(name, end);
+        unsigned found = 0;
+        for (unsigned i = 0; i < count; ++i)
+            if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0)
+                found = 1u << i;
+        *other = name;
+        if (!found)
+            return false;
+        *bits |= found;
+        name += length;
+        if (*name == '\0')
+            return true;
+    }
+}

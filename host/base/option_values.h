@@ -28,4 +28,9 @@ bool option_crop(const char *option, const char *text, int crop[4], Error *error
 /* s,t of a bidirectional strategy: s >= 0 vertices from the light, t >= 1 from the camera, s + t >= 2. */
 bool option_strategy(const char *option, const char *text, unsigned strategy[2], Error *error);
 
+/* Names with `separator` between them: name i of `names` sets bit i of *bits. On any other name returns false, with
+ * *other pointing to it; the message is left to the caller. */
+bool option_names(const char *text, char separator, const char *const *names, unsigned count, unsigned *bits,
+                  const char **other);
+
 #endif

@@ -78,16 +78,20 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
 {
     const char *names[OPTION_SPECS_MAX];
     char given[64], list[256] = "";
+    size_t count = 0;
     int used = 0, matches = 0;
     word += strspn(word, "-");
     int length = (int)strcspn(word, "=");
     for (int i = 0; i <= table->count; ++i) {
-        names[i] = spec_at(table, i)->name;
-        if (strncmp(names[i], word, (size_t)length) != 0)
+        const char *name = spec_at(table, i)->name;
+        if (!spec_at(table, i)->help)
+            continue;
+        names[count++] = name;
+        if (strncmp(name, word, (size_t)length) != 0)
             continue;
         ++matches;
         if (used < (int)sizeof list - 32)
-            used += snprintf(list + used, sizeof list - (size_t)used, "%s--%.20s", used > 0 ? ", " : "", names[i]);
+            used += snprintf(list + used, sizeof list - (size_t)used, "%s--%.20s", used > 0 ? ", " : "", name);
     }
     snprintf(given, sizeof given, "%.*s", length, word);
     if (matches > 1) {
@@ -95,7 +99,7 @@ static void name_refuse(const OptionTable *table, const char *word, Error *error
         error_fix(error, "write more letters of the name");
         return;
     }
-    const char *nearest = name_nearest(given, names, (size_t)table->count + 1);
+    const char *nearest = name_nearest(given, names, count);
     error_set(error, "unknown option --%s", given);
     if (nearest)
         error_fix(error, "did you mean --%s? twinlight %s --help lists all", nearest, table->command);
@@ -133,6 +137,8 @@ static void help_print(const OptionTable *table)
         bool optional = argument[0] == '[';
         char left[64];
         char letter[8] = "    ";
+        if (!spec->help)
+            continue;
         if (spec->letter)
             snprintf(letter, sizeof letter, "-%c, ", spec->letter);
         snprintf(left, sizeof left, "%s--%s%s%s%s", letter, spec->name, optional ? "[" : "", argument[0] ? "=" : "",

@@ -12,7 +12,7 @@ typedef struct OptionSpec {
     const char *name; /* without dashes */
     char letter; /* 0: none */
     const char *argument; /* name of the value in --help; NULL: takes none; "[FILE]": optional */
-    const char *help;
+    const char *help; /* NULL: accepted, but neither listed nor suggested (deprecated) */
 } OptionSpec;
 
 typedef struct OptionTable {

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/path_name.h"
 #include "base/timing.h"
+#include "command/mlt_option.h"
 #include "command/output_check.h"
 #include "command/render_options.h"
 #include "command/render_output.h"
@@ -30,7 +31,8 @@ static const RenderOptionSet OPTIONS = {
     .command = "render",
     .usage = "render [OPTION]... SCENE",
     .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
-    .footer = "SIGINT, SIGTERM and SIGHUP end the rendering early: what is finished is written, and the exit status\n"
+    .footer = "Switches of mmlt (--mlt=KEY=VALUE,...):\n" MLT_HELP "\n"
+              "SIGINT, SIGTERM and SIGHUP end the rendering early: what is finished is written, and the exit status\n"
               "is 130. Another such signal at least a second later ends the program at once.\n"
               "More: man twinlight-render.",
     .output_ending = ".exr",

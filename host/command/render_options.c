@@ -4,6 +4,7 @@
 #include "base/option_values.h"
 #include "base/options.h"
 #include "base/path_name.h"
+#include "command/mlt_option.h"
 
 #include <string.h>
 
@@ -22,24 +23,21 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                        "OpenCL devices, by number or part of a name as in twinlight devices (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
     [OPTION_FILM] = {"film", 0, "WHERE", "what adds the paths of OpenCL devices to the film: host (default) or device"},
-    [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME",
-                           "mmlt: generations (default), or paper: one pool and large steps, as published"},
-    [OPTION_CHAINS] = {"chains", 0, "N", "mmlt: largest number of Markov chains at a time (default: 524288)"},
-    [OPTION_STEPS] = {"steps", 0, "N", "mmlt: steps of a chain between two pools (default: 64)"},
-    [OPTION_POOL] = {"pool", 0, "N",
-                     "mmlt: bootstrap samples of a pool (default: at least one for every 12 chain steps)"},
-    [OPTION_LARGE_STEP] = {"large-step", 0, "P", "mmlt, paper: probability of a large step (default: 0.3)"},
-    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...",
-                          "mmlt: small steps to make: all, light, camera (default: all three)"},
+    [OPTION_MLT] = {"mlt", 0, "KEY=VALUE,...", "mmlt: the switches listed below; several --mlt add up"},
+    /* deprecated (command/mlt_option.h) */
+    [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME", NULL},
+    [OPTION_CHAINS] = {"chains", 0, "N", NULL},
+    [OPTION_STEPS] = {"steps", 0, "N", NULL},
+    [OPTION_POOL] = {"pool", 0, "N", NULL},
+    [OPTION_LARGE_STEP] = {"large-step", 0, "P", NULL},
+    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", NULL},
+    [OPTION_SORT] = {"sort", 0, "ORDER", NULL},
+    [OPTION_NO_SORT] = {"no-sort", 0, NULL, NULL},
+    [OPTION_NO_GROUP] = {"no-group", 0, NULL, NULL},
+    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL, NULL},
+    [OPTION_NO_AIM] = {"no-aim", 0, NULL, NULL},
+    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, NULL},
     [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print how much memory its chains take, and exit"},
-    [OPTION_SORT] = {"sort", 0, "ORDER",
-                     "mmlt: order of chains in memory: strategy, by depth and strategy (default), or depth"},
-    [OPTION_NO_SORT] = {"no-sort", 0, NULL, "mmlt: keep chains in the order in which they were drawn"},
-    [OPTION_NO_GROUP] = {"no-group", 0, NULL, "mmlt: every chain chooses its kind of mutation independently"},
-    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL,
-                         "mmlt: disable shifts, steps across the film that reconnect to the rest of the path"},
-    [OPTION_NO_AIM] = {"no-aim", 0, NULL, "mmlt: disable light guides, which keep directions near those to lights"},
-    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, "mmlt: show paths of more than two segments by the chains alone"},
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
     [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
@@ -136,56 +134,6 @@ static bool film_set(RenderCommand *command, const char *value, Error *error)
     return error_fix(error, "use host or device");
 }
 
-static bool scheme_set(ChainOptions *chains, const char *value, Error *error)
-{
-    chains->paper = strcmp(value, "paper") == 0;
-    if (chains->paper || strcmp(value, "generations") == 0)
-        return true;
-    error_set(error, "--mlt-scheme=%s: there is no such scheme", value);
-    return error_fix(error, "use generations or paper");
-}
-
-/* Parses names separated by commas: name i of `names` sets bit i. Returns false on any other name, with *other pointing
- * to it. */
-static bool names_set(const char *value, const char *const *names, unsigned count, unsigned *bits, const char **other)
-{
-    *bits = 0;
-    for (const char *name = value;; ++name) {
-        size_t length = strcspn(name, ",");
-        unsigned found = 0;
-        for (unsigned i = 0; i < count; ++i)
-            if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0)
-                found = 1u << i;
-        *other = name;
-        if (!found)
-            return false;
-        *bits |= found;
-        name += length;
-        if (*name == '\0')
-            return true;
-    }
-}
-
-static bool sort_set(ChainOptions *chains, const char *value, Error *error)
-{
-    if (strcmp(value, "strategy") != 0 && strcmp(value, "depth") != 0) {
-        error_set(error, "--sort=%s: there is no such order of chains", value);
-        return error_fix(error, "use strategy or depth, or --no-sort");
-    }
-    chains->order = value[0] == 'd' ? CHAIN_ORDER_DEPTH : CHAIN_ORDER_STRATEGY;
-    return true;
-}
-
-static bool mutations_set(ChainOptions *chains, const char *value, Error *error)
-{
-    static const char *const NAMES[] = {"all", "light", "camera"}; /* MUTATION_* */
-    const char *other;
-    if (names_set(value, NAMES, sizeof NAMES / sizeof NAMES[0], &chains->mutations, &other))
-        return true;
-    error_set(error, "--mutations=%s: there is no kind of mutation %.*s", value, (int)strcspn(other, ","), other);
-    return error_fix(error, "use all, light and camera, separated by commas");
-}
-
 static bool layers_set(RenderCommand *command, const char *value, Error *error)
 {
 #define TEXT(NAME, name, text, ...) text,
@@ -194,62 +142,28 @@ static bool layers_set(RenderCommand *command, const char *value, Error *error)
     const char *other;
     command->has_layers = true;
     command->layers = strcmp(value, "all") == 0 ? LAYERS_ALL : 0;
-    if (command->layers || strcmp(value, "none") == 0 || names_set(value, NAMES, LAYER_COUNT, &command->layers, &other))
+    if (command->layers || strcmp(value, "none") == 0 ||
+        option_names(value, ',', NAMES, LAYER_COUNT, &command->layers, &other))
         return true;
     error_set(error, "--layers=%s: there is no layer %.*s", value, (int)strcspn(other, ","), other);
     return error_fix(error, "use " LAYER_LIST(LAYER_TEXT_OF) "separated by commas, or all (but by-depth) or none");
 }
 
-static bool chain_number_set(const char *name, const char *value, uint64_t high, unsigned *number, Error *error)
-{
-    uint64_t whole;
-    if (!option_whole(name, value, 1, high, &whole, error))
-        return false;
-    *number = (unsigned)whole;
-    return true;
-}
-
 /* Options of Markov chains. */
 static bool chain_option_set(RenderCommand *command, int option, const char *value, Error *error)
 {
-    ChainOptions *chains = &command->chains;
     const char *name = SPECS[option].name;
     command->chain_option = name;
     switch (option) {
-    case OPTION_MLT_SCHEME:
-        return scheme_set(chains, value, error);
-    case OPTION_CHAINS:
-        return chain_number_set(name, value, 1u << 26, &chains->chains, error);
-    case OPTION_STEPS:
-        return chain_number_set(name, value, 1u << 14, &chains->steps, error);
-    case OPTION_POOL:
-        return chain_number_set(name, value, 1u << 30, &chains->pool, error);
-    case OPTION_MUTATIONS:
-        return mutations_set(chains, value, error);
+    case OPTION_MLT:
+        return mlt_option_set(&command->chains, value, error);
     case OPTION_MEMORY:
         command->memory = true;
-        return true;
-    case OPTION_SORT:
-        return sort_set(chains, value, error);
-    case OPTION_NO_SORT:
-        chains->order = CHAIN_ORDER_NONE;
-        return true;
-    case OPTION_NO_GROUP:
-        chains->ungrouped = true;
-        return true;
-    case OPTION_NO_SHIFT:
-        chains->shiftless = true;
-        return true;
-    case OPTION_NO_AIM:
-        chains->unguided = true;
-        return true;
-    case OPTION_NO_BLEND:
-        chains->chains_only = true;
         return true;
     case OPTION_DUMP_BAD:
         return path_set(&command->dump_bad, option, value, NULL, error);
     default:
-        return option_number(name, value, 1e-6, 1.0, &chains->large_step, error);
+        return mlt_option_set_old(&command->chains, name, value, error);
     }
 }
 
@@ -312,6 +226,7 @@ static bool option_set(void *context, int index, const char *value, Error *error
     case OPTION_QUIET:
         command->quiet = true;
         return true;
+    case OPTION_MLT:
     case OPTION_MLT_SCHEME:
     case OPTION_CHAINS:
     case OPTION_STEPS:

@@ -59,6 +59,7 @@ typedef enum RenderOption {
     OPTION_DEVICE,
     OPTION_BATCH,
     OPTION_FILM,
+    OPTION_MLT,
     OPTION_MLT_SCHEME,
     OPTION_CHAINS,
     OPTION_STEPS,

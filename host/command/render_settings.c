@@ -25,9 +25,9 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
         return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);
     }
     if (command->chains.large_step > 0.0 && !command->chains.paper) {
-        error_set(error, "--large-step is for --mlt-scheme=paper: generations start over with new pools instead of "
+        error_set(error, "--mlt=large-step is for scheme=paper: generations start over with new pools instead of "
                          "making large steps");
-        return error_fix(error, "add --mlt-scheme=paper, or leave --large-step out");
+        return error_fix(error, "add --mlt=scheme=paper, or leave large-step out");
     }
     unsigned s = command->strategy[0], t = command->strategy[1];
     if (!command->only_strategy || strategy_taken(integrator->strategies, s, s + t - 1))

@@ -6,6 +6,7 @@ libtwinlight_host_la_SOURCES += \
 	host/command/cmd_pyramid.c \
 	host/command/cmd_render.c \
 	host/command/command.h \
+	host/command/mlt_option.c host/command/mlt_option.h \
 	host/command/output_check.c host/command/output_check.h \
 	host/command/render_options.c host/command/render_options.h \
 	host/command/render_output.c host/command/render_output.h \

@@ -1,7 +1,7 @@
 /* Convergence diagnostic: do independent groups of Markov chains agree? Computes the potential scale reduction factor
  * R-hat of Gelman and Rubin (base/sample_statistics.h) for each path depth.
  *
- * The groups are the two replicas, whose populations start from separate pools. With --mlt-scheme=paper, whose chains
+ * The groups are the two replicas, whose populations start from separate pools. With --mlt=scheme=paper, whose chains
  * never restart, the chains of each depth are instead cut into consecutive groups, each of which started from only a
  * few strategies.
  *

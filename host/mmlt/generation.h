@@ -8,7 +8,7 @@
 typedef struct Generation {
     RenderRun *run;
     uint index; /* 0, 1, ... */
-    int replica; /* that it belongs to; always 0 with --mlt-scheme=paper, whose chains never restart */
+    int replica; /* that it belongs to; always 0 with --mlt=scheme=paper, whose chains never restart */
     int other; /* the replica that it learns from */
     float clamp_threshold; /* of pools (path/partition.h) */
 } Generation;

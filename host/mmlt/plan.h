@@ -33,7 +33,7 @@ void plan_count(Plan *plan, uint64_t work);
  * elapsed: in all. */
 void plan_next(Plan *plan, uint index, double seconds, double elapsed);
 
-/* Samples of a pool for `chains` chains: --pool, else by the rates, rounded to whole samples per pixel if that gives at
+/* Samples of a pool for `chains` chains: --mlt=pool, else by the rates, rounded to whole samples per pixel if that gives at
  * least one. */
 uint plan_pool_samples(const Plan *plan, uint chains);
 

@@ -1,4 +1,4 @@
-/* The two ways to run chains: in generations, and as published (--mlt-scheme=paper; Frolov 2018). */
+/* The two ways to run chains: in generations, and as published (--mlt=scheme=paper; Frolov 2018). */
 #ifndef TWINLIGHT_MMLT_SCHEME_H
 #define TWINLIGHT_MMLT_SCHEME_H
 
@@ -14,11 +14,11 @@ typedef struct MmltScheme {
     int replicas; /* renderings with independent errors that take turns */
     bool renews; /* every generation draws a pool and starts chains from it; else only the first does */
     bool grows; /* generations start small and double */
-    bool combines; /* pool and path tracing are shown beside the chains, unless --no-blend */
-    unsigned chains; /* at a time, without --chains */
-    unsigned pool_per_chain; /* samples of a pool, without --pool; 0: by the plan */
-    double large_step; /* probability, without --large-step; 0: there are none */
-    float shifts; /* fraction of the camera subpath's mutations, without --no-shift */
+    bool combines; /* pool and path tracing are shown beside the chains, unless --mlt=combine=off */
+    unsigned chains; /* at a time, without --mlt=chains */
+    unsigned pool_per_chain; /* samples of a pool, without --mlt=pool; 0: by the plan */
+    double large_step; /* probability, without --mlt=large-step; 0: there are none */
+    float shifts; /* fraction of the camera subpath's mutations, unless --mlt=shift=off */
     unsigned groups; /* of a population's chains, whose means are compared (chain_groups.h) */
 } MmltScheme;
 

@@ -153,7 +153,7 @@ result '--verify does not name field and values' $?
 
 # A kernel that sometimes divides by zero: affected chains are listed, and the image is unaffected.
 plant nan 's/vec3_scale(bsdf->color0, value.pdf_w);/vec3_scale(bsdf->color0, value.pdf_w \/ (wi.z > 0.99f ? 0.0f : 1.0f));/'
-TWINLIGHT_KERNELS=$work/nan expect 0 'not finite inside the kernels' render --no-blend --backend=opencl --resolution=16x12 --samples=40 \
+TWINLIGHT_KERNELS=$work/nan expect 0 'not finite inside the kernels' render --mlt=combine=off --backend=opencl --resolution=16x12 --samples=40 \
     --max-depth=3 --dump-bad=bad.jsonl --layers=none -o nan.exr "$scene"
 grep -qE '^\{"seed": 0, "generation": [0-9]+, "pool_sample": [0-9]+, .*"depth": 3, "s": [0-3]\}$' bad.jsonl
 result '--dump-bad names no chain' $?

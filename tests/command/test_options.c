@@ -131,12 +131,13 @@ END_TEST
 
 /* ---- options ------------------------------------------------------------------------------------------------------ */
 
-enum { OUTPUT, SAMPLES, SAVE, SEED, PNG, QUIET };
+enum { OUTPUT, SAMPLES, SAVE, SEED, PNG, QUIET, SAMPLER };
 
 static const OptionSpec SPECS[] = {{"output", 'o', "FILE", "file"},   {"samples", 0, "N", "samples"},
                                    {"save-every", 0, "TIME", "time"}, {"seed", 0, "N", "seed"},
-                                   {"png", 0, "[FILE]", "png"},       {"quiet", 'q', NULL, "quiet"}};
-static const OptionTable TABLE = {"render", "render", "summary", SPECS, 6, NULL};
+                                   {"png", 0, "[FILE]", "png"},       {"quiet", 'q', NULL, "quiet"},
+                                   {"sampler", 0, "NAME", NULL}};
+static const OptionTable TABLE = {"render", "render", "summary", SPECS, 7, NULL};
 
 /* The options that were set, as text: "samples=4 quiet ". */
 static bool record(void *context, int index, const char *value, Error *error)
@@ -185,6 +186,7 @@ static const struct {
     {"--sp 4 a.pbrt", "samples=4 ", "a.pbrt"},
     {"--samples=1 --samples=2 a.pbrt", "samples=1 samples=2 ", "a.pbrt"},
     {"-- --samples=4", "", "--samples=4"},
+    {"--sampler=x a.pbrt", "sampler=x ", "a.pbrt"}, /* not listed, but accepted */
 };
 
 START_TEST(test_options_good)
@@ -204,6 +206,7 @@ static const struct {
 } BAD_LINES[] = {
     {"--sample-count=4 a", "error: unknown option --sample-count"},
     {"--s=4 a", "error: option --s is ambiguous: it may stand for --samples, --save-every, --seed"},
+    {"--sample=4 a", "error: unknown option --sample"},
     {"-z a", "error: unknown option -z"},
     {"--nthreads=4 a", "error: unknown option --nthreads"},
     {"a --samples", "error: option --samples needs a value"},

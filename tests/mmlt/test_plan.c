@@ -66,7 +66,7 @@ START_TEST(test_clock)
 }
 END_TEST
 
-/* Pools have whole samples of all pixels if they have one at least; --pool is their size. */
+/* Pools have whole samples of all pixels if they have one at least; --mlt=pool is their size. */
 START_TEST(test_pools)
 {
     ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = 12};
