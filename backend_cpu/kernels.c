@@ -1,21 +1,12 @@
+/* Which loop runs for a kernel. A file of its own, so that a test can define kernel_run with kernels of its own instead
+ * (tests/geometry/test_geometry_backend.c). */
 #ifdef HAVE_CONFIG_H
 #include "config.h"
-#endif
-
-/* Before any shared header: inlines everything into the loops of this file, those of path tracing and of the AOVs,
- * which start with the same kernels. */
-#ifdef NDEBUG
-#define PLATFORM_INLINE_ALL
 #endif
 
 #include "kernels.h"
 
 #include "kernel_loop.h"
-
-#include "kernels/aov.cl"
-#include "kernels/pt.cl"
-
-KERNEL_LIST_PATHS(KERNEL_LOOP)
 
 #define KERNEL_ENTRY(name, n, ...) kernel_loop_##name,
 static KernelLoop *const KERNEL_LOOPS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ENTRY)};

@@ -6,6 +6,5 @@
 #include "kernels/count.cl"
 #include "kernels/film_add.cl"
 #include "kernels/trace.cl"
-#include "kernels/walk.cl"
 
 KERNEL_LIST_OTHERS(KERNEL_LOOP)

@@ -13,6 +13,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernels_bd.c \
 	backend_cpu/kernels_mlt.c \
 	backend_cpu/kernels_others.c \
+	backend_cpu/kernels_pt.c \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
 libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)

@@ -11,6 +11,5 @@
 #include "kernels/mlt.cl"
 #include "kernels/pt.cl"
 #include "kernels/trace.cl"
-#include "kernels/walk.cl"
 
 #endif

@@ -103,6 +103,7 @@ EXTRA_DIST += \
 	tests/support/test_matrix.h \
 	tests/support/test_util.h \
 	tests/support/verify_fixture.h \
+	tests/support/walk_kernels.h \
 	tests/math/platform_probe.cl
 
 if HAVE_OPENCL
@@ -119,6 +120,7 @@ tests_libfixtures_la_SOURCES = \
 	tests/support/geometry_fixture.c \
 	tests/support/render_fixture.c \
 	tests/support/verify_fixture.c \
+	tests/support/walk_kernels.c \
 	$(OPENCL_PROBE)
 
 tests_test_light_guide_SOURCES = tests/light/test_light_guide.c

@@ -8,5 +8,4 @@ SHARED_FILES += \
 	shared/kernels/mlt.cl \
 	shared/kernels/pt.cl \
 	shared/kernels/rounding.cl \
-	shared/kernels/trace.cl \
-	shared/kernels/walk.cl
+	shared/kernels/trace.cl

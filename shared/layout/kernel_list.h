@@ -21,18 +21,14 @@
     X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
       BUFFER_HITS, BUFFER_SPLATS)
 
-/* Ray queries, film sums, and the walks of tests. */
+/* Ray queries and film sums. */
 #define KERNEL_LIST_OTHERS(X)                                                                                          \
     X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
     X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
     X(film_add, 3, BUFFER_FRAME, BUFFER_SPLATS, BUFFER_FILM)                                                           \
     X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
       BUFFER_HITS)                                                                                                     \
-    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)        \
-    X(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)                                                          \
-    X(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
-      BUFFER_HITS, BUFFER_SHADOWS)                                                                                     \
-    X(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+    X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)
 
 #define KERNEL_LIST_BIDIRECTIONAL(X)                                                                                   \
     X(bd_start_light, 11, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,     \

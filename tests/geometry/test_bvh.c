@@ -5,10 +5,10 @@
 #include "geometry/bvh_scenes.h"
 #include "geometry/test_bvh.h"
 #include "kernels.h"
-#include "kernels/walk.cl"
 #include "layout/kernel_list.h"
 #include "layout/state.h"
 #include "rays_embree.h"
+#include "support/walk_kernels.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -121,10 +121,10 @@ static void *compare_thread(void *argument)
         if (block >= comparison->blocks)
             break;
         state->frame.pass.first_item = block * BLOCK;
-        kernel_run(KERNEL_walk_start, state->buffers, NULL, BLOCK);
+        kernel_loop_walk_start(state->buffers, NULL, BLOCK);
         for (int bounce = 0; bounce < BOUNCES; ++bounce) {
             closest_compare(comparison, state);
-            kernel_run(KERNEL_walk_extend, state->buffers, NULL, BLOCK);
+            kernel_loop_walk_extend(state->buffers, NULL, BLOCK);
             if (bounce % 4 == 0)
                 shadows_make(state);
             if (bounce % 2 == 0)

@@ -4,10 +4,10 @@
 #include "geometry/bvh_scenes.h"
 #include "geometry/test_bvh.h"
 #include "kernels.h"
-#include "kernels/walk.cl"
 #include "layout/kernel_list.h"
 #include "layout/state.h"
 #include "support/opencl_probe.h"
+#include "support/walk_kernels.h"
 
 #include <string.h>
 
@@ -129,14 +129,14 @@ static void walks_compare(const BvhCase *entry, bool specialised)
     Twin twin;
     uint hits = 0, shadows = 0, met = 0;
     if (twin_open(&twin, entry, specialised)) {
-        kernel_run(KERNEL_walk_start, twin.buffers, NULL, WALKS);
+        kernel_loop_walk_start(twin.buffers, NULL, WALKS);
         for (uint bounce = 0; bounce < BOUNCES; ++bounce) {
             if (bounce > 0)
                 rays_blank(&twin, BUFFER_RAYS, bounce);
             hits += twin_trace(&twin, KERNEL_trace_closest, "trace_closest", CLOSEST, 7, BUFFER_RAYS, BUFFER_HITS);
             for (uint t = 0; t < WALKS; ++t)
                 met += state_load(twin.buffers[BUFFER_HITS], STRIDE, HIT_PRIMITIVE, t) != NONE;
-            kernel_run(KERNEL_walk_extend, twin.buffers, NULL, WALKS);
+            kernel_loop_walk_extend(twin.buffers, NULL, WALKS);
             rays_blank(&twin, BUFFER_SHADOWS, bounce);
             shadows +=
                 twin_trace(&twin, KERNEL_trace_shadow, "trace_shadow", SHADOW, 6, BUFFER_SHADOWS, BUFFER_SHADOWS);

@@ -2,16 +2,39 @@
 #include "backend/group.h"
 #include "backend_cpu.h"
 #include "geometry/geometry_suites.h"
-#include "kernels/walk.cl"
+#include "kernels.h"
 #include "layout/kernel_list.h"
 #include "layout/state.h"
 #include "rays_embree.h"
 #include "support/geometry_fixture.h"
+#include "support/walk_kernels.h"
 
 #include <pthread.h>
 #include <string.h>
 
 #define ITEMS 5003u
+
+/* The kernels of walks as steps of a list. */
+enum { KERNEL_walk_start = KERNEL_COUNT, KERNEL_walk_extend, KERNEL_walk_splat };
+
+/* What the CPU backend calls in this program, which runs no other kernels: being defined here, it is not taken from
+ * kernels.c in the backend's library. */
+void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count)
+{
+    switch (kernel) {
+    case KERNEL_walk_start:
+        kernel_loop_walk_start(buffers, items, count);
+        break;
+    case KERNEL_walk_extend:
+        kernel_loop_walk_extend(buffers, items, count);
+        break;
+    case KERNEL_walk_splat:
+        kernel_loop_walk_splat(buffers, items, count);
+        break;
+    default:
+        ck_abort_msg("kernel %u is not one of walks", kernel);
+    }
+}
 
 static const Step WALK_STEPS[] = {{.kind = STEP_KERNEL, .kernel = KERNEL_walk_start},
                                   {.kind = STEP_TRACE_CLOSEST},

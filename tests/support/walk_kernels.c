@@ -1,8 +1,8 @@
-/* Random walks that need ray queries and nothing else, for the tests of backends: the bits of hits can be compared
- * across threads, backends and devices without a light or material in play. A walk leaves each hit in a uniform
- * direction, on either side, and casts a shadow ray to its previous point. */
-#ifndef TWINLIGHT_WALK_CL
-#define TWINLIGHT_WALK_CL
+/* Compiled and looped over as the CPU backend does its own kernels, but for buffers of any stride. */
+#define KERNEL_ANY_STRIDE
+#include "kernel_loop.h"
+
+#include "support/walk_kernels.h"
 
 #include "geometry/surface.h"
 #include "layout/diagnostics.h"
@@ -10,11 +10,6 @@
 #include "math/rng.h"
 #include "math/warp.h"
 
-#define WALK_STEP 0u
-#define WALK_HASH 1u /* of every hit so far */
-#define WALK_POINT 2u /* of the last hit, 3 */
-#define WALK_NG 5u /* 3; zero before the first hit */
-#define WALK_WORDS 8u
 #define WALK_STREAM 0x77616c6bu
 
 SHARED_FUNCTION uint walk_hash(uint h, uint word)
@@ -92,4 +87,7 @@ __kernel void walk_splat(__global const FrameParams *frame, __global const uint 
     state_store_vec3(splats, stride, SPLAT_COLOR, item, vec3((float)(h >> 16), (float)(h & 0xffffu), (float)occluded));
 }
 
-#endif
+KERNEL_LOOP(walk_start, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_RAYS)
+KERNEL_LOOP(walk_extend, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,
+            BUFFER_HITS, BUFFER_SHADOWS)
+KERNEL_LOOP(walk_splat, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)

@@ -1,0 +1,12 @@
+/* The kernels of path tracing and of the AOVs, which start with the same kernels. Before any shared header: inlines
+ * everything into their loops. */
+#ifdef NDEBUG
+#define PLATFORM_INLINE_ALL
+#endif
+
+#include "kernel_loop.h"
+
+#include "kernels/aov.cl"
+#include "kernels/pt.cl"
+
+KERNEL_LIST_PATHS(KERNEL_LOOP)
