@@ -37,10 +37,10 @@ static double part_of_chains(double luminance, double most, double threshold)
 }
 
 /* Sets weights in units of brightness: they add up to that of the next population. */
-static void candidates_weigh(const Candidates *candidates, const ChainPopulation *population, const uint *pool,
+static void candidates_weigh(const Candidates *candidates, const ChainPopulation *population, const PoolSamples *pool,
                              double threshold)
 {
-    uint chains = candidates->chains, samples = candidates->all - chains;
+    uint chains = candidates->chains, samples = pool->count;
     double most = population->samples / (population->samples + samples);
     for (uint i = 0; i < chains; ++i) {
         double change = candidates->change ? (double)candidates->change[word_of(population, CHAIN_PASS_CELL, i)] : 1.0;
@@ -52,11 +52,11 @@ static void candidates_weigh(const Candidates *candidates, const ChainPopulation
     /* Subtract the chains' part even if there are no chains because all earlier pools were black: otherwise the mean
      * over generations would be biased high. */
     for (uint i = 0; i < samples; ++i) {
-        double luminance = (double)bits_float(pool[(size_t)POOL_LUMINANCE * samples + i]);
-        double weight = (double)bits_float(pool[(size_t)POOL_WEIGHT * samples + i]) / samples;
+        double luminance = (double)bits_float(pool->words[(size_t)POOL_LUMINANCE * samples + i]);
+        double weight = (double)bits_float(pool->words[(size_t)POOL_WEIGHT * samples + i]) / samples;
         double part = part_of_chains(luminance, most, threshold);
         candidates->weights[chains + i] = weight * (1.0 - part);
-        candidates->keys[chains + i] = pool[(size_t)POOL_KEY * samples + i];
+        candidates->keys[chains + i] = pool->words[(size_t)POOL_KEY * samples + i];
     }
 }
 
@@ -91,16 +91,18 @@ static void starts_count(const Candidates *candidates, const uint *seeds, uint c
     }
 }
 
-static bool population_choose(ChainPopulation *population, Candidates *candidates, const uint *pool, double threshold,
-                              ChainOrder order, double offset, uint count, ChainStarts *starts, Error *error)
+static bool population_choose(ChainPopulation *population, const Candidates *candidates, const PoolSamples *pool,
+                              double threshold, const SystematicResampling *resampling, ChainStarts *starts,
+                              Error *error)
 {
+    const uint count = resampling->count;
     uint *words = calloc((size_t)count * population->fields, sizeof *words), *seeds = malloc(count * sizeof *seeds);
     double brightness = 0.0;
     bool done = words && seeds;
     if (done) {
         candidates_weigh(candidates, population, pool, threshold);
-        done = chain_seeds_choose(candidates->weights, candidates->keys, candidates->all, order, offset, count, seeds,
-                                  &brightness, error);
+        const SeedCandidates all = {.weights = candidates->weights, .keys = candidates->keys, .count = candidates->all};
+        done = chain_seeds_choose(&all, resampling, seeds, &brightness, error);
     } else {
         error_memory(error, (size_t)count * population->fields * sizeof *words, "chains");
     }
@@ -122,12 +124,11 @@ static bool population_choose(ChainPopulation *population, Candidates *candidate
     return true;
 }
 
-bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
-                            double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
-                            Error *error)
+bool chain_population_renew(ChainPopulation *population, const PoolSamples *pool, const float *change, double threshold,
+                            const SystematicResampling *resampling, ChainStarts *starts, Error *error)
 {
     Candidates candidates = {.change = change, .chains = population->brightness > 0.0 ? population->count : 0};
-    candidates.all = candidates.chains + pool_count;
+    candidates.all = candidates.chains + pool->count;
     candidates.weights = malloc(candidates.all * sizeof *candidates.weights);
     candidates.keys = malloc(candidates.all * sizeof *candidates.keys);
     bool done = candidates.weights && candidates.keys;
@@ -135,7 +136,7 @@ bool chain_population_renew(ChainPopulation *population, const uint *pool, uint 
         error_memory(error, candidates.all * (sizeof *candidates.weights + sizeof *candidates.keys), "a pool's paths");
     if (starts)
         *starts = (ChainStarts){0};
-    done = done && population_choose(population, &candidates, pool, threshold, order, offset, count, starts, error);
+    done = done && population_choose(population, &candidates, pool, threshold, resampling, starts, error);
     free(candidates.weights);
     free(candidates.keys);
     return done;

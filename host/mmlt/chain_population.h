@@ -31,13 +31,17 @@ typedef struct ChainPopulation {
 void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 
-/* Resamples this population, if it has chains, and a pool into the next population of `count` chains, ready for a pass.
- * pool: the words of pool_count samples, POOL_* at pool[POOL_* * pool_count + i] (chain/pool.h). change: per cell, the
- * target importance of this pool and the next pass over that of the previous pass; NULL: unchanged. threshold: see
- * above, in units of f. order, offset: as for chain_seeds_choose. starts: receives the counts of starting paths; may be
- * NULL. Fails only when out of memory; the population is then unchanged. */
-bool chain_population_renew(ChainPopulation *population, const uint *pool, uint pool_count, const float *change,
-                            double threshold, ChainOrder order, double offset, uint count, ChainStarts *starts,
-                            Error *error);
+/* The samples of a pool. */
+typedef struct PoolSamples {
+    const uint *words; /* POOL_* (chain/pool.h), [POOL_WORDS][count] */
+    uint count;
+} PoolSamples;
+
+/* Resamples this population, if it has chains, and a pool into the next population, ready for a pass. change: per cell,
+ * the target importance of this pool and the next pass over that of the previous pass; NULL: unchanged. threshold: see
+ * above, in units of f. starts: receives the counts of starting paths; may be NULL. Fails only when out of memory; the
+ * population is then unchanged. */
+bool chain_population_renew(ChainPopulation *population, const PoolSamples *pool, const float *change, double threshold,
+                            const SystematicResampling *resampling, ChainStarts *starts, Error *error);
 
 #endif

@@ -15,15 +15,16 @@ static uint key_rank(uint key, ChainOrder order)
 }
 
 /* Lists the candidates that have a path, sorted by key, in numbers[]; returns their number. A counting sort: stable. */
-static uint candidates_order(const uint *keys, uint candidates, ChainOrder order, uint *numbers)
+static uint candidates_order(const SeedCandidates *candidates, ChainOrder order, uint *numbers)
 {
+    const uint *keys = candidates->keys;
     uint starts[KEY_COUNT + 1] = {0}, found = 0;
-    for (uint i = 0; i < candidates; ++i)
+    for (uint i = 0; i < candidates->count; ++i)
         if (keys[i] != 0)
             ++starts[key_rank(keys[i], order) + 1];
     for (uint k = 0; k < KEY_COUNT; ++k)
         starts[k + 1] += starts[k];
-    for (uint i = 0; i < candidates; ++i)
+    for (uint i = 0; i < candidates->count; ++i)
         if (keys[i] != 0) {
             numbers[starts[key_rank(keys[i], order)]++] = i;
             ++found;
@@ -31,13 +32,14 @@ static uint candidates_order(const uint *keys, uint candidates, ChainOrder order
     return found;
 }
 
-bool chain_seeds_choose(const double *weights, const uint *keys, uint candidates, ChainOrder order, double offset,
-                        uint count, uint *seeds, double *sum, Error *error)
+bool chain_seeds_choose(const SeedCandidates *candidates, const SystematicResampling *resampling, uint *seeds,
+                        double *sum, Error *error)
 {
-    uint *numbers = malloc(candidates * sizeof *numbers);
+    const double *weights = candidates->weights, offset = resampling->offset;
+    uint *numbers = malloc(candidates->count * sizeof *numbers), count = resampling->count;
     if (!numbers)
-        return error_memory(error, candidates * sizeof *numbers, "the order of seeds");
-    uint found = candidates_order(keys, candidates, order, numbers), chosen = 0;
+        return error_memory(error, candidates->count * sizeof *numbers, "the order of seeds");
+    uint found = candidates_order(candidates, resampling->order, numbers), chosen = 0;
     double before = 0.0;
     *sum = 0.0;
     for (uint i = 0; i < found; ++i)

@@ -46,9 +46,12 @@ bool chains_estimator_start(ChainsEstimator *chains, const Generation *generatio
     ChainStarts starts;
     /* A pool sample of this contribution weight starts one chain on average. */
     double threshold = pool_estimator_brightness(pool, generation) * pool->count / count;
-    double offset = generation_random(generation->run, generation->index, GENERATION_RESAMPLING);
-    if (!chain_population_renew(population, pool->words, pool->count, change, threshold, order, offset, count, &starts,
-                                error))
+    const PoolSamples samples = {.words = pool->words, .count = pool->count};
+    const SystematicResampling resampling = {
+        .count = count,
+        .offset = generation_random(generation->run, generation->index, GENERATION_RESAMPLING),
+        .order = order};
+    if (!chain_population_renew(population, &samples, change, threshold, &resampling, &starts, error))
         return false;
     chains->own.list.pass_words = population->words;
     chains->own.list.pass_stride = count;

@@ -74,8 +74,9 @@ START_TEST(test_parts)
         uint found = 0;
         const uint count = 16;
         chains_make(&population, words);
-        ck_assert(chain_population_renew(&population, pool, POOL, _i == 0 ? NULL : change, threshold,
-                                         CHAIN_ORDER_STRATEGY, (k + 0.5) / OFFSETS, count, &starts, &error));
+        const SystematicResampling resampling = {count, (k + 0.5) / OFFSETS, CHAIN_ORDER_STRATEGY};
+        ck_assert(chain_population_renew(&population, &(PoolSamples){pool, POOL}, _i == 0 ? NULL : change, threshold,
+                                         &resampling, &starts, &error));
         for (uint i = 0; i < count; ++i) {
             uint depth = chain_key_depth(population.words[CHAIN_PASS_KEY * count + i]);
             uint item = population.words[CHAIN_PASS_ITEM * count + i];
@@ -112,7 +113,8 @@ END_TEST
 static void eight_renew(ChainPopulation *population, const uint *pool, ChainStarts *starts, ChainStatistics *statistics)
 {
     Error error = {0};
-    ck_assert(chain_population_renew(population, pool, 4, NULL, 0.0, CHAIN_ORDER_STRATEGY, 0.4, 8, starts, &error));
+    ck_assert(chain_population_renew(population, &(PoolSamples){pool, 4}, NULL, 0.0,
+                                     &(SystematicResampling){8, 0.4, CHAIN_ORDER_STRATEGY}, starts, &error));
     chain_statistics_starts(statistics, starts);
     for (uint i = 0; i < 8; ++i)
         population->words[CHAIN_PASS_LUMINANCE * 8 + i] = float_bits(1.0f);
@@ -204,8 +206,8 @@ static void generation_run(ChainPopulation *population, bool rare, uint repeat, 
         pool[POOL_KEY * SAMPLES + i] = f > 0.0f ? chain_key(3 + states[i], 0) : 0;
     }
     double offset = (random_four(repeat, generation, 0, 2, 7, 7).x[0] + 0.5) / 4294967296.0;
-    ck_assert(chain_population_renew(population, pool, SAMPLES, NULL, 4.0, CHAIN_ORDER_STRATEGY, offset, count, NULL,
-                                     &error));
+    ck_assert(chain_population_renew(population, &(PoolSamples){pool, SAMPLES}, NULL, 4.0,
+                                     &(SystematicResampling){count, offset, CHAIN_ORDER_STRATEGY}, NULL, &error));
     for (uint i = 0; population->brightness > 0.0 && i < count; ++i) {
         uint state = chain_key_depth(population->words[CHAIN_PASS_KEY * count + i]) - 3;
         state = state_move(state, repeat, generation, i);

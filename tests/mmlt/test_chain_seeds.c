@@ -27,7 +27,8 @@ START_TEST(test_counts)
     Error error = {0};
     pool_make(weights, keys, &sum);
     memset(times, 0, sizeof times);
-    ck_assert(chain_seeds_choose(weights, keys, POOL, order, offset, count, seeds, &found, &error));
+    ck_assert(chain_seeds_choose(&(SeedCandidates){weights, keys, POOL}, &(SystematicResampling){count, offset, order},
+                                 seeds, &found, &error));
     ck_assert_double_eq_tol(found, sum, 1e-9);
     for (uint i = 0; i < count; ++i) {
         uint key = keys[seeds[i]], last = i > 0 ? keys[seeds[i - 1]] : 0;
@@ -60,8 +61,8 @@ START_TEST(test_mean)
     Error error = {0};
     pool_make(weights, keys, &sum);
     for (uint k = 0; k < offsets; ++k) {
-        ck_assert(chain_seeds_choose(weights, keys, POOL, CHAIN_ORDER_STRATEGY, (k + 0.5) / offsets, count, seeds,
-                                     &found, &error));
+        const SystematicResampling resampling = {count, (k + 0.5) / offsets, CHAIN_ORDER_STRATEGY};
+        ck_assert(chain_seeds_choose(&(SeedCandidates){weights, keys, POOL}, &resampling, seeds, &found, &error));
         for (uint i = 0; i < count; ++i)
             ++times[seeds[i]];
     }
@@ -79,7 +80,8 @@ START_TEST(test_dark)
     uint seeds[4] = {7, 7, 7, 7};
     double found = 1.0;
     Error error = {0};
-    ck_assert(chain_seeds_choose(weights, keys, POOL, CHAIN_ORDER_STRATEGY, 0.5, 4, seeds, &found, &error));
+    ck_assert(chain_seeds_choose(&(SeedCandidates){weights, keys, POOL},
+                                 &(SystematicResampling){4, 0.5, CHAIN_ORDER_STRATEGY}, seeds, &found, &error));
     ck_assert_double_eq(found, 0.0);
     ck_assert_uint_eq(seeds[0], 7);
 }
