@@ -10,6 +10,10 @@
     const SceneView *scene =                                                                                           \
         ((void)(frame), (void)(guided_by), (void)(geometry), (void)(tables), (void)(texels), &kernel_scene)
 
+#define KERNEL_SCENE_PHOTONS(frame, guided_by, photon_map, geometry, tables, texels)                                   \
+    const SceneView *scene = ((void)(frame), (void)(guided_by), (void)(photon_map), (void)(geometry), (void)(tables),  \
+                              (void)(texels), &kernel_scene)
+
 /* Kernels in the loops of a chunk know their stride at compile time. Translation units whose kernels also run on other
  * buffers, in tests, define KERNEL_ANY_STRIDE. */
 #ifndef KERNEL_ANY_STRIDE
@@ -35,7 +39,8 @@ typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
 KERNEL_LIST(KERNEL_DECLARE)
 #undef KERNEL_DECLARE
 
-#define ARGUMENTS_3(a, b, c) buffers[a], buffers[b], buffers[c]
+#define ARGUMENTS_2(a, b) buffers[a], buffers[b]
+#define ARGUMENTS_3(a, b, c) ARGUMENTS_2(a, b), buffers[c]
 #define ARGUMENTS_4(a, b, c, d) ARGUMENTS_3(a, b, c), buffers[d]
 #define ARGUMENTS_5(a, b, c, d, e) ARGUMENTS_4(a, b, c, d), buffers[e]
 #define ARGUMENTS_6(a, b, c, d, e, f) ARGUMENTS_5(a, b, c, d, e), buffers[f]
@@ -44,6 +49,8 @@ KERNEL_LIST(KERNEL_DECLARE)
 #define ARGUMENTS_9(a, b, c, d, e, f, g, h, i) ARGUMENTS_8(a, b, c, d, e, f, g, h), buffers[i]
 #define ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j) ARGUMENTS_9(a, b, c, d, e, f, g, h, i), buffers[j]
 #define ARGUMENTS_11(a, b, c, d, e, f, g, h, i, j, k) ARGUMENTS_10(a, b, c, d, e, f, g, h, i, j), buffers[k]
+
+#define ARGUMENTS_12(a, b, c, d, e, f, g, h, i, j, k, l) ARGUMENTS_11(a, b, c, d, e, f, g, h, i, j, k), buffers[l]
 
 /* A translation unit that is compiled with other options defines other names. */
 #ifndef KERNEL_LOOP_NAME
@@ -58,6 +65,7 @@ KERNEL_LIST(KERNEL_DECLARE)
         kernel_scene = scene_view(buffers[BUFFER_FRAME], buffers[BUFFER_GEOMETRY], buffers[BUFFER_TABLES],             \
                                   buffers[BUFFER_TEXELS]);                                                             \
         kernel_scene.guide = buffers[BUFFER_GUIDE];                                                                    \
+        kernel_scene.photons = buffers[BUFFER_PHOTONS];                                                                \
         for (uint i = 0; i < count; ++i) {                                                                             \
             platform_item = items ? items[i] : i;                                                                      \
             name(ARGUMENTS_##n(__VA_ARGS__));                                                                          \

@@ -41,6 +41,7 @@ enum {
         SceneParams: STRUCT_SceneParams,                                                                               \
         FilmParams: STRUCT_FilmParams,                                                                                 \
         PathParams: STRUCT_PathParams,                                                                                 \
+        PhotonParams: STRUCT_PhotonParams,                                                                                 \
         PartitionParams: STRUCT_PartitionParams,                                                                       \
         PoolParams: STRUCT_PoolParams,                                                                                 \
         ChainParams: STRUCT_ChainParams,                                                                               \

@@ -11,6 +11,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernel_scene.h \
 	backend_cpu/kernels.c backend_cpu/kernels.h \
 	backend_cpu/kernels_bd.c \
+	backend_cpu/kernels_caustic.c \
 	backend_cpu/kernels_mlt.c \
 	backend_cpu/kernels_others.c \
 	backend_cpu/kernels_pt.c \

@@ -58,6 +58,7 @@ static void worker_arguments(Worker *worker, const StepList *list, void *argumen
         arguments[id] = worker->buffers[id];
     arguments[BUFFER_FRAME] = kernel_frame(worker->scene, &worker->frame, worker->kernel_frame);
     arguments[BUFFER_GUIDE] = kernel_guide(list->guide, worker->kernel_guide);
+    arguments[BUFFER_PHOTONS] = list->photons ? list->photons->words : NULL;
     arguments[BUFFER_PASS] = list->pass_words;
     /* Kernels take the scene as pointers to const, which the array of arguments cannot express. */
     arguments[BUFFER_GEOMETRY] = (void *)(uintptr_t)scene->geometry;

@@ -64,7 +64,7 @@ static void events_release(Batch *batch)
 #define KERNEL_ARGUMENTS(name, count, ...) {count, {__VA_ARGS__}},
 static const struct KernelArguments {
     uint count;
-    BufferId buffers[11];
+    BufferId buffers[12];
 } ARGUMENTS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ARGUMENTS)};
 #undef KERNEL_ARGUMENTS
 
@@ -80,6 +80,8 @@ static cl_mem argument(const Launch *launch, BufferId id)
         return memory->film;
     case BUFFER_GUIDE:
         return memory->guide;
+    case BUFFER_PHOTONS:
+        return memory->photons;
     case BUFFER_GEOMETRY:
     case BUFFER_TABLES:
     case BUFFER_TEXELS:

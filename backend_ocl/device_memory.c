@@ -106,6 +106,8 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
             return false;
     if (!buffer_make(memory, &memory->guide, CL_MEM_READ_ONLY, sizeof(Guide), error))
         return false;
+    if (!buffer_make(memory, &memory->photons, CL_MEM_READ_ONLY, sizeof(uint), error))
+        return false;
     memory->scene_bytes += sizeof(Guide);
     memory->bytes = memory->scene_bytes;
     return true;
@@ -291,11 +293,29 @@ bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error
     return true;
 }
 
+bool device_memory_photons(DeviceMemory *memory, const PhotonMap *photons, Error *error)
+{
+    if (!photons || !photons->words || photons->words == memory->photon_words)
+        return true;
+    size_t bytes = photons->word_count * sizeof(uint);
+    buffer_release(&memory->photons);
+    memory->photon_words = NULL;
+    if (!buffer_make(memory, &memory->photons, CL_MEM_READ_ONLY, bytes, error))
+        return false;
+    cl_int status =
+        clEnqueueWriteBuffer(memory->queue, memory->photons, CL_TRUE, 0, bytes, photons->words, 0, NULL, NULL);
+    memory->photon_words = photons->words;
+    memory->bytes += bytes - memory->photon_bytes;
+    memory->photon_bytes = bytes;
+    return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying photons", status);
+}
+
 void device_memory_destroy(DeviceMemory *memory)
 {
     state_release(memory);
     buffer_release(&memory->film);
     buffer_release(&memory->guide);
+    buffer_release(&memory->photons);
     for (int id = 0; id <= BUFFER_BVH; ++id)
         buffer_release(&memory->scene[id]);
     memset(memory, 0, sizeof *memory);

@@ -35,6 +35,9 @@ typedef struct DeviceMemory {
     cl_mem state[BUFFER_COUNT]; /* per-item buffers except splats; diagnostics; counts */
     BatchMemory batches[BATCH_SLOTS];
     cl_mem guide; /* of the current pass */
+    cl_mem photons; /* of the rendering; at first a placeholder */
+    const uint *photon_words; /* those that it holds a copy of */
+    size_t photon_bytes;
     cl_mem film; /* sums of the film, if the device adds splats (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* for which the state was allocated */
     uint batch; /* items per batch; 0: no state yet */
@@ -55,6 +58,9 @@ bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *er
 
 /* Allocates a film of `bytes` bytes, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error);
+
+/* Copies a map of photons to the device unless it is there already. photons: may be NULL. No command may be in flight. */
+bool device_memory_photons(DeviceMemory *memory, const PhotonMap *photons, Error *error);
 
 void device_memory_destroy(DeviceMemory *memory);
 

@@ -22,6 +22,8 @@ bool pass_data_begin(DeviceMemory *memory, const FrameParams *frame, const StepL
     if (list->guide)
         status = clEnqueueWriteBuffer(memory->queue, memory->guide, CL_TRUE, 0, sizeof *list->guide, list->guide, 0,
                                       NULL, NULL);
+    if (status == CL_SUCCESS && !device_memory_photons(memory, list->photons, error))
+        return false;
     if (status != CL_SUCCESS || !list->pass_words || frame->pass.item_count == 0)
         return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying a pass's guide", status);
     Region region = region_of(frame, list);

@@ -5,10 +5,12 @@
 #include "kernels/aov.cl"
 #include "kernels/bd_connect.cl"
 #include "kernels/bd_walk.cl"
+#include "kernels/caustic.cl"
 #include "kernels/count.cl"
 #include "kernels/film_add.cl"
 #include "kernels/ibpt.cl"
 #include "kernels/mlt.cl"
+#include "kernels/photon.cl"
 #include "kernels/pt.cl"
 #include "kernels/trace.cl"
 

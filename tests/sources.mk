@@ -8,6 +8,7 @@ check_PROGRAMS += \
 	tests/test_analytic \
 	tests/test_bench \
 	tests/test_bidirectional \
+	tests/test_caustic \
 	tests/test_combination \
 	tests/test_bsdf \
 	tests/test_bvh \
@@ -125,6 +126,7 @@ tests_libfixtures_la_SOURCES = \
 
 tests_test_light_guide_SOURCES = tests/light/test_light_guide.c
 tests_test_bench_SOURCES = tests/bench/test_bench.c
+tests_test_caustic_SOURCES = tests/path/test_caustic.c
 tests_test_chain_population_SOURCES = tests/mmlt/test_chain_population.c
 tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
 tests_test_chain_statistics_SOURCES = tests/mmlt/test_chain_statistics.c

@@ -19,6 +19,7 @@
 typedef enum BufferId {
     BUFFER_FRAME,
     BUFFER_GUIDE, /* StepList.guide */
+    BUFFER_PHOTONS, /* StepList.photons */
     BUFFER_GEOMETRY,
     BUFFER_TABLES,
     BUFFER_TEXELS,
@@ -66,6 +67,14 @@ typedef struct StateField {
     const char *name;
 } StateField;
 
+/* The words of BUFFER_PHOTONS (layout/photon_map.h) and the parameters that go with them. They do not change during a
+ * rendering. */
+typedef struct PhotonMap {
+    uint *words; /* NULL: no photons */
+    size_t word_count;
+    PhotonParams params;
+} PhotonMap;
+
 typedef struct StepList {
     const Step *steps;
     size_t count;
@@ -76,6 +85,7 @@ typedef struct StepList {
     uint pass_fields;
     uint pass_stride;
     const Guide *guide; /* BUFFER_GUIDE during a pass; NULL: none */
+    const PhotonMap *photons; /* BUFFER_PHOTONS during a pass; NULL: none */
     const StateField *fields; /* of BUFFER_PATHS, whose layout is up to the integrator; may be NULL */
     size_t field_count;
 } StepList;

@@ -34,6 +34,13 @@ void recorder_skip(Recorder *recorder, size_t target)
     record(recorder, (Step){.kind = STEP_SKIP_IF_IDLE, .target = (unsigned)target});
 }
 
+void recorder_skips_end(Recorder *recorder)
+{
+    for (size_t i = 0; i < recorder->count; ++i)
+        if (recorder->steps[i].kind == STEP_SKIP_IF_IDLE && recorder->steps[i].target == (unsigned)RECORDER_END)
+            recorder->steps[i].target = (unsigned)recorder->count;
+}
+
 void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned extend)
 {
     size_t each = extend == KERNEL_COUNT ? 3 : 4, end = recorder->count + (segments - (size_t)1) * each + 2;

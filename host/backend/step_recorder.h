@@ -21,6 +21,10 @@ void recorder_skip(Recorder *recorder, size_t target);
  * `extend` the path. KERNEL_COUNT for `extend`: `shade` does both. */
 void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned extend);
 
+/* Target of a skip to where recorder_skips_end is called. */
+#define RECORDER_END ((size_t)-1)
+void recorder_skips_end(Recorder *recorder);
+
 /* The recorded list, which takes ownership of the steps: `path_words` words per path, rays, hits, shadow rays and
  * splats. An integrator adds further buffers to words_per_item. */
 StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count);

@@ -148,8 +148,11 @@ static void task_progress(void *context, const RenderProgress *progress)
 static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *path, BenchRecord *record,
                         bool *finished, Error *error)
 {
-    const RenderOptions options = {
-        .seconds = task->seconds, .max_depth = shop->scene->max_depth, .seed = task->seed, .stop = interrupt_flag()};
+    const RenderOptions options = {.seconds = task->seconds,
+                                   .max_depth = shop->scene->max_depth,
+                                   .seed = task->seed,
+                                   .photons = PHOTONS_DEFAULT,
+                                   .stop = interrupt_flag()};
     const SceneSettings *settings = &shop->data.settings;
     Progress progress;
     const RenderCallbacks callbacks = {task_progress, NULL, &progress};

@@ -135,11 +135,37 @@ static bool outputs_name(RenderJob *job, Error *error)
                               "give each its own name, with --output, --png, --stats, --trace and --dump-bad", error);
 }
 
+static RenderOptions job_options(RenderJob *job)
+{
+    const RenderCommand *command = job->command;
+    const SceneSettings *settings = &job->scene.settings;
+    RenderOptions options = {
+        .samples = (unsigned)command->samples,
+        .seconds = command->seconds,
+        .max_depth = settings->max_depth,
+        .chains = command->chains,
+        .bad_chains = job->bad_chains.stream,
+        .layers = job->layers.wanted != 0 ? &job->layers : NULL,
+        .balance = command->balance,
+        .only_strategy = command->only_strategy,
+        .strategy = {command->strategy[0], command->strategy[1]},
+        .unweighted = command->unweighted,
+        .seed = command->seed,
+        .photons = command->photons,
+        .save_every = command->save_every,
+        .stop = interrupt_flag(),
+    };
+    if (options.samples == 0 && options.seconds == 0.0)
+        options.samples = (unsigned)settings->samples;
+    return options;
+}
+
 static bool scene_load(RenderJob *job, Error *error)
 {
     if (!pbrt_load(job->command->scene, job->command->lenient, &job->scene, error))
         return false;
-    scene_advise(&job->scene);
+    const RenderOptions options = job_options(job);
+    scene_advise(&job->scene, render_photons(job->integrator, &options) > 0);
     return true;
 }
 
@@ -173,30 +199,6 @@ static bool job_save(void *context, const Film *film, Error *error)
 {
     RenderJob *job = context;
     return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
-}
-
-static RenderOptions job_options(RenderJob *job)
-{
-    const RenderCommand *command = job->command;
-    const SceneSettings *settings = &job->scene.settings;
-    RenderOptions options = {
-        .samples = (unsigned)command->samples,
-        .seconds = command->seconds,
-        .max_depth = settings->max_depth,
-        .chains = command->chains,
-        .bad_chains = job->bad_chains.stream,
-        .layers = job->layers.wanted != 0 ? &job->layers : NULL,
-        .balance = command->balance,
-        .only_strategy = command->only_strategy,
-        .strategy = {command->strategy[0], command->strategy[1]},
-        .unweighted = command->unweighted,
-        .seed = command->seed,
-        .save_every = command->save_every,
-        .stop = interrupt_flag(),
-    };
-    if (options.samples == 0 && options.seconds == 0.0)
-        options.samples = (unsigned)settings->samples;
-    return options;
 }
 
 static bool film_render(RenderJob *job, Error *error)
@@ -372,7 +374,7 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command = {.png = true, .frame = -1};
+    RenderCommand command = {.png = true, .frame = -1, .photons = PHOTONS_DEFAULT};
     OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
     if (end != OPTIONS_READ)
         return options_status(end);

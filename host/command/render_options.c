@@ -41,6 +41,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
     [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
+    [OPTION_PHOTONS] = {"photons", 0, "N",
+                        "pt, mmlt: find caustics by at most this many photons (default: 131072 with mmlt, else 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D",
                           "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
@@ -82,6 +84,11 @@ static bool number_set(const Parse *parse, int option, const char *value, Error 
         return option_whole(name, value, 1, 0x7fffffff, &command->samples, error);
     case OPTION_SEED:
         return option_whole(name, value, 0, UINT64_MAX, &command->seed, error);
+    case OPTION_PHOTONS:
+        if (!option_whole(name, value, 0, 1u << 20, &whole, error))
+            return false;
+        command->photons = (unsigned)whole;
+        return true;
     case OPTION_THREADS:
         if (!option_whole(name, value, 1, 1024, &whole, error))
             return false;

@@ -35,6 +35,7 @@ typedef struct RenderCommand {
     double seconds;
     int threads;
     uint64_t seed;
+    unsigned photons;
     int max_depth;
     int resolution[2];
     bool has_crop;
@@ -76,6 +77,7 @@ typedef enum RenderOption {
     OPTION_DUMP_BAD,
     OPTION_THREADS,
     OPTION_SEED,
+    OPTION_PHOTONS,
     OPTION_MAX_DEPTH,
     OPTION_RESOLUTION,
     OPTION_CROP,

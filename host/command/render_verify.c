@@ -5,6 +5,8 @@
 #include "film/film.h"
 #include "chain/chain.h"
 #include "mmlt/mmlt.h"
+#include "render/photon_map.h"
+#include "render/render.h"
 #include "render/verify.h"
 
 #include <limits.h>
@@ -66,13 +68,17 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
                      .options = &few,
                      .film = &film,
                      .guide = &scene->guide};
-    StepList list;
+    StepList list = {0};
     few.chains.steps = STEPS_COMPARED;
     render_frame(integrator, scene, options, &run.frame);
+    if (!render_photons_make(&run, integrator, scene, error))
+        return false;
     if (integrator->list) {
-        bool same = integrator->list(&run.frame, &list, error) &&
-                    list_verify(sides, "", &run.frame, &list, items, options->stop, error);
+        bool same = integrator->list(&run.frame, &list, error);
+        list.photons = &run.photons;
+        same = same && list_verify(sides, "", &run.frame, &list, items, options->stop, error);
         step_list_destroy(&list);
+        photon_map_destroy(&run.photons);
         return same;
     }
     const SceneSettings *settings = &scene->settings;
@@ -81,6 +87,7 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
     run.crop_pixels = film_pixels(&film);
     same = same && mmlt_verify(sides, &run, items, options->stop, error);
     film_destroy(&film);
+    photon_map_destroy(&run.photons);
     return same;
 }
 

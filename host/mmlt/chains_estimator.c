@@ -29,6 +29,7 @@ bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint s
     chains->steps = steps;
     chains->groups_each = groups;
     chains->own.list.guide = guide;
+    chains->own.list.photons = &run->photons;
     for (int replica = 0; replica < REPLICAS; ++replica)
         chain_population_init(&chains->populations[replica], chains->own.list.pass_fields);
     return true;

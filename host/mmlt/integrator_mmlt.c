@@ -9,6 +9,7 @@
 #include "mmlt/mmlt.h"
 
 #include "base/timing.h"
+#include "mmlt/tuning.h"
 #include "render/integrator.h"
 #include "render/layers.h"
 
@@ -55,6 +56,8 @@ const Integrator *integrator_mmlt(void)
                                           .depth_limit = MMLT_DEPTH_LIMIT,
                                           .strategies = STRATEGIES_BDPT,
                                           .guides = true,
+                                          .photons = true,
+                                          .photons_default = MMLT_PHOTONS,
                                           .render = mmlt_render};
     return &integrator;
 }

@@ -19,6 +19,7 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool dire
     estimator_film_params(&paths->own, &paths->frame.film);
     bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);
     paths->own.list.guide = guide;
+    paths->own.list.photons = &run->photons;
     return made;
 }
 

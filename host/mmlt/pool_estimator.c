@@ -28,6 +28,7 @@ bool pool_estimator_list(PoolEstimator *pool, const RenderRun *run, Error *error
     estimator_film_params(&pool->own, &frame.film);
     bool made = bdpt_list(&frame, &pool->own.list, error);
     pool->own.list.guide = pool->guide;
+    pool->own.list.photons = &run->photons;
     return made;
 }
 

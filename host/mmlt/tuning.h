@@ -36,6 +36,9 @@
  * glossy surfaces; docs/TUNING.md. */
 #define SHIFTS 0.75f
 
+/* Most photons; more cost memory and time before the first sample, fewer predict directions less well. */
+#define MMLT_PHOTONS 131072u
+
 /* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
 #define PATHS_FIRST 1.0
 #define PATHS_DIRECT 0.5

@@ -13,6 +13,8 @@ typedef struct Integrator {
     const char *summary;
     int depth_limit; /* most segments of a path */
     uint strategies; /* STRATEGIES_* */
+    bool photons; /* draws directions by caustic photons (path/caustic.h) if RenderOptions.photons says so */
+    unsigned photons_default; /* of a rendering that does not say how many */
     bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
     /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
      * is set. */

@@ -3,39 +3,87 @@
 
 #include "backend/step_recorder.h"
 #include "layout/kernel_list.h"
+#include "path/caustic_rest.h"
 #include "path/path_state.h"
 
 #include <assert.h>
 
-/* Records two steps around the loop, seven per segment, and two in the last. Splitting off direct light adds two in the
- * second, which is never skipped. Splitting by depth adds two in each later one but the last and disables skips: a
- * skipped splat would repeat a stale one. */
-static void steps_record(Recorder *recorder, uint max_depth, bool split, bool split_depths)
+/* The kernels of a list. */
+typedef struct PathSteps {
+    uint max_depth;
+    bool split; /* direct light is splatted apart */
+    bool split_depths; /* what each segment brings is splatted apart */
+    bool caustics;
+} PathSteps;
+
+/* Directions drawn by photons. */
+static void caustics_record(Recorder *recorder)
 {
-    size_t last = 1 + (size_t)(max_depth - 1) * 7 + 2 + (split ? 1 : 0);
+    size_t end = recorder->count + 1 + 3 * (CAUSTIC_VERTICES + 1) - 1;
+    recorder_kernel(recorder, KERNEL_pt_start_caustics, false);
+    for (uint i = 0; i <= CAUSTIC_VERTICES; ++i) {
+        recorder_step(recorder, STEP_TRACE_CLOSEST);
+        if (i > 0)
+            recorder_skip(recorder, end);
+        recorder_kernel(recorder, KERNEL_pt_walk_caustics, true);
+    }
+    assert(recorder->count == end);
+}
+
+/* From a vertex to the next ray. Kernels after caustics see no live rays. */
+static void vertex_record(Recorder *recorder, const PathSteps *steps)
+{
+    recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
+    recorder_step(recorder, STEP_TRACE_SHADOW);
+    recorder_kernel(recorder, KERNEL_pt_add_lights, true);
+    if (steps->caustics)
+        caustics_record(recorder);
+    recorder_kernel(recorder, KERNEL_pt_extend_paths, !steps->caustics);
+}
+
+/* What is splatted when a path has ended, or the caustics that belong to it. */
+static void end_record(Recorder *recorder, const PathSteps *steps)
+{
+    if (steps->caustics && steps->split) {
+        recorder_kernel(recorder, KERNEL_pt_splat_caustics, false);
+        recorder_step(recorder, STEP_SPLAT);
+    } else if (steps->caustics) {
+        recorder_kernel(recorder, KERNEL_pt_add_caustics, false);
+    }
+    recorder_kernel(recorder, KERNEL_pt_splat, false);
+}
+
+/* The second segment, with which direct light ends, is never skipped if that is split off. Splitting by depth disables
+ * skips: a skipped splat would repeat a stale one. Without caustics
+ * skips come before the ray query, which the device is then still busy with; with caustics the latest query before that
+ * place is one of theirs. */
+static void steps_record(Recorder *recorder, const PathSteps *steps)
+{
+    const bool skips = !steps->split_depths;
     recorder_kernel(recorder, KERNEL_pt_start_paths, false);
     for (uint depth = 1;; ++depth) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
+        if (skips && steps->caustics && depth > (steps->split ? 2u : 1u))
+            recorder_skip(recorder, RECORDER_END);
         recorder_kernel(recorder, KERNEL_pt_shade_hits, true);
-        if (split && depth == 2) {
+        if (steps->split && depth == 2 && steps->caustics) {
+            recorder_kernel(recorder, KERNEL_pt_keep_direct, false);
+        } else if (steps->split && depth == 2) {
             recorder_kernel(recorder, KERNEL_pt_splat_direct, false);
             recorder_step(recorder, STEP_SPLAT);
         }
-        if (depth == max_depth)
+        if (depth == steps->max_depth)
             break;
-        if (split_depths && depth > 2) {
+        if (steps->split_depths && depth > 2) {
             recorder_kernel(recorder, KERNEL_pt_splat, false);
             recorder_step(recorder, STEP_SPLAT);
         }
-        recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
-        recorder_step(recorder, STEP_TRACE_SHADOW);
-        recorder_kernel(recorder, KERNEL_pt_add_lights, true);
-        recorder_kernel(recorder, KERNEL_pt_extend_paths, true);
-        if (!split_depths && (!split || depth > 1))
-            recorder_skip(recorder, last);
+        vertex_record(recorder, steps);
+        if (skips && !steps->caustics && (!steps->split || depth > 1))
+            recorder_skip(recorder, RECORDER_END);
     }
-    assert(split_depths || recorder->count == last);
-    recorder_kernel(recorder, KERNEL_pt_splat, false);
+    recorder_skips_end(recorder);
+    end_record(recorder, steps);
 }
 
 #define PATH_FIELD(field, words, is_float, name)                                                                       \
@@ -69,22 +117,37 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_LIMIT, 1, true, "limit"),
     PATH_FIELD(PATH_SURVIVED, 1, true, "survived"),
     PATH_FIELD(PATH_GATHERED, 1, false, "gathered"),
+    PATH_FIELD(PATH_RECEIVER, RECEIVER_WORDS, true, "receiver"),
+    PATH_FIELD(PATH_DELTA, 1, false, "delta lobes"),
+    PATH_FIELD(PATH_CAUSTIC_RADIANCE, 3, true, "radiance by photons"),
+    PATH_FIELD(PATH_CAUSTIC_SEGMENTS, 1, false, "segments of the caustic path"),
+    PATH_FIELD(PATH_CAUSTIC_LIGHT, 1, false, "light of its photon"),
+    PATH_FIELD(PATH_CAUSTIC_BETA, 3, true, "throughput of the caustic path"),
 };
 #undef PATH_FIELD
 
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 6 + (size_t)frame->path.max_depth * 9, error))
+    const PathSteps steps = {.max_depth = frame->path.max_depth,
+                             .split = frame->partition.split_direct != 0,
+                             .split_depths = frame->film.split_depths != 0,
+                             .caustics = frame->photons.count > 0};
+    size_t per_segment = 9 + (steps.caustics ? 1 + 3 * (CAUSTIC_VERTICES + 1) : 0);
+    if (!recorder_init(&recorder, 8 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
-    steps_record(&recorder, frame->path.max_depth, frame->partition.split_direct != 0, frame->film.split_depths != 0);
+    steps_record(&recorder, &steps);
     *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
     return true;
 }
 
 const Integrator *integrator_pt(void)
 {
-    static const Integrator integrator = {
-        .name = "pt", .summary = "path tracing", .depth_limit = 65535, .strategies = STRATEGIES_PT, .list = pt_list};
+    static const Integrator integrator = {.name = "pt",
+                                          .summary = "path tracing",
+                                          .depth_limit = 65535,
+                                          .strategies = STRATEGIES_PT,
+                                          .photons = true,
+                                          .list = pt_list};
     return &integrator;
 }

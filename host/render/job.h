@@ -27,12 +27,16 @@ typedef struct ChainOptions {
     int shown; /* for tests: 1 + ESTIMATOR_*, to show that estimator and what it leaves to chains; 0: all */
 } ChainOptions;
 
+/* As many photons as the integrator draws by if nothing else is said. */
+#define PHOTONS_DEFAULT 0xffffffffu
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */
     double seconds; /* 0: no limit but `samples` */
     int max_depth; /* segments, >= 1 */
     uint64_t seed;
+    unsigned photons; /* of caustics, at most (path/photon.h); 0: none; PHOTONS_DEFAULT */
     bool balance; /* balance heuristic; otherwise the power heuristic */
     bool only_strategy; /* show one strategy only */
     unsigned strategy[2]; /* s, t */

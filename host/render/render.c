@@ -7,6 +7,7 @@
 #include "base/timing.h"
 #include "layout/diagnostics.h"
 #include "render/film_pilot.h"
+#include "render/photon_map.h"
 
 #include <math.h>
 #include <string.h>
@@ -89,6 +90,7 @@ static bool samples_render(const Integrator *integrator, RenderRun *run, Error *
     loop.total = run->crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
     if (!integrator->list(&run->frame, &loop.list, error))
         return false;
+    loop.list.photons = &run->photons;
     bool done = passes_run(&loop, error);
     step_list_destroy(&loop.list);
     return done;
@@ -132,6 +134,24 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
         frame->scene.guide_count = 0;
 }
 
+unsigned render_photons(const Integrator *integrator, const RenderOptions *options)
+{
+    bool by_depth = options->layers && (options->layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0;
+    bool alone = integrator->render && (options->chains.paper || options->chains.chains_only);
+    if (!integrator->photons || by_depth || alone)
+        return 0;
+    return options->photons == PHOTONS_DEFAULT ? integrator->photons_default : options->photons;
+}
+
+bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
+{
+    if (!photon_map_make(run, scene, render_photons(integrator, run->options), &run->photons, error))
+        return false;
+    run->photons.params.everywhere = integrator->strategies == STRATEGIES_PT;
+    run->frame.photons = run->photons.params;
+    return true;
+}
+
 bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error *error)
 {
     const Integrator *integrator = task->integrator;
@@ -153,8 +173,10 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     RenderLayers *layers = options->layers;
     bool done =
         (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
+        render_photons_make(&run, integrator, scene, error) &&
         (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.scene.world_radius, error)) &&
         (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
+    photon_map_destroy(&run.photons);
     return done;
 }

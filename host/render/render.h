@@ -7,6 +7,7 @@
 #include "render/chain_statistics.h"
 #include "render/integrator.h"
 #include "render/job.h"
+#include "render/run.h"
 #include "scene/scene.h"
 
 #define DIAGNOSTIC_NAMES_MAX 16
@@ -33,6 +34,14 @@ typedef struct RenderTask {
     bool keep_quantum; /* of the film; otherwise a pilot (film_pilot_run) sets it */
     const RenderCallbacks *callbacks; /* may be NULL */
 } RenderTask;
+
+/* Number of caustic photons that a rendering asks for: none for images by depth, which have no layer for what photons
+ * bring, and none where chains alone are shown, since path tracing draws by photons. */
+unsigned render_photons(const Integrator *integrator, const RenderOptions *options);
+
+/* Makes the photons of a run, to be destroyed by photon_map_destroy (render/photon_map.h): run->photons, none if there
+ * are none to be found, and their parameters in the run's frame. */
+bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error);
 
 /* Fills in *frame for the scene and the options, starting at the first item. max_depth is limited to what the
  * integrator supports. */

@@ -13,6 +13,7 @@ typedef struct RenderRun {
     const RenderCallbacks *callbacks; /* may be NULL */
     FrameParams frame; /* from render_frame */
     const Guide *guide; /* the scene's */
+    PhotonMap photons;
     Film *film;
     uint64_t crop_pixels;
     uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */

@@ -207,6 +207,16 @@ bool scene_material_is_rough(const Material *m)
            (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
 }
 
+bool scene_has_delta(const Scene *scene)
+{
+    for (size_t i = 0; i < scene->materials.count; ++i) {
+        const Material *m = &ARRAY_AT(&scene->materials, Material, i);
+        if (m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_DELTA) != 0u && !scene_material_is_rough(m))
+            return true;
+    }
+    return false;
+}
+
 static uint material_features(const Material *m)
 {
     uint features = FEATURE_OF_MATERIAL[m->kind];

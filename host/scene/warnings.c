@@ -25,14 +25,14 @@ static void strays_report(const Scene *scene)
                     count, count == 1 ? "reaches" : "reach", (double)strays, (double)others);
 }
 
-void scene_advise(const Scene *scene)
+void scene_advise(const Scene *scene, bool photons)
 {
     bool delta = false;
     for (size_t i = 0; i < scene->materials.count; ++i)
         delta = delta || material_is_delta(&ARRAY_AT(&scene->materials, Material, i));
-    if (delta && (scene->features & FEATURE_DELTA_LIGHT) != 0)
+    if (delta && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
         log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
-                              "and after a rough surface is found by no integrator and is missing: replace a sun by an "
-                              "infinite light's image, a lamp by a small emissive sphere");
+                              "and after a rough surface is found by photons alone and is missing: render by mmlt, or "
+                              "by pt with --photons=131072");
     strays_report(scene);
 }

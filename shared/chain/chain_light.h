@@ -79,6 +79,8 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
             alpha = light_hit_alpha(scene, walk_hit->light, &walk_hit->surface);
         }
     }
+    color = vec3_scale(color, receiver_rest(scene, paths, BD_RECEIVER, item,
+                                            state_load(paths, stride, BD_CAMERA_DELTA, item), d - 1u));
     if (vec3_is_zero(color))
         return;
     Random4 film = chain_camera(frame, paths, item);

@@ -79,6 +79,9 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
+    contribution =
+        vec3_scale(contribution, receiver_rest(scene, paths, BD_RECEIVER, item,
+                                               state_load(paths, stride, BD_CAMERA_DELTA, item), depth - 1u));
     if (frame->pool.enabled != 0u)
         contribution = bd_offer_met(scene, paths, item, depth, contribution);
     if (frame->film.split_depths != 0u)
@@ -89,10 +92,11 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
 /* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex with its densities. Walks that
  * miss or have max_depth segments end. */
 __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
-                            __global const uint *restrict geometry, __global const uint *restrict tables,
-                            __global const uint *restrict texels, __global uint *restrict paths,
-                            __global uint *restrict rays, __global const uint *restrict hits,
-                            __global uint *restrict vertices, __global uint *restrict densities)
+                            __global const uint *restrict photons, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict rays,
+                            __global const uint *restrict hits, __global uint *restrict vertices,
+                            __global uint *restrict densities)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
@@ -100,7 +104,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, BD_DEPTH, item);
     if (depth == 0u)
         return;
-    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
+    KERNEL_SCENE_PHOTONS(frame, guide, photons, geometry, tables, texels);
     uint side = state_load(paths, stride, BD_SIDE, item);
     WalkHit walk_hit = {0};
     walk_hit.before = vertex_base(frame, side, depth - 1u);

@@ -8,26 +8,10 @@
 
 #include "chain/chain_light.h"
 #include "chain/mutation.h"
+#include "layout/pass_data.h"
 #include "path/bd_connect.h"
 #include "path/bd_start.h"
 #include "path/bd_weight.h"
-
-/* Index of a field of an item in BUFFER_PASS, which has its own stride. */
-SHARED_FUNCTION size_t pass_place(__global const FrameParams *frame, uint field, uint item)
-{
-    return (size_t)field * frame->pass.data_stride + (frame->pass.first_item + item - frame->pass.data_first);
-}
-
-SHARED_FUNCTION uint pass_load(__global const FrameParams *frame, __global const uint *pass, uint field, uint item)
-{
-    return pass[pass_place(frame, field, item)];
-}
-
-SHARED_FUNCTION void pass_store(__global const FrameParams *frame, __global uint *pass, uint field, uint item,
-                                uint value)
-{
-    pass[pass_place(frame, field, item)] = value;
-}
 
 /* From: the candidates of a pool. To: the contribution weight of each sample, and the path kept of it. */
 __kernel void pool_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
@@ -210,9 +194,9 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, Walk walk, __global u
  * = 0, at the last vertex, the emission found there. A walk ends at its last vertex, by absorption, or where it can no
  * longer make a path. */
 __kernel void mlt_walk(__global const FrameParams *restrict frame, __global const Guide *restrict guide,
-                       __global const uint *restrict geometry, __global const uint *restrict tables,
-                       __global const uint *restrict texels, __global uint *restrict paths,
-                       __global uint *restrict rays, __global const uint *restrict hits,
+                       __global const uint *restrict photons, __global const uint *restrict geometry,
+                       __global const uint *restrict tables, __global const uint *restrict texels,
+                       __global uint *restrict paths, __global uint *restrict rays, __global const uint *restrict hits,
                        __global uint *restrict vertices, __global uint *restrict densities,
                        __global uint *restrict diagnostics)
 {
@@ -222,7 +206,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
         return;
-    KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
+    KERNEL_SCENE_PHOTONS(frame, guide, photons, geometry, tables, texels);
     uint key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item), d = chain_key_depth(key), s = chain_key_s(key);
     uint bank = chain_bank(paths, stride, item, side), base = chain_vertex_base(side, bank);
     uint last = side == SIDE_LIGHT ? s - 1u : s == 0u ? d : d - s;

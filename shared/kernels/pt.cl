@@ -13,6 +13,7 @@
 #include "layout/diagnostics.h"
 #include "layout/item.h"
 #include "light/light.h"
+#include "path/caustic_rest.h"
 #include "path/mis.h"
 #include "path/partition.h"
 #include "path/path_random.h"
@@ -72,6 +73,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
     }
+    if (frame->photons.count > 0u) {
+        state_store(paths, stride, PATH_DELTA, item, 0u);
+        state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item, vec3_splat(0.0f));
+    }
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
@@ -105,9 +110,10 @@ SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global con
 
 /* s = 0: the camera's path hits a light of `radiance`, which light sampling would have found with density `pdf_other`
  * (0: never). alpha: light_hit_alpha, a factor of the path's contribution that this strategy has as a probability. */
-SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                  Vec3 radiance, float pdf_other, float alpha)
+SHARED_FUNCTION void path_add_met(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 radiance,
+                                  float pdf_other, float alpha)
 {
+    __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
     float weight = 1.0f, balance = 1.0f;
     if (pdf_other > 0.0f) {
@@ -117,6 +123,9 @@ SHARED_FUNCTION void path_add_met(__global const FrameParams *frame, __global ui
     }
     Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), radiance);
     uint segments = state_load(paths, stride, PATH_DEPTH, item);
+    if (frame->photons.count > 0u)
+        light = vec3_scale(light, receiver_rest(scene, paths, PATH_RECEIVER, item,
+                                                state_load(paths, stride, PATH_DELTA, item), segments - 1u));
     weight *= path_shown(frame, paths, item, segments, rgb_luminance(light) * balance * alpha);
     path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight));
 }
@@ -131,7 +140,7 @@ SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint 
         float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
             pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-        path_add_met(scene->frame, paths, item, environment_light_radiance(scene, light, d), pdf_light, 1.0f);
+        path_add_met(scene, paths, item, environment_light_radiance(scene, light, d), pdf_light, 1.0f);
     }
 }
 
@@ -147,15 +156,15 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
     if ((flags & PATH_FLAG_DELTA) == 0u)
         pdf_light = scene->lights[light].select_pdf *
                     light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, item), d, surface);
-    path_add_met(scene->frame, paths, item, radiance, pdf_light, light_hit_alpha(scene, light, surface));
+    path_add_met(scene, paths, item, radiance, pdf_light, light_hit_alpha(scene, light, surface));
 }
 
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or have max_depth segments
  * end. */
-__kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                            __global const uint *restrict tables, __global const uint *restrict texels,
-                            __global uint *restrict paths, __global uint *restrict rays,
-                            __global const uint *restrict hits)
+__kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict photons,
+                            __global const uint *restrict geometry, __global const uint *restrict tables,
+                            __global const uint *restrict texels, __global uint *restrict paths,
+                            __global uint *restrict rays, __global const uint *restrict hits)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
@@ -163,7 +172,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     uint depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth == 0u)
         return;
-    KERNEL_SCENE(frame, geometry, tables, texels);
+    KERNEL_SCENE_PHOTONS(frame, 0, photons, geometry, tables, texels);
     Ray ray = ray_load(rays, stride, item);
     Hit hit = hit_load(hits, stride, item);
     if (hit.primitive == NONE) {
@@ -312,6 +321,11 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
         return;
     }
     ray_store(rays, stride, item, ray);
+    if (frame->photons.count > 0u) {
+        receiver_leave(paths, stride, PATH_RECEIVER, item, p, wi, sample.delta != 0u ? 0.0f : sample.pdf_w);
+        if (sample.delta != 0u && depth <= RECEIVER_LAST)
+            state_store(paths, stride, PATH_DELTA, item, state_load(paths, stride, PATH_DELTA, item) | 1u << depth);
+    }
     state_store_vec3(paths, stride, PATH_BETA, item, beta);
     state_store_float(paths, stride, PATH_PDF_W, item, sample.pdf_w);
     state_store_float(paths, stride, PATH_ETA_SCALE, item, eta_scale);
@@ -319,20 +333,22 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store(paths, stride, PATH_DEPTH, item, depth + 1u);
 }
 
-/* Splats what the path has gathered to its pixel, and clears it. A sum that is not finite is counted, and splatted as
- * zero. */
-SHARED_FUNCTION void path_splat(__global uint *restrict paths, __global uint *restrict splats,
-                                __global uint *restrict diagnostics, uint stride, uint item, uint flags)
+/* Splats what the path has gathered in `field` to its pixel, and clears it. A sum that is not finite is counted, and
+ * splatted as zero. */
+SHARED_FUNCTION void path_splat(__global const FrameParams *frame, __global uint *restrict paths,
+                                __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
+                                uint field, uint flags)
 {
-    Vec3 radiance = vec3_scale(state_load_vec3(paths, stride, PATH_RADIANCE, item),
-                               state_load_float(paths, stride, PATH_WEIGHT, item));
+    uint stride = frame->pass.stride;
+    Vec3 radiance =
+        vec3_scale(state_load_vec3(paths, stride, field, item), state_load_float(paths, stride, PATH_WEIGHT, item));
     if (!vec3_finite(radiance)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
         radiance = vec3_splat(0.0f);
     }
     state_store(splats, stride, SPLAT_PIXEL, item, flags | state_load(paths, stride, PATH_PIXEL, item));
     state_store_vec3(splats, stride, SPLAT_COLOR, item, radiance);
-    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
+    state_store_vec3(paths, stride, field, item, vec3_splat(0.0f));
 }
 
 /* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->partition.split_direct. */
@@ -341,7 +357,42 @@ __kernel void pt_splat_direct(__global const FrameParams *restrict frame, __glob
 {
     uint item = (uint)get_global_id(0);
     if (item < frame->pass.item_count)
-        path_splat(paths, splats, diagnostics, frame->pass.stride, item, 0u);
+        path_splat(frame, paths, splats, diagnostics, item, PATH_RADIANCE, SPLAT_SAMPLE);
+}
+
+/* Adds what is in the field `from` to the field `to`, and clears it. */
+SHARED_FUNCTION void path_move(__global const FrameParams *frame, __global uint *restrict paths, uint item, uint from,
+                               uint to)
+{
+    uint stride = frame->pass.stride;
+    state_store_vec3(paths, stride, to, item,
+                     vec3_add(state_load_vec3(paths, stride, to, item), state_load_vec3(paths, stride, from, item)));
+    state_store_vec3(paths, stride, from, item, vec3_splat(0.0f));
+}
+
+/* With photons and partition.split_direct: from: paths of two segments. To: their light kept until the end, where
+ * pt_splat_caustics splats it together with the caustics. No estimator but path tracing shows either. */
+__kernel void pt_keep_direct(__global const FrameParams *restrict frame, __global uint *restrict paths)
+{
+    uint item = (uint)get_global_id(0);
+    if (item < frame->pass.item_count)
+        path_move(frame, paths, item, PATH_RADIANCE, PATH_CAUSTIC_RADIANCE);
+}
+
+__kernel void pt_splat_caustics(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0);
+    if (item < frame->pass.item_count)
+        path_splat(frame, paths, splats, diagnostics, item, PATH_CAUSTIC_RADIANCE, SPLAT_SAMPLE);
+}
+
+/* With photons and without partition.split_direct: from: the finished path. To: its caustics added to the rest. */
+__kernel void pt_add_caustics(__global const FrameParams *restrict frame, __global uint *restrict paths)
+{
+    uint item = (uint)get_global_id(0);
+    if (item < frame->pass.item_count)
+        path_move(frame, paths, item, PATH_CAUSTIC_RADIANCE, PATH_RADIANCE);
 }
 
 /* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's sample
@@ -355,7 +406,7 @@ __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint
         return;
     if (frame->film.split_depths != 0u)
         flags |= splat_depth(frame->film.split_depths, state_load(paths, frame->pass.stride, PATH_GATHERED, item));
-    path_splat(paths, splats, diagnostics, frame->pass.stride, item, flags);
+    path_splat(frame, paths, splats, diagnostics, item, PATH_RADIANCE, flags);
 }
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 #define TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 
+#include "layout/photon_map.h"
 #include "layout/scene_types.h"
 
 /* ---- what the parameters name ----------------------------------------------------------------------------------- */
@@ -14,6 +15,8 @@
 #define PATH_STREAM_POOL 2u /* samples that chains start from */
 #define PATH_STREAM_CHAIN 3u /* what a chain draws at each step */
 #define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
+#define PATH_STREAM_PHOTON 5u /* light subpaths of which photons are made */
+#define PATH_STREAM_CAUSTIC 6u /* directions drawn by photons */
 
 /* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
@@ -98,6 +101,7 @@ typedef struct FrameParams {
     Camera camera;
     FilmParams film;
     PathParams path;
+    PhotonParams photons;
     PartitionParams partition;
     PoolParams pool;
     ChainParams chains;

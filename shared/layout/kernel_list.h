@@ -10,13 +10,16 @@
 #define KERNEL_LIST_PATHS(X)                                                                                           \
     X(pt_start_paths, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,      \
       BUFFER_RAYS, BUFFER_SHADOWS, BUFFER_DIAGNOSTICS)                                                                 \
-    X(pt_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
-      BUFFER_HITS)                                                                                                     \
+    X(pt_shade_hits, 8, BUFFER_FRAME, BUFFER_PHOTONS, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,     \
+      BUFFER_RAYS, BUFFER_HITS)                                                                                        \
     X(pt_sample_lights, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS)  \
     X(pt_add_lights, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS)                                                    \
     X(pt_extend_paths, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_DIAGNOSTICS)                                                                                              \
     X(pt_splat_direct, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                               \
+    X(pt_keep_direct, 2, BUFFER_FRAME, BUFFER_PATHS)                                                                   \
+    X(pt_splat_caustics, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                             \
+    X(pt_add_caustics, 2, BUFFER_FRAME, BUFFER_PATHS)                                                                  \
     X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
     X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
       BUFFER_HITS, BUFFER_SPLATS)
@@ -35,8 +38,8 @@
       BUFFER_RAYS, BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                              \
     X(bd_start_camera, 8, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,     \
       BUFFER_RAYS, BUFFER_DIAGNOSTICS)                                                                                 \
-    X(bd_shade_hits, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,      \
-      BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                     \
+    X(bd_shade_hits, 11, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PHOTONS, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS,    \
+      BUFFER_PATHS, BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES)                                       \
     X(bd_extend_walks, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,    \
       BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
     X(bd_connect, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,          \
@@ -54,6 +57,17 @@
     X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
 
+#define KERNEL_LIST_CAUSTICS(X)                                                                                        \
+    X(photon_start, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,         \
+      BUFFER_RAYS)                                                                                                     \
+    X(photon_walk, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,          \
+      BUFFER_HITS)                                                                                                     \
+    X(photon_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                          \
+    X(pt_start_caustics, 7, BUFFER_FRAME, BUFFER_PHOTONS, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, \
+      BUFFER_RAYS)                                                                                                     \
+    X(pt_walk_caustics, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
+      BUFFER_HITS)
+
 #define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
     X(mlt_begin, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS,            \
@@ -62,8 +76,8 @@
       BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                              \
     X(mlt_start_camera, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,    \
       BUFFER_RAYS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                                \
-    X(mlt_walk, 11, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,           \
-      BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                                 \
+    X(mlt_walk, 12, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PHOTONS, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS,         \
+      BUFFER_PATHS, BUFFER_RAYS, BUFFER_HITS, BUFFER_VERTICES, BUFFER_DENSITIES, BUFFER_DIAGNOSTICS)                   \
     X(mlt_connect, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,         \
       BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                               \
     X(mlt_accept, 10, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,         \
@@ -71,7 +85,9 @@
     X(mlt_end, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS,             \
       BUFFER_SPLATS, BUFFER_PASS, BUFFER_DIAGNOSTICS)
 
-#define KERNEL_LIST(X) KERNEL_LIST_PATHS(X) KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CHAINS(X)
+#define KERNEL_LIST(X)                                                                                                 \
+    KERNEL_LIST_PATHS(X)                                                                                               \
+    KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths, ...: the values of Step.kernel. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

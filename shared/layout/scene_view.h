@@ -8,6 +8,7 @@
 typedef struct SceneView {
     __global const FrameParams *frame;
     __global const Guide *guide; /* NULL in kernels without one */
+    __global const uint *photons; /* BUFFER_PHOTONS; NULL in kernels without them */
     uint features;
     /* geometry */
     __global const Vec3 *positions;
@@ -45,6 +46,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     SceneView view;
     view.frame = frame;
     view.guide = 0;
+    view.photons = 0;
     view.features = frame->scene.features;
     view.positions = (__global const Vec3 *)(geometry + layout->positions);
     view.normals = (__global const Vec3 *)(geometry + layout->normals);
@@ -76,6 +78,11 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
 #define KERNEL_SCENE_GUIDED(frame, guided_by, geometry, tables, texels)                                                \
     SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \
     scene_made.guide = guided_by;                                                                                      \
+    const SceneView *scene = &scene_made
+#define KERNEL_SCENE_PHOTONS(frame, guided_by, photon_map, geometry, tables, texels)                                   \
+    SceneView scene_made = scene_view(frame, geometry, tables, texels);                                                \
+    scene_made.guide = guided_by;                                                                                      \
+    scene_made.photons = photon_map;                                                                                   \
     const SceneView *scene = &scene_made
 #endif
 

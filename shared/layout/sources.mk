@@ -6,7 +6,9 @@ SHARED_FILES += \
 	shared/layout/item.h \
 	shared/layout/kernel_list.h \
 	shared/layout/material_list.h \
+	shared/layout/pass_data.h \
 	shared/layout/path_types.h \
+	shared/layout/photon_map.h \
 	shared/layout/scene_types.h \
 	shared/layout/scene_view.h \
 	shared/layout/state.h \

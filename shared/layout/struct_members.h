@@ -160,6 +160,16 @@
     MEMBER(FilmParams, filter)                                                                                         \
     MEMBER(FilmParams, exponent)                                                                                       \
     MEMBER(FilmParams, split_depths)                                                                                   \
+    STRUCT(PhotonParams)                                                                                               \
+    MEMBER(PhotonParams, count)                                                                                        \
+    MEMBER(PhotonParams, everywhere)                                                                                   \
+    MEMBER(PhotonParams, first)                                                                                        \
+    MEMBER(PhotonParams, level)                                                                                        \
+    MEMBER(PhotonParams, weight)                                                                                       \
+    MEMBER(PhotonParams, origin)                                                                                       \
+    MEMBER(PhotonParams, cells_per_unit)                                                                               \
+    MEMBER(PhotonParams, point_radius)                                                                                 \
+    MEMBER(PhotonParams, distant_sine)                                                                                 \
     STRUCT(PathParams)                                                                                                 \
     MEMBER(PathParams, max_depth)                                                                                      \
     MEMBER(PathParams, min_depth)                                                                                      \
@@ -203,6 +213,7 @@
     MEMBER(FrameParams, camera)                                                                                        \
     MEMBER(FrameParams, film)                                                                                          \
     MEMBER(FrameParams, path)                                                                                          \
+    MEMBER(FrameParams, photons)                                                                                       \
     MEMBER(FrameParams, partition)                                                                                     \
     MEMBER(FrameParams, pool)                                                                                          \
     MEMBER(FrameParams, chains)                                                                                        \

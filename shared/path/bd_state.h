@@ -51,7 +51,9 @@
 #define BD_IMPORTANCE 33u /* target importance where the camera's path began */
 #define BD_TARGET_IMPORTANCE 34u /* target importance at the film position of the connection under way (t = 1) */
 #define BD_GATHERED 35u /* frame->film.split_depths: depth of the paths in BD_RADIANCE */
-#define BD_HEADER_WORDS 36u
+/* Caustics by photons (path/caustic_rest.h); only with PhotonParams.count */
+#define BD_RECEIVER 36u /* of the camera subpath, RECEIVER_WORDS */
+#define BD_HEADER_WORDS 43u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can hit it */

@@ -8,6 +8,7 @@
 #include "light/light_guide.h"
 #include "math/rng.h"
 #include "path/bd_vertex.h"
+#include "path/caustic_rest.h"
 #include "path/strategy.h"
 
 /* ---- a step ------------------------------------------------------------------------------------------------------ */
@@ -258,8 +259,12 @@ SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, Walk walk, const 
     roulette.scale = state_load_float(paths, stride, BD_ROULETTE_SCALE, item);
     roulette.least = walk_survival_least(scene->frame, paths, item);
     if (walk_scatter(scene, vertex, side, roulette, random, step)) {
-        if (ray_traceable(step->ray.o, step->ray.d))
+        if (ray_traceable(step->ray.o, step->ray.d)) {
+            if (side == SIDE_CAMERA && scene->frame->photons.count > 0u)
+                receiver_leave(paths, stride, BD_RECEIVER, item, vertex->p, step->ray.d,
+                               step->delta != 0u ? 0.0f : step->forward);
             return true;
+        }
         diagnostic_count(walk.diagnostics, DIAGNOSTIC_RAY_RANGE);
     }
     walk_end(paths, walk.rays, stride, item);

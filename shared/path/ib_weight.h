@@ -10,12 +10,12 @@
 
 /* Fields after those of path/bd_state.h. v_1, v_2 ... v_j are the walk's vertices, and r_i is the density of v_i by the
  * other side over that by its own: known once the walk has left v_{i+1}. */
-#define IB_PRODUCT BD_HEADER_WORDS /* r_1 r_2 ... r_{j-2}: value, exponent */
-#define IB_OWN (BD_HEADER_WORDS + 2u) /* density of v_j, by its own side */
-#define IB_OWN_BEFORE (BD_HEADER_WORDS + 3u) /* that of v_{j-1} */
-#define IB_FIRST_RATIO (BD_HEADER_WORDS + 4u) /* r_0, that of y_0, on the light's side, once the walk has left y_1 */
-#define IB_FIRST_DELTA (BD_HEADER_WORDS + 5u) /* 1: v_1 scattered by a delta lobe */
-#define IB_HEADER_WORDS (BD_HEADER_WORDS + 6u)
+#define IB_PRODUCT BD_RECEIVER /* r_1 r_2 ... r_{j-2}: value, exponent */
+#define IB_OWN (BD_RECEIVER + 2u) /* density of v_j, by its own side */
+#define IB_OWN_BEFORE (BD_RECEIVER + 3u) /* that of v_{j-1} */
+#define IB_FIRST_RATIO (BD_RECEIVER + 4u) /* r_0, that of y_0, on the light's side, once the walk has left y_1 */
+#define IB_FIRST_DELTA (BD_RECEIVER + 5u) /* 1: v_1 scattered by a delta lobe */
+#define IB_HEADER_WORDS (BD_RECEIVER + 6u)
 
 SHARED_FUNCTION Scaled ib_product_load(__global const uint *paths, uint stride, uint item)
 {

@@ -22,7 +22,14 @@
 #define PATH_LIMIT 43u /* frame->partition.split_direct: clamping threshold of its contribution's luminance */
 #define PATH_SURVIVED 44u /* frame->partition.split_direct: probability to survive Russian roulette so far */
 #define PATH_GATHERED 45u /* frame->film.split_depths: depth of the path in PATH_RADIANCE */
-#define PATH_WORDS 46u
+/* Caustics by photons (path/caustic.h); only with PhotonParams.count */
+#define PATH_RECEIVER 46u /* RECEIVER_WORDS (path/caustic_rest.h) */
+#define PATH_DELTA 53u /* bit i: vertex i scattered by a delta lobe; up to RECEIVER_LAST */
+#define PATH_CAUSTIC_RADIANCE 54u /* gathered by photons, 3 */
+#define PATH_CAUSTIC_SEGMENTS 57u /* of the caustic path under way, with its last ray */
+#define PATH_CAUSTIC_LIGHT 58u /* PHOTON_LIGHT of the photon that drew it */
+#define PATH_CAUSTIC_BETA 59u /* its throughput, 3 */
+#define PATH_WORDS 62u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 

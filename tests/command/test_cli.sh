@@ -297,11 +297,18 @@ pool() {
         'Shape "bilinearmesh" "point3 P" [ -9 0 -9  9 0 -9  -9 0 9  9 0 9 ]' >pool.pbrt
 }
 pool 0
-expect 0 'is found by no integrator' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
+expect 0 'is found by photons alone' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
 pool 0.3
 expect 0 '' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
-! grep -q 'is found by no integrator' err
+! grep -q 'is found by photons alone' err
 result 'rough glass is taken for smooth' $?
+pool 0
+for by in --integrator=mmlt '--integrator=pt --photons=4096'; do
+    # shellcheck disable=SC2086 # two options
+    expect 0 '' render --resolution=4x4 --samples=1 $by -o pool.exr pool.pbrt
+    ! grep -q 'is found by photons alone' err
+    result "photons are not counted with $by" $?
+done
 
 # Contributions too faint compared with the rest count as black, and a message says for how much of the image.
 printf '%s\n' 'LookAt 0 1 -6  0 0 0  0 1 0 Camera "perspective" WorldBegin' \

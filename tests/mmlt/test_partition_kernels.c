@@ -76,7 +76,7 @@ static void pool_walk(Partition *p, uint side, uint segments)
         closest_trace(p, &p->pool_frame, pool);
         p->hits[side][i] = hit_load(pool->hits, 1, 0);
         seen.count = 0;
-        bd_shade_hits(&p->pool_frame, &p->guide, SCENE_OF(p), pool->paths, pool->rays, pool->hits, pool->vertices,
+        bd_shade_hits(&p->pool_frame, &p->guide, NULL, SCENE_OF(p), pool->paths, pool->rays, pool->hits, pool->vertices,
                       pool->densities);
         if (seen.count > 0)
             p->shown[0][i + 1] = seen.calls[0];
@@ -119,7 +119,7 @@ static void chain_walk(Partition *p, uint segments)
     Item *chain = &p->chain;
     for (uint i = 0; i < segments; ++i) {
         closest_trace(p, &p->chain_frame, chain);
-        mlt_walk(&p->chain_frame, &p->guide, SCENE_OF(p), chain->paths, chain->rays, chain->hits, chain->vertices,
+        mlt_walk(&p->chain_frame, &p->guide, NULL, SCENE_OF(p), chain->paths, chain->rays, chain->hits, chain->vertices,
                  chain->densities, chain->diagnostics);
     }
 }

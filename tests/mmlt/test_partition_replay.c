@@ -155,7 +155,7 @@ void paths_run(Partition *p, bool met)
     for (uint depth = 1; item->paths[PATH_DEPTH] == depth; ++depth) {
         hit_store(item->hits, 1, 0, replay_hit(p, depth));
         seen.count = 0;
-        pt_shade_hits(frame, SCENE_OF(p), item->paths, item->rays, item->hits);
+        pt_shade_hits(frame, NULL, SCENE_OF(p), item->paths, item->rays, item->hits);
         if (depth == d)
             return;
         seen.count = 0;

@@ -195,6 +195,7 @@ likely() {
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
+    shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h) echo test_caustic:photons test_caustic ;;
     shared/chain/pool.h) echo test_chain:shown test_partition test_chain_population test_pool test_layers ;;
     shared/chain/chain_light.h) echo test_chain:shown test_partition test_layers test_shift ;;
     shared/light/emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;

@@ -30,6 +30,7 @@ static void render_once(Renderer *renderer, uint64_t seed, int depth, float *rgb
                              .max_depth = depth,
                              .seed = seed,
                              .chains = setup->chains,
+                             .photons = setup->photons,
                              .layers = renderer->layer_depth > 0 ? &layers : NULL,
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,

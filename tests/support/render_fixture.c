@@ -64,6 +64,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .samples = setup->samples,
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
+                             .photons = setup->photons,
                              .chains = setup->chains,
                              .layers = setup->layers,
                              .balance = setup->balance,

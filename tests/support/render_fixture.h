@@ -18,6 +18,7 @@ typedef struct RenderSetup {
     bool film_on_device;
     bool record_spans;
     uint64_t seed;
+    unsigned photons;
     const Integrator *integrator; /* NULL: path tracing */
     bool balance, only_strategy, unweighted; /* as in RenderOptions */
     unsigned strategy[2];

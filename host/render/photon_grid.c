@@ -1,0 +1,235 @@
+#include "render/photon_grid.h"
+
+#include "base/sample_statistics.h"
+#include "path/photon.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Photons on either side of a photon in the order of the grid that its predictions are compared with, and how many of
+ * the best comparisons must agree: the others may belong to light that came another way. */
+#define COMPARED 8
+#define AGREEING 2
+
+/* The spread of slopes, relative to what the light's radius and the errors of predictions give: the light's points are
+ * not the photon's, but photons of all of them are around. */
+#define SPREAD_OF_LIGHT 0.6
+#define SPREAD_OF_ERROR 1.0
+
+/* Least spread: rounding of directions. */
+#define SPREAD_MIN 1e-6
+
+/* Steradians: photons of lights with an extent whose lobe is wider are left out, since chance draws such a direction
+ * often enough. */
+#define LOBE_MAX 0.1
+
+/* Kinds of photons that are counted; more are in the last group. */
+#define KINDS_MAX 64u
+
+/* Photons in an occupied cell of the coarsest level that is used, on average. */
+#define CELL_PHOTONS 8u
+
+typedef struct GridEntry {
+    uint group, code, number;
+    PhotonRecord *record;
+} GridEntry;
+
+/* Photons of one light without extent (or of all others) and one kind of path. */
+typedef struct GridKind {
+    uint light, vertices, lobes, count;
+} GridKind;
+
+static int entry_compare(const void *a, const void *b)
+{
+    const GridEntry *x = a, *y = b;
+    if (x->group != y->group)
+        return x->group < y->group ? -1 : 1;
+    if (x->code != y->code)
+        return x->code < y->code ? -1 : 1;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+static void bounds_set(const PhotonRecords *records, PhotonParams *params)
+{
+    Vec3 low = records->records[0].point, high = low;
+    for (uint i = 1; i < records->count; ++i) {
+        Vec3 p = records->records[i].point;
+        low = vec3(float_min(low.x, p.x), float_min(low.y, p.y), float_min(low.z, p.z));
+        high = vec3(float_max(high.x, p.x), float_max(high.y, p.y), float_max(high.z, p.z));
+    }
+    float side = float_max(vec3_max_component(vec3_sub(high, low)), 1e-6f * (1.0f + vec3_length(high)));
+    float margin = side / (float)PHOTON_CELLS;
+    params->origin = vec3_sub(low, vec3_splat(margin));
+    params->cells_per_unit = (float)PHOTON_CELLS / (side + 3.0f * margin);
+}
+
+static bool kind_has(const GridKind *kind, const PhotonRecord *record)
+{
+    return kind->light == record->light && kind->vertices == record->vertices && kind->lobes == record->lobes;
+}
+
+/* Gives the most frequent kinds a group each, and the rest the last. */
+static void groups_assign(GridEntry *entries, uint count)
+{
+    GridKind kinds[KINDS_MAX], *order[PHOTON_GROUPS - 1] = {0};
+    uint known = 0;
+    for (uint i = 0; i < count; ++i) {
+        const PhotonRecord *record = entries[i].record;
+        uint k = 0;
+        while (k < known && !kind_has(&kinds[k], record))
+            ++k;
+        if (k == known && known < KINDS_MAX)
+            kinds[known++] = (GridKind){record->light, record->vertices, record->lobes, 0};
+        if (k < known)
+            ++kinds[k].count;
+    }
+    for (uint g = 0; g + 1 < PHOTON_GROUPS; ++g) {
+        for (uint k = 0; k < known; ++k)
+            if (kinds[k].count > 0 && (!order[g] || kinds[k].count > order[g]->count))
+                order[g] = &kinds[k];
+        for (uint i = 0; i < count && order[g]; ++i)
+            if (entries[i].group == PHOTON_GROUPS - 1 && kind_has(order[g], entries[i].record))
+                entries[i].group = g;
+        if (order[g])
+            order[g]->count = 0;
+    }
+}
+
+/* The finest level whose occupied cells hold CELL_PHOTONS on average. */
+static uint level_choose(const GridEntry *entries, uint count)
+{
+    for (uint level = PHOTON_LEVELS; level > 1u; --level) {
+        uint shift = 3u * (PHOTON_LEVELS - level), cells = 1;
+        for (uint i = 1; i < count; ++i)
+            cells += entries[i].code >> shift != entries[i - 1].code >> shift;
+        if (count / cells >= CELL_PHOTONS)
+            return level;
+    }
+    return 1u;
+}
+
+/* How far the predictions of entry i are from what photons nearby have found. */
+static double prediction_error(const GridEntry *entries, uint count, uint i)
+{
+    const PhotonRecord *own = entries[i].record;
+    double errors[2 * COMPARED];
+    int found = 0;
+    for (int k = -COMPARED; k <= COMPARED; ++k) {
+        if (k == 0 || (int64_t)i + k < 0 || (int64_t)i + k >= (int64_t)count)
+            continue;
+        const PhotonRecord *other = entries[(int64_t)i + k].record;
+        Vec3 moved = vec3_sub(other->light_point, own->light_point);
+        const double light_moved[2] = {(double)vec3_dot(moved, own->axes[0]), (double)vec3_dot(moved, own->axes[1])};
+        double slopes[2], predicted[2];
+        if (entries[(int64_t)i + k].group != entries[i].group || other->light != own->light ||
+            !photon_slopes(own->direction, other->direction, slopes))
+            continue;
+        photon_predict(own, other->point, light_moved, predicted);
+        errors[found++] = hypot(slopes[0] - predicted[0], slopes[1] - predicted[1]);
+    }
+    if (found == 0)
+        return 1.0;
+    sample_sort(errors, (size_t)found);
+    return errors[found < AGREEING ? found - 1 : AGREEING - 1];
+}
+
+/* The lower triangular factor of the covariance of the light's spread and that of the prediction's error. */
+static void spread_set(PhotonRecord *record, double error)
+{
+    const double *by_light = record->by_light;
+    double scale = SPREAD_OF_LIGHT * record->light_radius, own = fmax(SPREAD_OF_ERROR * error, SPREAD_MIN);
+    double light = scale * scale;
+    double aa = light * (by_light[0] * by_light[0] + by_light[1] * by_light[1]) + own * own;
+    double ba = light * (by_light[0] * by_light[2] + by_light[1] * by_light[3]);
+    double bb = light * (by_light[2] * by_light[2] + by_light[3] * by_light[3]) + own * own;
+    double root = sqrt(aa), below = ba / root;
+    record->spread[0] = root;
+    record->spread[1] = below;
+    record->spread[2] = sqrt(fmax(bb - below * below, own * own));
+}
+
+/* Sets the spreads of sorted entries and leaves out those of no use; returns how many remain. */
+static uint entries_keep(GridEntry *entries, uint count)
+{
+    uint kept = 0;
+    for (uint i = 0; i < count; ++i)
+        spread_set(entries[i].record, prediction_error(entries, count, i));
+    for (uint i = 0; i < count; ++i) {
+        const PhotonRecord *record = entries[i].record;
+        if (record->light != NONE || M_PI * record->spread[0] * record->spread[2] < LOBE_MAX)
+            entries[kept++] = entries[i];
+    }
+    return kept;
+}
+
+static void vector_put(uint *words, Vec3 v)
+{
+    words[0] = float_bits(v.x);
+    words[1] = float_bits(v.y);
+    words[2] = float_bits(v.z);
+}
+
+static void words_fill(const GridEntry *entries, uint count, uint *words)
+{
+    for (uint i = 0; i < count; ++i) {
+        const PhotonRecord *record = entries[i].record;
+        uint *photon = words + count + (size_t)i * PHOTON_WORDS;
+        words[i] = entries[i].code;
+        vector_put(photon + PHOTON_POINT, record->point);
+        vector_put(photon + PHOTON_DIRECTION, record->direction);
+        for (int k = 0; k < 4; ++k)
+            photon[PHOTON_BY_PLACE + (uint)k] = float_bits((float)record->by_place[k]);
+        for (int k = 0; k < 3; ++k)
+            photon[PHOTON_SPREAD + (uint)k] = float_bits((float)record->spread[k]);
+        photon[PHOTON_LIGHT] = record->light;
+    }
+}
+
+/* Where the groups begin, their levels and weights: the root of their numbers, so that rare photons are drawn by more
+ * often than they are found. */
+static void groups_set(const GridEntry *entries, PhotonParams *params)
+{
+    for (uint g = 0, i = 0; g < PHOTON_GROUPS; ++g) {
+        params->first[g] = i;
+        while (i < params->count && entries[i].group == g)
+            ++i;
+        params->first[g + 1] = i;
+        params->weight[g] = (float)sqrt((double)(i - params->first[g]) / params->count);
+        params->level[g] = level_choose(entries + params->first[g], i - params->first[g]);
+    }
+}
+
+bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, PhotonMap *map, Error *error)
+{
+    uint count = records->count;
+    size_t bytes = (size_t)count * (1 + PHOTON_WORDS) * sizeof *map->words;
+    GridEntry *entries = malloc(count * sizeof *entries);
+    map->words = malloc(bytes);
+    if (!entries || !map->words) {
+        free(entries);
+        return error_memory(error, bytes, "photons");
+    }
+    map->params = lights->params;
+    bounds_set(records, &map->params);
+    for (uint i = 0; i < count; ++i)
+        entries[i] = (GridEntry){.group = PHOTON_GROUPS - 1,
+                                 .code = photon_code(map->params, records->records[i].point),
+                                 .number = records->records[i].number,
+                                 .record = &records->records[i]};
+    groups_assign(entries, count);
+    qsort(entries, count, sizeof *entries, entry_compare);
+    count = entries_keep(entries, count);
+    if (count == 0) {
+        free(map->words);
+        free(entries);
+        *map = (PhotonMap){0};
+        return true;
+    }
+    map->params.count = count;
+    map->word_count = (size_t)count * (1 + PHOTON_WORDS);
+    groups_set(entries, &map->params);
+    words_fill(entries, count, map->words);
+    free(entries);
+    return true;
+}

@@ -1,0 +1,10 @@
+/* The grid of photons, and how widely each spreads the directions that it predicts. */
+#ifndef TWINLIGHT_RENDER_PHOTON_GRID_H
+#define TWINLIGHT_RENDER_PHOTON_GRID_H
+
+#include "render/photon_lobe.h"
+
+/* Sorts the records, at least one, and fills *map with them; free its words with photon_map_destroy. */
+bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, PhotonMap *map, Error *error);
+
+#endif

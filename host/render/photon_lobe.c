@@ -1,0 +1,194 @@
+#include "render/photon_lobe.h"
+
+#include "light/infinite.h"
+#include "path/caustic_rest.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Steps between neighbouring subpaths: small beside the shapes that light passes, large beside rounding. Relative to the
+ * scene's radius, and in radians. */
+#define POINT_STEP 3e-4
+#define DIRECTION_STEP 3e-4
+
+/* What lights of no extent count as: a sphere, relative to the scene's radius, and a cone's sine. */
+#define POINT_RADIUS 5e-4
+#define DISTANT_SINE 1e-3f
+
+/* Added to squared lengths where neighbours fall (almost) on one line, relative to them: near a focus a photon predicts
+ * nothing but its own direction. */
+#define FLAT_PART 1e-6
+
+/* Bounds of the radius of light from infinity, in radians. */
+#define FAR_RADIUS_MIN 1e-5
+#define FAR_RADIUS_MAX 1.0
+
+static bool light_is_far(const PhotonLights *lights, uint light)
+{
+    return lights->view.lights[light].kind >= LIGHT_DISTANT;
+}
+
+/* Sums the areas of a shape's lights, then turns each light's into a radius. A sphere shows a quarter of its area. */
+static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
+{
+    const SceneView *view = &lights->view;
+    double *areas = calloc(shape_count + 1, sizeof *areas);
+    if (!areas)
+        return error_memory(error, shape_count * sizeof *areas, "lights");
+    for (uint i = 0; i < view->frame->scene.light_count; ++i)
+        if (view->lights[i].kind == LIGHT_AREA)
+            areas[view->primitives[view->lights[i].primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK] +=
+                (double)view->lights[i].area;
+    for (uint i = 0; i < view->frame->scene.light_count; ++i) {
+        if (view->lights[i].kind != LIGHT_AREA)
+            continue;
+        uint word = view->primitives[view->lights[i].primitive].shape_and_kind;
+        double part = word >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? 0.25 : 1.0;
+        lights->radius[i] = sqrt(part * areas[word & PRIMITIVE_SHAPE_MASK] / M_PI);
+    }
+    free(areas);
+    return true;
+}
+
+bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
+{
+    const BackendScene packed = scene_backend_view(scene);
+    uint count = packed.frame->scene.light_count;
+    *lights = (PhotonLights){.view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels),
+                             .point_step = POINT_STEP * (double)packed.frame->scene.world_radius,
+                             .direction_step = DIRECTION_STEP};
+    lights->params.point_radius = (float)(POINT_RADIUS * (double)packed.frame->scene.world_radius);
+    lights->params.distant_sine = DISTANT_SINE;
+    lights->radius = calloc(count + 1, sizeof *lights->radius);
+    return lights->radius ? radii_set(lights, scene->shapes.count, error)
+                          : error_memory(error, count * sizeof *lights->radius, "lights");
+}
+
+void photon_lights_destroy(PhotonLights *lights)
+{
+    free(lights->radius);
+    *lights = (PhotonLights){0};
+}
+
+PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, uint k)
+{
+    PhotonPath neighbour = *path;
+    Frame frame = frame_from_normal(path->first);
+    Vec3 axis = k % 2u == 0u ? frame.t : frame.b;
+    bool other_point = k >= 2u;
+    if (other_point != light_is_far(lights, path->light))
+        neighbour.origin = vec3_mad(path->origin, (float)lights->point_step, axis);
+    else
+        neighbour.first = vec3_normalize(vec3_mad(path->first, (float)lights->direction_step, axis));
+    return neighbour;
+}
+
+bool photon_slopes(Vec3 direction, Vec3 w, double slopes[2])
+{
+    Vec3 local = frame_to_local(frame_from_normal(direction), w);
+    slopes[0] = (double)local.x / (double)local.z;
+    slopes[1] = (double)local.y / (double)local.z;
+    return local.z > 0.0f;
+}
+
+/* Where a neighbour's last ray crosses the plane through the photon across its direction. */
+static bool place_across(Vec3 point, Vec3 direction, const PhotonPath *neighbour, double place[2])
+{
+    Frame frame = frame_from_normal(direction);
+    Vec3 moved = frame_to_local(frame, vec3_sub(neighbour->point, point)), ray = frame_to_local(frame, neighbour->last);
+    double along = -(double)moved.z / (double)ray.z;
+    place[0] = (double)moved.x + along * (double)ray.x;
+    place[1] = (double)moved.y + along * (double)ray.y;
+    return ray.z != 0.0f;
+}
+
+/* out = a b, 2 x 2 row by row. */
+static void multiply(const double a[4], const double b[4], double out[4])
+{
+    const double product[4] = {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
+                               a[2] * b[1] + a[3] * b[3]};
+    for (int i = 0; i < 4; ++i)
+        out[i] = product[i];
+}
+
+/* out = slopes places^-1, or, near a place where neighbours fall together, what is closest to it without large
+ * derivatives: slopes places^T (places places^T + FLAT_PART |places|^2)^-1. */
+static bool divide(const double slopes[4], const double places[4], double out[4])
+{
+    const double transposed[4] = {places[0], places[2], places[1], places[3]};
+    double square[4], product[4];
+    multiply(places, transposed, square);
+    double flat = FLAT_PART * (square[0] + square[3]);
+    square[0] += flat;
+    square[3] += flat;
+    double determinant = square[0] * square[3] - square[1] * square[2];
+    const double inverse[4] = {square[3] / determinant, -square[1] / determinant, -square[2] / determinant,
+                               square[0] / determinant};
+    multiply(slopes, transposed, product);
+    multiply(product, inverse, out);
+    return determinant > 0.0;
+}
+
+static double far_radius(const PhotonLights *lights, uint light, Vec3 d)
+{
+    double pdf = (double)environment_pdf_w(&lights->view, light, vec3_negate(d));
+    return fmin(fmax(sqrt(1.0 / (M_PI * fmax(pdf, 1e-30))), FAR_RADIUS_MIN), FAR_RADIUS_MAX);
+}
+
+static double light_radius(const PhotonLights *lights, const PhotonPath *path)
+{
+    const PhotonParams *params = &lights->params;
+    uint kind = lights->view.lights[path->light].kind;
+    if (kind == LIGHT_AREA)
+        return lights->radius[path->light];
+    if (kind == LIGHT_DISTANT)
+        return (double)params->distant_sine;
+    return kind == LIGHT_POINT || kind == LIGHT_SPOT ? (double)params->point_radius
+                                                     : far_radius(lights, path->light, path->first);
+}
+
+bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
+                        const PhotonPath neighbours[PHOTON_NEIGHBOURS], PhotonRecord *record)
+{
+    bool far = light_is_far(lights, path->light);
+    Frame frame = frame_from_normal(path->first);
+    double places[2][4], slopes[2][4], across[4];
+    *record = (PhotonRecord){.number = path->number,
+                             .light = caustic_light(&lights->view, path->light),
+                             .vertices = path->vertices,
+                             .lobes = path->lobes,
+                             .point = path->point,
+                             .direction = vec3_normalize(vec3_negate(path->last)),
+                             .light_point = far ? path->first : path->origin,
+                             .axes = {frame.t, frame.b},
+                             .light_radius = light_radius(lights, path)};
+    for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k) {
+        double place[2], slope[2];
+        if (!place_across(record->point, record->direction, &neighbours[k], place) ||
+            !photon_slopes(record->direction, vec3_negate(neighbours[k].last), slope))
+            return false;
+        for (uint row = 0; row < 2; ++row) {
+            places[k / 2][2 * row + k % 2] = place[row];
+            slopes[k / 2][2 * row + k % 2] = slope[row];
+        }
+    }
+    if (!divide(slopes[0], places[0], record->by_place))
+        return false;
+    /* Neighbours through other points of the light have arrived at other places. */
+    multiply(record->by_place, places[1], across);
+    double step = far ? lights->direction_step : lights->point_step;
+    bool finite = true;
+    for (int i = 0; i < 4; ++i) {
+        record->by_light[i] = (slopes[1][i] - across[i]) / step;
+        finite = finite && isfinite(record->by_light[i]) && isfinite(record->by_place[i]);
+    }
+    return finite;
+}
+
+void photon_predict(const PhotonRecord *record, Vec3 p, const double light_moved[2], double slopes[2])
+{
+    Vec3 moved = frame_to_local(frame_from_normal(record->direction), vec3_sub(p, record->point));
+    for (int row = 0; row < 2; ++row)
+        slopes[row] = record->by_place[2 * row] * (double)moved.x + record->by_place[2 * row + 1] * (double)moved.y +
+                      record->by_light[2 * row] * light_moved[0] + record->by_light[2 * row + 1] * light_moved[1];
+}

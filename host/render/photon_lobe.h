@@ -1,0 +1,65 @@
+/* What a photon predicts: the differentials of light subpaths through specular surfaces, by finite differences between
+ * neighbouring subpaths. (Igehy, "Tracing ray differentials", 1999, has them analytically.) */
+#ifndef TWINLIGHT_RENDER_PHOTON_LOBE_H
+#define TWINLIGHT_RENDER_PHOTON_LOBE_H
+
+#include "backend/backend.h"
+#include "layout/scene_view.h"
+#include "scene/scene.h"
+
+/* A light subpath that has arrived at a receiver, as kernels/photon.cl hands it back. */
+typedef struct PhotonPath {
+    uint number; /* which random numbers it has */
+    uint light;
+    uint vertices, lobes; /* smooth specular vertices, and which of them transmitted */
+    Vec3 origin, first; /* its first ray */
+    Vec3 point; /* where it has arrived */
+    Vec3 last; /* direction of its last ray */
+} PhotonPath;
+
+/* A photon with its derivatives. Slopes are those of directions in frame_from_normal(direction) (path/photon.h). */
+typedef struct PhotonRecord {
+    uint number; /* of its subpath */
+    uint light; /* PHOTON_LIGHT */
+    uint vertices, lobes; /* PhotonPath */
+    Vec3 point, direction; /* where it has arrived, and from where */
+    double by_place[4]; /* slopes per unit of displacement across the direction, 2 x 2 row by row */
+    double by_light[4]; /* slopes per unit of displacement of the light's point along `axes` */
+    Vec3 light_point; /* or, for a light at infinity, the direction in which it travels */
+    Vec3 axes[2];
+    double light_radius; /* of the light, in the same units */
+    double spread[3]; /* of the slopes: lower triangular; set by photon_grid_make */
+} PhotonRecord;
+
+typedef struct PhotonRecords {
+    PhotonRecord *records;
+    uint count;
+} PhotonRecords;
+
+/* What photons need to know of the scene's lights. */
+typedef struct PhotonLights {
+    SceneView view;
+    PhotonParams params; /* the radii of lights of no extent */
+    double *radius; /* of a disc with the area of the light's shape; of light at infinity 0 */
+    double point_step, direction_step; /* between neighbouring subpaths */
+} PhotonLights;
+
+bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error);
+void photon_lights_destroy(PhotonLights *lights);
+
+/* Neighbours of a subpath: two through the same point of the light (or, at infinity, in the same direction), and two
+ * through other points (in other directions). */
+#define PHOTON_NEIGHBOURS 4u
+PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, uint k);
+
+/* Fills *record from a subpath and its neighbours, which have all arrived; false if there are no derivatives. */
+bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
+                        const PhotonPath neighbours[PHOTON_NEIGHBOURS], PhotonRecord *record);
+
+/* Slopes of the direction w in the frame of a photon's direction; false if w points away from it. */
+bool photon_slopes(Vec3 direction, Vec3 w, double slopes[2]);
+
+/* The slopes that a photon predicts for the place p and a displacement of its light's point along its axes. */
+void photon_predict(const PhotonRecord *record, Vec3 p, const double light_moved[2], double slopes[2]);
+
+#endif

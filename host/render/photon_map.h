@@ -1,0 +1,15 @@
+/* Makes the map of caustic photons (path/photon.h) before a rendering: traces light subpaths through smooth specular
+ * surfaces, finds by finite differences how the direction of each changes with the place and with the light's point,
+ * and sorts them into a grid. */
+#ifndef TWINLIGHT_RENDER_PHOTON_MAP_H
+#define TWINLIGHT_RENDER_PHOTON_MAP_H
+
+#include "render/run.h"
+#include "scene/scene.h"
+
+/* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a stop.
+ * run->frame must be complete but for `photons`. Call photon_map_destroy even on failure. */
+bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error);
+void photon_map_destroy(PhotonMap *map);
+
+#endif

@@ -1,0 +1,154 @@
+/* A receiver's direction drawn by photons (path/caustic_rest.h), and the smooth specular vertices that it passes on the
+ * way to a light. Path tracing does this at every vertex; its state has fields for it (path/path_state.h). */
+#ifndef TWINLIGHT_PATH_CAUSTIC_H
+#define TWINLIGHT_PATH_CAUSTIC_H
+
+#include "bsdf/bsdf.h"
+#include "bsdf/material.h"
+#include "geometry/ray.h"
+#include "layout/diagnostics.h"
+#include "light/light.h"
+#include "path/caustic_rest.h"
+#include "path/path_random.h"
+#include "path/path_state.h"
+
+/* Random numbers of the receiver after `depth` segments: `what` 0 for the photon and the direction, then the smooth
+ * vertices in order. */
+SHARED_FUNCTION Random4 caustic_random(__global const FrameParams *frame, __global const uint *paths, uint item,
+                                       uint depth, uint what)
+{
+    uint stride = frame->pass.stride;
+    return random_four(state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
+                       depth * (CAUSTIC_VERTICES + 1u) + what, PATH_STREAM_CAUSTIC, frame->pass.seed_low,
+                       frame->pass.seed_high);
+}
+
+/* Draws a direction for the path's vertex and stores its ray; none if there are no photons around or it brings
+ * nothing. */
+SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
+                                   uint item)
+{
+    __global const FrameParams *frame = scene->frame;
+    PhotonParams params = frame->photons;
+    uint stride = frame->pass.stride, depth = state_load(paths, stride, PATH_DEPTH, item);
+    if (depth + 2u > frame->path.max_depth ||
+        (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u ||
+        !receiver_draws(params.everywhere, state_load(paths, stride, PATH_DELTA, item), depth))
+        return;
+    Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item);
+    PhotonSets found = photon_sets(params, scene->photons, p);
+    if (!(found.weight > 0.0f))
+        return;
+    Random4 random = caustic_random(frame, paths, item, depth, 0u);
+    PhotonLobe lobe = photon_lobe(params, scene->photons, photon_choose(params, &found, random_float(random.x[0])), p);
+    Vec3 w;
+    if (!photon_lobe_sample(&lobe, vec2(random_float(random.x[1]), random_float(random.x[2])), &w))
+        return;
+    Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, item);
+    Frame shading = frame_load(paths, stride, PATH_FRAME, item);
+    BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, item), frame_to_local(shading, w),
+                                TRANSPORT_RADIANCE);
+    float density = photon_density(params, scene->photons, &found, p, w, lobe.light);
+    if (lobe.light == NONE) { /* lights of no extent are hit by nothing else */
+        if (caustic_rest_of(value.pdf_w, density) == 1.0f)
+            return;
+        density += value.pdf_w;
+    }
+    Vec3 beta = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), value.f_cos);
+    Ray ray = ray_spawn(p, state_load_vec3(paths, stride, PATH_NG, item), w);
+    if (vec3_is_zero(value.f_cos) || !(density > 0.0f) || !ray_traceable(ray.o, ray.d))
+        return;
+    ray_store(rays, stride, item, ray);
+    state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, depth + 1u);
+    state_store(paths, stride, PATH_CAUSTIC_LIGHT, item, lobe.light);
+    state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, vec3_scale(beta, 1.0f / density));
+}
+
+/* ---- lights at the end ------------------------------------------------------------------------------------------- */
+
+/* Radiance of a light of no extent along a ray (d unit) that goes as far as t_max (FLOAT_INFINITY: misses): of a sphere
+ * of PhotonParams.point_radius or a cone of distant_sine with the light's power. */
+SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, Ray ray, float t_max)
+{
+    __global const Light *source = scene->lights + light;
+    PhotonParams params = scene->frame->photons;
+    if (source->kind == LIGHT_DISTANT) {
+        float sine2 = params.distant_sine * params.distant_sine;
+        bool seen = vec3_dot(ray.d, source->direction) < 0.0f &&
+                    vec3_length_squared(vec3_cross(ray.d, source->direction)) < sine2;
+        return vec3_scale(source->emission, seen && t_max == FLOAT_INFINITY ? INV_PI / sine2 : 0.0f);
+    }
+    Vec3 to_light = vec3_sub(source->position, ray.o);
+    float along = vec3_dot(to_light, ray.d), radius2 = params.point_radius * params.point_radius;
+    bool seen = along > 0.0f && along < t_max && vec3_length_squared(vec3_cross(to_light, ray.d)) < radius2;
+    float falloff = 1.0f;
+    if (source->kind == LIGHT_SPOT)
+        falloff = spot_falloff(-vec3_dot(source->direction, ray.d), source->cos_total, source->cos_falloff);
+    return vec3_scale(source->emission, seen ? falloff * (INV_PI / radius2) : 0.0f);
+}
+
+/* What the ray of a caustic path brings from lights that it hits, or (surface NULL) from infinity. */
+SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ray, Hit hit, const Surface *surface)
+{
+    if (light != NONE)
+        return caustic_delta_radiance(scene, light, ray, hit.primitive == NONE ? FLOAT_INFINITY : hit.t);
+    if (hit.primitive == NONE)
+        return environment_radiance(scene, ray.d);
+    __global const Shape *shape = scene->shapes + surface->shape;
+    if (!SCENE_HAS(scene, FEATURE_AREA_LIGHT) || shape->first_light == NONE)
+        return vec3_splat(0.0f);
+    return light_emitted(scene, shape->first_light + hit.primitive - shape->first_primitive, surface->ng,
+                         vec3_negate(ray.d));
+}
+
+/* ---- smooth vertices --------------------------------------------------------------------------------------------- */
+
+/* What a surface does to a path that a delta lobe is drawn for. */
+typedef struct DeltaScatter {
+    Ray ray; /* on */
+    Vec3 weight; /* factor of the throughput */
+    bool transmitted;
+    bool smooth; /* the surface has delta lobes alone */
+} DeltaScatter;
+
+/* Draws a lobe at a surface that a ray has hit along d; false if it is no delta or brings nothing. random: the lobe, its
+ * point, mix materials. */
+SHARED_FUNCTION bool delta_scatter(const SceneView *scene, Surface *surface, Vec3 d, uint transport, Random4 random,
+                                   DeltaScatter *scatter)
+{
+    Bsdf bsdf;
+    Frame frame;
+    BsdfSample sample = {0};
+    float u_mix = SCENE_HAS(scene, FEATURE_MIX) ? random_float(random.x[3]) : 0.5f;
+    material_resolve(scene, u_mix, surface, &bsdf, &frame);
+    scatter->smooth = (bsdf.flags & BSDF_SMOOTH) != 0u;
+    if (!bsdf_sample(scene, &bsdf, frame_to_local(frame, vec3_negate(d)), random_float(random.x[0]),
+                     vec2(random_float(random.x[1]), random_float(random.x[2])), transport, &sample) ||
+        sample.delta == 0u)
+        return false;
+    scatter->weight = sample.weight;
+    scatter->transmitted = sample.transmitted != 0u;
+    scatter->ray = ray_spawn(surface->p, surface->ng, vec3_normalize(frame_to_world(frame, sample.wi)));
+    return !vec3_is_zero(sample.weight) && ray_traceable(scatter->ray.o, scatter->ray.d);
+}
+
+/* Continues a caustic path at what its ray has hit along d; false if it ends there. */
+SHARED_FUNCTION bool caustic_continue(const SceneView *scene, __global uint *restrict paths,
+                                      __global uint *restrict rays, uint item, Surface *surface, Vec3 d)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->pass.stride, segments = state_load(paths, stride, PATH_CAUSTIC_SEGMENTS, item);
+    uint depth = state_load(paths, stride, PATH_DEPTH, item), vertex = segments - depth;
+    DeltaScatter scatter;
+    if (segments >= frame->path.max_depth || vertex > CAUSTIC_VERTICES ||
+        !delta_scatter(scene, surface, d, TRANSPORT_RADIANCE, caustic_random(frame, paths, item, depth, vertex),
+                       &scatter))
+        return false;
+    ray_store(rays, stride, item, scatter.ray);
+    state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, segments + 1u);
+    state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item,
+                     vec3_mul(scatter.weight, state_load_vec3(paths, stride, PATH_CAUSTIC_BETA, item)));
+    return true;
+}
+
+#endif

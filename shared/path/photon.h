@@ -1,0 +1,206 @@
+/* Caustic photons: where light subpaths have arrived through smooth specular surfaces, and from which direction. Camera
+ * subpaths draw directions by them (path/caustic.h).
+ *
+ * A photon knows how the direction towards its light changes with the place, the light's point kept, and with the
+ * light's point, the place kept, so that it predicts the directions that show the light from places nearby. The
+ * photons are sorted by the Morton code of their cell (Morton 1966) in a grid of PHOTON_CELLS cells per side; a cell of
+ * a coarser level is a contiguous range of them. The host makes them before a rendering (host/render/photon_map.c). */
+#ifndef TWINLIGHT_PATH_PHOTON_H
+#define TWINLIGHT_PATH_PHOTON_H
+
+#include "layout/photon_map.h"
+#include "layout/scene_view.h"
+#include "math/warp.h"
+
+/* A cell of which at least PHOTONS_LEAST photons are in one of the eight cells of the next level is too coarse for a
+ * place in that one. Of more than PHOTONS_MOST photons of a cell, evenly spaced ones stand for all. */
+#define PHOTONS_LEAST 8u
+#define PHOTONS_MOST 16u
+
+/* Predicted directions this far from the photon's own, in cosines, are not drawn. */
+#define PHOTON_COSINE_MIN 0.05f
+
+/* The photons of a group for a place: `number` of them, first, first + every, ... */
+typedef struct PhotonSet {
+    uint first, every, number;
+} PhotonSet;
+
+/* Those of all groups. */
+typedef struct PhotonSets {
+    PhotonSet sets[PHOTON_GROUPS];
+    float weight; /* sum of the weights of groups that have any; 0: none has */
+} PhotonSets;
+
+/* The directions that a photon predicts for a place. With (a, b) = (w.t, w.b) / w.n the slopes of w in the frame of the
+ * photon's own direction n, z = spread^-1 ((a, b) - centre) has the density 1 / (pi (1 + |z|^2)^2), whose tails bound
+ * what directions far from the prediction contribute. */
+typedef struct PhotonLobe {
+    Frame frame;
+    float a, b; /* centre */
+    float spread_aa, spread_ba, spread_bb; /* lower triangular */
+    uint light; /* PHOTON_LIGHT */
+} PhotonLobe;
+
+/* Every third bit of a number of ten bits. */
+SHARED_FUNCTION uint photon_code_part(uint x)
+{
+    x = (x | x << 16) & 0x030000ffu;
+    x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+/* The Morton code of the finest cell that p is in; NONE outside the grid. */
+SHARED_FUNCTION uint photon_code(PhotonParams params, Vec3 p)
+{
+    Vec3 cell = vec3_scale(vec3_sub(p, params.origin), params.cells_per_unit);
+    float most = (float)PHOTON_CELLS;
+    if (!(cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x < most && cell.y < most && cell.z < most))
+        return NONE;
+    return photon_code_part((uint)cell.x) | photon_code_part((uint)cell.y) << 1 | photon_code_part((uint)cell.z) << 2;
+}
+
+/* The first of the sorted codes first ... last - 1 that is not below `code`. */
+SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint last, uint code)
+{
+    while (first < last) {
+        uint middle = first + (last - first) / 2u;
+        if (photons[middle] < code)
+            first = middle + 1u;
+        else
+            last = middle;
+    }
+    return first;
+}
+
+/* The photons of a group for a place with the code `code`: those of the finest cell around it that has enough. */
+SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *photons, uint group, uint code)
+{
+    PhotonSet set = {0u, 1u, 0u};
+    uint shift = 3u * (PHOTON_LEVELS - params.level[group]);
+    uint first = 0u, last = 0u;
+    for (; first == last && shift <= 3u * PHOTON_LEVELS; shift += 3u) {
+        uint cell = code >> shift << shift;
+        first = photon_find(photons, params.first[group], params.first[group + 1u], cell);
+        last = photon_find(photons, first, params.first[group + 1u], cell + (1u << shift));
+    }
+    if (first == last)
+        return set;
+    for (shift -= 3u; shift > 0u;) {
+        shift -= 3u;
+        uint cell = code >> shift << shift;
+        uint inner = photon_find(photons, first, last, cell);
+        uint inner_end = photon_find(photons, inner, last, cell + (1u << shift));
+        if (inner_end - inner < PHOTONS_LEAST)
+            break;
+        first = inner;
+        last = inner_end;
+    }
+    set.first = first;
+    set.every = (last - first + PHOTONS_MOST - 1u) / PHOTONS_MOST;
+    set.number = (last - first + set.every - 1u) / set.every;
+    return set;
+}
+
+/* The photons for the place p. */
+SHARED_FUNCTION PhotonSets photon_sets(PhotonParams params, __global const uint *photons, Vec3 p)
+{
+    PhotonSets found;
+    uint code = params.count > 0u ? photon_code(params, p) : NONE;
+    found.weight = 0.0f;
+    for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
+        PhotonSet none = {0u, 1u, 0u};
+        bool any = code != NONE && params.first[group] < params.first[group + 1u];
+        found.sets[group] = any ? photon_set(params, photons, group, code) : none;
+        if (found.sets[group].number > 0u)
+            found.weight += params.weight[group];
+    }
+    return found;
+}
+
+/* A photon of the sets, of which there is one: its group by weight, in that uniformly. u: uniform in [0, 1). */
+SHARED_FUNCTION uint photon_choose(PhotonParams params, const PhotonSets *found, float u)
+{
+    uint chosen = 0u;
+    u *= found->weight;
+    for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
+        PhotonSet set = found->sets[group];
+        if (set.number == 0u)
+            continue;
+        float part = float_clamp(u / params.weight[group], 0.0f, 1.0f);
+        uint k = (uint)(part * (float)set.number);
+        if (u >= 0.0f) /* the last group whose share begins at u or below */
+            chosen = set.first + (k < set.number ? k : set.number - 1u) * set.every;
+        u -= params.weight[group];
+    }
+    return chosen;
+}
+
+SHARED_FUNCTION Vec3 photon_vector(__global const uint *record, uint field)
+{
+    return vec3(word_float(record + field), word_float(record + field + 1u), word_float(record + field + 2u));
+}
+
+/* What photon `index` predicts for the place p. */
+SHARED_FUNCTION PhotonLobe photon_lobe(PhotonParams params, __global const uint *photons, uint index, Vec3 p)
+{
+    __global const uint *record = photons + params.count + (size_t)index * PHOTON_WORDS;
+    PhotonLobe lobe;
+    lobe.frame = frame_from_normal(photon_vector(record, PHOTON_DIRECTION));
+    Vec3 moved = frame_to_local(lobe.frame, vec3_sub(p, photon_vector(record, PHOTON_POINT)));
+    lobe.a = word_float(record + PHOTON_BY_PLACE) * moved.x + word_float(record + PHOTON_BY_PLACE + 1u) * moved.y;
+    lobe.b = word_float(record + PHOTON_BY_PLACE + 2u) * moved.x + word_float(record + PHOTON_BY_PLACE + 3u) * moved.y;
+    lobe.spread_aa = word_float(record + PHOTON_SPREAD);
+    lobe.spread_ba = word_float(record + PHOTON_SPREAD + 1u);
+    lobe.spread_bb = word_float(record + PHOTON_SPREAD + 2u);
+    lobe.light = record[PHOTON_LIGHT];
+    return lobe;
+}
+
+/* Density per solid angle of drawing w (unit) from the lobe. A cosine to the power of three turns the density of slopes
+ * into one of directions. */
+SHARED_FUNCTION float photon_lobe_density(const PhotonLobe *lobe, Vec3 w)
+{
+    Vec3 framed = frame_to_local(lobe->frame, w);
+    if (!(framed.z > PHOTON_COSINE_MIN))
+        return 0.0f;
+    float x = (framed.x / framed.z - lobe->a) / lobe->spread_aa;
+    float y = (framed.y / framed.z - lobe->b - lobe->spread_ba * x) / lobe->spread_bb;
+    float tail = 1.0f + (x * x + y * y);
+    float slopes = INV_PI / (tail * tail) / (lobe->spread_aa * lobe->spread_bb);
+    return slopes / (framed.z * framed.z * framed.z);
+}
+
+/* Draws a direction from the lobe; false if it is too far from the photon's own. */
+SHARED_FUNCTION bool photon_lobe_sample(const PhotonLobe *lobe, Vec2 u, Vec3 *w)
+{
+    float radius;
+    Vec2 disk = warp_disk_polar(u, &radius);
+    float scale = 1.0f / float_sqrt((1.0f - radius) * (1.0f + radius));
+    float x = disk.x * scale, y = disk.y * scale;
+    Vec3 framed = vec3(lobe->a + lobe->spread_aa * x, lobe->b + (lobe->spread_ba * x + lobe->spread_bb * y), 1.0f);
+    *w = vec3_normalize(frame_to_world(lobe->frame, framed));
+    return 1.0f > PHOTON_COSINE_MIN * vec3_length(framed);
+}
+
+/* Density per solid angle with which photon_choose and photon_lobe_sample give the direction w at p, counting photons of
+ * one light of no extent alone, or (light NONE) those of all others. */
+SHARED_FUNCTION float photon_density(PhotonParams params, __global const uint *photons, const PhotonSets *found, Vec3 p,
+                                     Vec3 w, uint light)
+{
+    float density = 0.0f;
+    for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
+        PhotonSet set = found->sets[group];
+        float sum = 0.0f;
+        for (uint i = 0u; i < set.number; ++i) {
+            PhotonLobe lobe = photon_lobe(params, photons, set.first + i * set.every, p);
+            if (lobe.light == light)
+                sum += photon_lobe_density(&lobe, w);
+        }
+        if (sum > 0.0f)
+            density += params.weight[group] / found->weight * (sum / (float)set.number);
+    }
+    return density;
+}
+
+#endif

@@ -1,0 +1,261 @@
+/* Caustics by photons: any photons leave the picture what it is, wherever other strategies find its light, and show it
+ * where no other does. */
+#include "support/bidirectional.h"
+#include "support/test_files.h"
+
+#include "mmlt/combination.h"
+#include "path/caustic_rest.h"
+#include "render/photon_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define PHOTONS 4096u
+
+/* ---- the same picture with and without --------------------------------------------------------------------------- */
+
+#define SMOOTH_GLASS "Material \"dielectric\" \"float eta\" 1.5\n"
+#define BEADS                                                                                                          \
+    SMOOTH_GLASS "AttributeBegin Translate -1 -0.4 0.2 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"           \
+                 "AttributeBegin Translate 0.9 -0.5 -0.6 Shape \"sphere\" \"float radius\" 0.45 AttributeEnd\n"        \
+                 "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.6 ] \"float roughness\" 0\n"                  \
+                 "AttributeBegin Translate 0 -0.3 1.2 Shape \"sphere\" \"float radius\" 0.6 AttributeEnd\n"
+#define BALL_LAMP(radius, L)                                                                                           \
+    "AttributeBegin Translate 1 2 -1 AreaLightSource \"diffuse\" \"rgb L\" [ " L " " L " " L                           \
+    " ] Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Shape \"sphere\" \"float radius\" " radius                  \
+    " AttributeEnd\n"
+#define WALL "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 2  4 -1 2  -4 3 2  4 3 2 ]\n"
+#define WATER SMOOTH_GLASS "Shape \"bilinearmesh\" \"point3 P\" [ -9 0.9 -9  9 0.9 -9  -9 0.8 9  9 0.8 9 ]\n"
+#define COATED "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.8 0.5 0.3 ] \"float roughness\" 0\n"
+
+/* Lamps of every kind over smooth surfaces of every kind. */
+static const BidirectionalScene SCENES[] = {
+    {"quad lamp", BD_ROOM BEADS, SUPPORT_SUM_ONLY, 6, 2},
+    {"ball lamp", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.6", "12") BEADS, SUPPORT_SUM_ONLY, 6, 2},
+    {"two-sided lamp, coated floor",
+     BD_BEGIN COATED BD_FLOOR
+     "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 5 5 5 ] \"bool twosided\" true Material \"diffuse\" \"rgb "
+     "reflectance\" [ 0 0 0 ]\nShape \"bilinearmesh\" \"point3 P\" [ -1 0.8 1  1 1.5 1  -1 0.8 1.5  1 1.5 1.6 ] "
+     "AttributeEnd\n" SMOOTH_GLASS BD_BALL,
+     SUPPORT_SUM_ONLY, 6, 2},
+    {"sun in the sky",
+     BD_BEGIN BD_GREY BD_FLOOR
+     "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" "
+     "\"$FILES/wide_sun.pfm\" AttributeEnd LightSource \"infinite\" \"rgb L\" [ 0.2 0.2 0.2 ]\n" BEADS,
+     SUPPORT_SUM_ONLY, 6, 2},
+    {"under water", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.4", "30") WALL WATER, SUPPORT_SUM_ONLY, 6, 2},
+    {"rough and smooth",
+     BD_ROOM SMOOTH_GLASS BD_BALL
+     "Material \"conductor\" \"rgb reflectance\" [ 0.8 0.8 0.8 ] \"float roughness\" 0.3\nAttributeBegin "
+     "Translate 1.6 -0.4 0 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n",
+     SUPPORT_SUM_ONLY, 6, 2},
+};
+#define SCENE_COUNT (int)(sizeof SCENES / sizeof SCENES[0])
+
+/* Path tracing; the default; each estimator alone plus what it leaves to chains. */
+enum { WAY_PATHS, WAY_ALL, WAY_ESTIMATORS, WAY_COUNT = WAY_ESTIMATORS + ESTIMATOR_COUNT };
+
+START_TEST(test_same)
+{
+    const BidirectionalScene *scene = &SCENES[_i / WAY_COUNT];
+    const int way = _i % WAY_COUNT;
+    PictureGroups expected, got;
+    char line[128];
+    GroupSetup setup = {
+        .groups = 16,
+        .render = {.text = bidirectional_text(scene), .samples = 1024, .max_depth = scene->depth, .threads = 1}};
+    groups_render(&setup, &expected);
+    setup.render.samples = way == WAY_PATHS ? 256 : 512;
+    setup.render.seed = 5000;
+    setup.render.photons = PHOTONS;
+    setup.render.integrator = way == WAY_PATHS ? integrator_pt() : integrator_mmlt();
+    setup.render.chains =
+        (ChainOptions){.chains = 256, .steps = 16, .shown = way >= WAY_ESTIMATORS ? 1 + way - WAY_ESTIMATORS : 0};
+    groups_render(&setup, &got);
+    snprintf(line, sizeof line, "%s, way %d", scene->name, way);
+    groups_compare(line, &got, &expected, 2, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+END_TEST
+
+/* ---- light that nothing else finds -------------------------------------------------------------------------------- */
+
+/* Glass whose index hardly differs from 1 bends no light, so a floor under a pane of it, seen through the pane, is as
+ * bright as without it; but no light can be connected with through it. */
+#define NEARLY_NOTHING(y)                                                                                              \
+    "Material \"dielectric\" \"float eta\" 1.0001 Shape \"bilinearmesh\" \"point3 P\" [ -9 " y " -9  9 " y             \
+    " -9  -9 " y " 9  9 " y " 9 ]\n"
+#define UNDER_WATER(lights) BD_BEGIN BD_GREY BD_FLOOR lights
+#define POINT "LightSource \"point\" \"rgb I\" [ 9 9 9 ] \"point3 from\" [ 1 2.2 -1 ]\n"
+#define SPOT                                                                                                           \
+    "LightSource \"spot\" \"rgb I\" [ 20 20 20 ] \"point3 from\" [ 1 3 0 ] \"point3 to\" [ 0 -1 0 ] \"float "          \
+    "coneangle\" 40 \"float conedeltaangle\" 15\n"
+#define DISTANT "LightSource \"distant\" \"rgb L\" [ 2 2 2 ] \"point3 from\" [ 1 3 -1 ] \"point3 to\" [ 0 0 0 ]\n"
+#define SPARK BALL_LAMP("0.01", "30000")
+
+static const char *const UNSEEN[][2] = {
+    {"point", POINT}, {"spot", SPOT}, {"distant", DISTANT}, {"small lamp", SPARK}, {"several", POINT DISTANT SPARK}};
+#define UNSEEN_COUNT (int)(sizeof UNSEEN / sizeof UNSEEN[0])
+
+START_TEST(test_unseen)
+{
+    const int light = _i / 2, way = _i % 2;
+    PictureGroups expected, got;
+    char text[4096], line[64];
+    snprintf(text, sizeof text, UNDER_WATER("%s"), UNSEEN[light][1]);
+    GroupSetup setup = {.groups = 16, .render = {.text = text, .samples = 256, .max_depth = 6, .threads = 1}};
+    groups_render(&setup, &expected);
+    snprintf(text, sizeof text, UNDER_WATER("%s") NEARLY_NOTHING("0.9"), UNSEEN[light][1]);
+    setup.render.seed = 700;
+    setup.render.photons = PHOTONS;
+    setup.render.integrator = way == 0 ? integrator_pt() : integrator_mmlt();
+    groups_render(&setup, &got);
+    snprintf(line, sizeof line, "%s, %s", UNSEEN[light][0], way == 0 ? "pt" : "mmlt");
+    groups_compare(line, &got, &expected, 2, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+END_TEST
+
+/* ---- receivers --------------------------------------------------------------------------------------------------- */
+
+/* Paths of up to 7 vertices after the camera, the last on a light: which vertex draws by photons, by the definition. */
+START_TEST(test_receivers)
+{
+    for (uint last = 1; last <= 6; ++last)
+        for (uint delta = 0; delta < 2u << last; delta += 2) {
+            uint receiver = last;
+            bool connectible = false;
+            while (receiver > 0 && (delta >> receiver & 1u) != 0)
+                --receiver;
+            for (uint i = 0; i < receiver; ++i)
+                connectible = connectible || ((delta >> i & 1u) == 0 && (delta >> (i + 1) & 1u) == 0);
+            bool caustic = receiver > 0 && receiver < last && last - receiver <= CAUSTIC_VERTICES;
+            ck_assert_uint_eq(receiver_find(0u, delta, last), caustic && !connectible ? receiver : 0u);
+            ck_assert_uint_eq(receiver_find(1u, delta, last), caustic ? receiver : 0u);
+            ck_assert(receiver == 0 || receiver_draws(0u, delta | ~0u << receiver, receiver) == !connectible);
+        }
+    ck_assert_uint_eq(receiver_find(1u, 1u << 31, 31u), 0u);
+    ck_assert(!receiver_draws(1u, 0u, 31u));
+}
+END_TEST
+
+/* What photons and chance show of a path adds up to it, and photons show nothing where they are no better than chance. */
+START_TEST(test_rest)
+{
+    ck_assert(caustic_rest_of(0.3f, 0.0f) == 1.0f && caustic_rest_of(0.3f, 0.3f) == 1.0f);
+    for (float q = 1.0f; q < 1e9f; q *= 7.0f) {
+        float rest = caustic_rest_of(0.1f, q);
+        ck_assert_float_eq_tol(rest + q / (0.1f + q), 1.0f, 1e-6f);
+    }
+}
+END_TEST
+
+/* ---- the photons ------------------------------------------------------------------------------------------------- */
+
+/* The density of directions integrates to the probability that one is drawn, and is that of the directions drawn: the
+ * mean of 1 / density over a region is its solid angle. */
+START_TEST(test_lobe)
+{
+    const PhotonLobe lobe = {.frame = frame_from_normal(vec3_normalize(vec3(1.0f, -2.0f, 0.5f))),
+                             .a = 0.2f,
+                             .b = -0.1f,
+                             .spread_aa = 0.15f,
+                             .spread_ba = -0.08f,
+                             .spread_bb = 0.1f,
+                             .light = NONE};
+    const int count = 400000;
+    const double cap = 0.97; /* of cosines with the middle of the lobe */
+    const Vec3 middle = vec3_normalize(frame_to_world(lobe.frame, vec3(lobe.a, lobe.b, 1.0f)));
+    double sum = 0.0, square = 0.0, integral = 0.0;
+    int drawn = 0;
+    unsigned state = 7;
+    for (int i = 0; i < count; ++i) {
+        Vec3 w, any = warp_sphere(vec2((float)test_random_unit(&state), (float)test_random_unit(&state)));
+        Vec2 u = vec2((float)test_random_unit(&state), (float)test_random_unit(&state));
+        integral += (double)photon_lobe_density(&lobe, any) * 4.0 * M_PI / count;
+        if (!photon_lobe_sample(&lobe, u, &w))
+            continue;
+        ++drawn;
+        if ((double)vec3_dot(w, middle) < cap)
+            continue;
+        double inverse = 1.0 / (double)photon_lobe_density(&lobe, w);
+        sum += inverse;
+        square += inverse * inverse;
+    }
+    double mean = sum / count, error = sqrt((square / count - mean * mean) / count);
+    ck_assert_double_eq_tol(mean, 2.0 * M_PI * (1.0 - cap), 5.0 * error);
+    ck_assert_double_lt(error, 0.01 * mean);
+    ck_assert_double_eq_tol(integral, (double)drawn / count, 0.02);
+    ck_assert_double_gt((double)drawn / count, 0.98);
+}
+END_TEST
+
+static int codes_compare(const void *a, const void *b)
+{
+    const uint *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* A cell's photons are those that a search of all finds; the finest cell that has enough is taken, or, where the usual
+ * one is empty, a coarser one. */
+START_TEST(test_grid)
+{
+    enum { COUNT = 3000 };
+    static uint words[COUNT];
+    PhotonParams params = {.count = COUNT,
+                           .first = {0, 0, COUNT, COUNT, COUNT},
+                           .level = {1, 5, 1, 1},
+                           .cells_per_unit = (float)PHOTON_CELLS};
+    unsigned state = 11;
+    for (int i = 0; i < COUNT; ++i) {
+        double x = test_random_unit(&state), y = test_random_unit(&state), z = 0.1 * test_random_unit(&state);
+        words[i] = photon_code(params, vec3((float)(x * x * x), (float)y, (float)z));
+    }
+    qsort(words, COUNT, sizeof *words, codes_compare);
+    int coarser = 0;
+    for (int i = 0; i < 4000; ++i) {
+        double x = test_random_unit(&state);
+        Vec3 p = vec3((float)(x * x), (float)test_random_unit(&state), (float)(0.1 * test_random_unit(&state)));
+        uint code = photon_code(params, p), inside[PHOTON_LEVELS + 1] = {COUNT}, level = params.level[1];
+        for (int k = 0; k < COUNT; ++k)
+            for (uint l = 1; l <= PHOTON_LEVELS; ++l)
+                inside[l] += words[k] >> 3u * (PHOTON_LEVELS - l) == code >> 3u * (PHOTON_LEVELS - l);
+        while (inside[level] == 0)
+            --level;
+        coarser += level < params.level[1];
+        while (inside[level] > 0 && level < PHOTON_LEVELS && inside[level + 1] >= PHOTONS_LEAST)
+            ++level;
+        PhotonSet set = photon_set(params, words, 1, code);
+        uint every = (inside[level] + PHOTONS_MOST - 1) / PHOTONS_MOST;
+        ck_assert_uint_eq(set.every, every);
+        ck_assert_uint_eq(set.number, (inside[level] + every - 1) / every);
+        for (uint k = 0; k < set.number; ++k)
+            ck_assert_uint_eq(words[set.first + k * set.every] >> 3u * (PHOTON_LEVELS - level),
+                              code >> 3u * (PHOTON_LEVELS - level));
+        ck_assert(set.first == 0 ||
+                  words[set.first - 1] >> 3u * (PHOTON_LEVELS - level) != code >> 3u * (PHOTON_LEVELS - level));
+    }
+    ck_assert_int_gt(coarser, 100);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("caustic");
+    TCase *photons = tcase_create("photons");
+    tcase_add_test(photons, test_receivers);
+    tcase_add_test(photons, test_rest);
+    tcase_add_test(photons, test_lobe);
+    tcase_add_test(photons, test_grid);
+    suite_add_tcase(suite, photons);
+    TCase *pictures = tcase_create("pictures");
+    tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
+    tcase_set_timeout(pictures, 300);
+    tcase_add_loop_test(pictures, test_same, 0, SCENE_COUNT * WAY_COUNT);
+    tcase_add_loop_test(pictures, test_unseen, 0, 2 * UNSEEN_COUNT);
+    tcase_set_tags(pictures, "pictures");
+    suite_add_tcase(suite, pictures);
+    return test_run(suite);
+}
