@@ -28,7 +28,7 @@
 #define WATER SMOOTH_GLASS "Shape \"bilinearmesh\" \"point3 P\" [ -9 0.9 -9  9 0.9 -9  -9 0.8 9  9 0.8 9 ]\n"
 #define COATED "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.8 0.5 0.3 ] \"float roughness\" 0\n"
 
-/* Lamps of every kind over smooth surfaces of every kind. */
+/* Lamps of every kind over smooth surfaces of every kind. Under water the caustic has as many segments as a path may. */
 static const BidirectionalScene SCENES[] = {
     {"quad lamp", BD_ROOM BEADS, SUPPORT_SUM_ONLY, 6, 2},
     {"ball lamp", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.6", "12") BEADS, SUPPORT_SUM_ONLY, 6, 2},
@@ -43,7 +43,7 @@ static const BidirectionalScene SCENES[] = {
      "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" "
      "\"$FILES/wide_sun.pfm\" AttributeEnd LightSource \"infinite\" \"rgb L\" [ 0.2 0.2 0.2 ]\n" BEADS,
      SUPPORT_SUM_ONLY, 6, 2},
-    {"under water", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.4", "30") WALL WATER, SUPPORT_SUM_ONLY, 6, 2},
+    {"under water", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.4", "30") WALL WATER, SUPPORT_SUM_ONLY, 4, 2},
     {"rough and smooth",
      BD_ROOM SMOOTH_GLASS BD_BALL
      "Material \"conductor\" \"rgb reflectance\" [ 0.8 0.8 0.8 ] \"float roughness\" 0.3\nAttributeBegin "
