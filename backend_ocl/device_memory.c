@@ -295,18 +295,19 @@ bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error
 
 bool device_memory_photons(DeviceMemory *memory, const PhotonMap *photons, Error *error)
 {
-    if (!photons || !photons->words || photons->words == memory->photon_words)
+    if (!photons || !photons->words || photons->number == memory->photon_number)
         return true;
     size_t bytes = photons->word_count * sizeof(uint);
     buffer_release(&memory->photons);
-    memory->photon_words = NULL;
+    memory->photon_number = 0;
     if (!buffer_make(memory, &memory->photons, CL_MEM_READ_ONLY, bytes, error))
         return false;
     cl_int status =
         clEnqueueWriteBuffer(memory->queue, memory->photons, CL_TRUE, 0, bytes, photons->words, 0, NULL, NULL);
-    memory->photon_words = photons->words;
     memory->bytes += bytes - memory->photon_bytes;
     memory->photon_bytes = bytes;
+    if (status == CL_SUCCESS)
+        memory->photon_number = photons->number;
     return status == CL_SUCCESS || ocl_fail(error, memory->device->info.name, "copying photons", status);
 }
 

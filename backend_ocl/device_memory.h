@@ -36,7 +36,7 @@ typedef struct DeviceMemory {
     BatchMemory batches[BATCH_SLOTS];
     cl_mem guide; /* of the current pass */
     cl_mem photons; /* of the rendering; at first a placeholder */
-    const uint *photon_words; /* those that it holds a copy of */
+    unsigned photon_number; /* PhotonMap.number of those that it holds a copy of; 0: none */
     size_t photon_bytes;
     cl_mem film; /* sums of the film, if the device adds splats (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* for which the state was allocated */

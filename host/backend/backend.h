@@ -72,6 +72,7 @@ typedef struct StateField {
 typedef struct PhotonMap {
     uint *words; /* NULL: no photons */
     size_t word_count;
+    unsigned number; /* of no other map of this process: a later one may have the same address */
     PhotonParams params;
 } PhotonMap;
 

@@ -6,6 +6,7 @@
 #include "render/photon_grid.h"
 #include "render/photon_lobe.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -172,6 +173,9 @@ static bool records_make(PhotonPass *pass, const PhotonLights *lights, uint coun
     return done;
 }
 
+/* PhotonMap.number of the next map; 0 is none's. */
+static atomic_uint next_number = 1;
+
 bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error)
 {
     PhotonPass pass = {0};
@@ -185,6 +189,7 @@ bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, Photo
     done = done && photon_lights_init(&lights, scene, error) && pass_init(&pass, run, error) &&
            records_make(&pass, &lights, count, &records, error) &&
            (records.count == 0 || photon_grid_make(&records, &lights, map, error));
+    map->number = atomic_fetch_add(&next_number, 1);
     pass_destroy(&pass);
     photon_lights_destroy(&lights);
     free(records.records);

@@ -1,5 +1,5 @@
 /* A receiver's direction drawn by photons (path/caustic_rest.h), and the smooth specular vertices that it passes on the
- * way to a light. Path tracing does this at every vertex; its state has fields for it (path/path_state.h). */
+ * way to a light. Path tracing does this; its state has fields for it (path/path_state.h). */
 #ifndef TWINLIGHT_PATH_CAUSTIC_H
 #define TWINLIGHT_PATH_CAUSTIC_H
 
