@@ -1,5 +1,5 @@
-/* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, a pane
- * of uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
+/* Makes what the scenes cannot say in a few lines of their own, in a folder's parts/: vessels turned on a lathe, rings,
+ * a pane of uneven glass, the normals of hammered metal, and the sun. usage: make_parts FOLDER */
 #include "image/color.h"
 #include "image/exr.h"
 #include "image/png_write.h"
@@ -108,6 +108,28 @@ static Vertex pane_vertex(const void *shape, int i, int j)
     double length = sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
     return (Vertex){.p = {x, y, z}, .n = {-slope_x / length, -slope_y / length, 1.0 / length}, .uv = {x, y}};
 }
+
+/* ---- rings -------------------------------------------------------------------------------------------------------- */
+
+enum { RING_COLUMNS = 96, RING_ROWS = 32 };
+
+/* An ellipse of half axes `across` and `up` turned about the y axis at a distance `radius`. */
+typedef struct Ring {
+    double radius, across, up;
+} Ring;
+
+static Vertex ring_vertex(const void *shape, int i, int j)
+{
+    const Ring *ring = shape;
+    double around = TAU * (i % RING_COLUMNS) / RING_COLUMNS, angle = TAU * (j % RING_ROWS) / RING_ROWS;
+    double r = ring->radius + ring->across * cos(angle), nr = ring->up * cos(angle), ny = ring->across * sin(angle);
+    double length = hypot(nr, ny);
+    return (Vertex){.p = {r * cos(around), ring->up * sin(angle), r * sin(around)},
+                    .n = {nr / length * cos(around), ny / length, nr / length * sin(around)},
+                    .uv = {(double)i / RING_COLUMNS, (double)j / RING_ROWS}};
+}
+
+static const Ring BAND = {0.01, 0.0008, 0.003}, TORUS = {0.022, 0.008, 0.008};
 
 /* ---- files -------------------------------------------------------------------------------------------------------- */
 
@@ -339,7 +361,10 @@ static const Part PARTS[] = {
 static bool parts_write(const char *folder)
 {
     Grid pane = {PANE_COLUMNS, PANE_ROWS, pane_vertex, NULL, false, false};
-    bool good = grid_write(&pane, folder, "pane.ply");
+    Grid band = {RING_COLUMNS, RING_ROWS, ring_vertex, &BAND, false, false};
+    Grid torus = {RING_COLUMNS, RING_ROWS, ring_vertex, &TORUS, false, false};
+    bool good = grid_write(&pane, folder, "pane.ply") && grid_write(&band, folder, "band.ply") &&
+                grid_write(&torus, folder, "torus.ply");
     for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS && good; ++i)
         good = lathe_write(PARTS[i].lathe, folder, PARTS[i].name);
     return good;

@@ -2,16 +2,21 @@
 scenesdir = $(pkgdatadir)/scenes
 dist_scenes_DATA = \
 	scenes/cornell.pbrt \
+	scenes/cube.pbrt \
 	scenes/door.pbrt \
 	scenes/glass.pbrt \
 	scenes/glossy.pbrt \
 	scenes/lamp.pbrt \
+	scenes/mirror.pbrt \
 	scenes/pool.pbrt \
 	scenes/relief.pbrt \
+	scenes/ring.pbrt \
 	scenes/showcase.pbrt \
+	scenes/tumbler.pbrt \
 	scenes/windows.pbrt
 scenepartsdir = $(scenesdir)/parts
 dist_sceneparts_DATA = \
+	scenes/parts/band.ply \
 	scenes/parts/bottle.ply \
 	scenes/parts/bowl.ply \
 	scenes/parts/box.pbrt \
@@ -26,6 +31,7 @@ dist_sceneparts_DATA = \
 	scenes/parts/lemon.ply \
 	scenes/parts/pane.ply \
 	scenes/parts/sun.exr \
+	scenes/parts/torus.ply \
 	scenes/parts/tumbler-water.ply \
 	scenes/parts/tumbler-wet.ply \
 	scenes/parts/tumbler.ply \

@@ -13,6 +13,8 @@
 #include "render/integrator.h"
 #include "render/layers.h"
 
+#include <math.h>
+
 /* Number of bits in BD_LIGHT_DELTA. */
 #define MMLT_DEPTH_LIMIT 31
 
@@ -36,10 +38,20 @@ static bool generations_run(Mmlt *mmlt, Error *error)
     return true;
 }
 
+/* In proportion to what the rendering takes. */
+static unsigned mmlt_photons(const RenderOptions *options, uint64_t pixels)
+{
+    double count = MMLT_PHOTONS_MAX;
+    if (options->seconds > 0.0)
+        count = fmin(count, MMLT_PHOTONS_PER_SECOND * options->seconds);
+    if (options->samples > 0)
+        count = fmin(count, MMLT_PHOTONS_PER_SAMPLE * (double)options->samples * (double)pixels);
+    return (unsigned)fmax(count, MMLT_PHOTONS_MIN);
+}
+
 static bool mmlt_render(RenderRun *run, Error *error)
 {
     Mmlt mmlt;
-    run->start = run->last_save = timing_now();
     bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, error);
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         run->chains.weights[s] = mmlt.combinations[0].weight[s];
@@ -57,7 +69,7 @@ const Integrator *integrator_mmlt(void)
                                           .strategies = STRATEGIES_BDPT,
                                           .guides = true,
                                           .photons = true,
-                                          .photons_default = MMLT_PHOTONS,
+                                          .photons_default = mmlt_photons,
                                           .render = mmlt_render};
     return &integrator;
 }

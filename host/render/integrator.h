@@ -5,6 +5,7 @@
 
 #include "backend/backend.h"
 #include "path/mis.h"
+#include "render/job.h"
 
 struct RenderRun;
 
@@ -14,7 +15,8 @@ typedef struct Integrator {
     int depth_limit; /* most segments of a path */
     uint strategies; /* STRATEGIES_* */
     bool photons; /* draws directions by caustic photons (path/caustic.h) if RenderOptions.photons says so */
-    unsigned photons_default; /* of a rendering that does not say how many */
+    /* How many in a rendering of so many pixels that does not say; NULL: none. */
+    unsigned (*photons_default)(const RenderOptions *options, uint64_t pixels);
     bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
     /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
      * is set. */

@@ -50,11 +50,11 @@ static int entry_compare(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-static void bounds_set(const PhotonRecords *records, PhotonParams *params)
+void photon_grid_bounds(const Vec3 *first, size_t stride, uint count, PhotonParams *params)
 {
-    Vec3 low = records->records[0].point, high = low;
-    for (uint i = 1; i < records->count; ++i) {
-        Vec3 p = records->records[i].point;
+    Vec3 low = *first, high = low;
+    for (uint i = 1; i < count; ++i) {
+        Vec3 p = *(const Vec3 *)((const char *)first + i * stride);
         low = vec3(float_min(low.x, p.x), float_min(low.y, p.y), float_min(low.z, p.z));
         high = vec3(float_max(high.x, p.x), float_max(high.y, p.y), float_max(high.z, p.z));
     }
@@ -211,7 +211,7 @@ bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, Photon
         return error_memory(error, bytes, "photons");
     }
     map->params = lights->params;
-    bounds_set(records, &map->params);
+    photon_grid_bounds(&records->records[0].point, sizeof *records->records, count, &map->params);
     for (uint i = 0; i < count; ++i)
         entries[i] = (GridEntry){.group = PHOTON_GROUPS - 1,
                                  .code = photon_code(map->params, records->records[i].point),

@@ -11,6 +11,10 @@
 #define POINT_STEP 3e-4
 #define DIRECTION_STEP 3e-4
 
+/* A neighbour that begins beside the surface of a lamp begins this many steps farther along its ray, so that it is
+ * outside unless the ray grazes the surface. */
+#define STEPS_AHEAD 4.0f
+
 /* What lights of no extent count as: a sphere, relative to the scene's radius, and a cone's sine. */
 #define POINT_RADIUS 5e-4
 #define DISTANT_SINE 1e-3f
@@ -23,7 +27,7 @@
 #define FAR_RADIUS_MIN 1e-5
 #define FAR_RADIUS_MAX 1.0
 
-static bool light_is_far(const PhotonLights *lights, uint light)
+bool photon_light_is_far(const PhotonLights *lights, uint light)
 {
     return lights->view.lights[light].kind >= LIGHT_DISTANT;
 }
@@ -76,8 +80,9 @@ PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, 
     Frame frame = frame_from_normal(path->first);
     Vec3 axis = k % 2u == 0u ? frame.t : frame.b;
     bool other_point = k >= 2u;
-    if (other_point != light_is_far(lights, path->light))
-        neighbour.origin = vec3_mad(path->origin, (float)lights->point_step, axis);
+    if (other_point != photon_light_is_far(lights, path->light))
+        neighbour.origin = vec3_mad(path->origin, (float)lights->point_step,
+                                    other_point ? vec3_mad(axis, STEPS_AHEAD, path->first) : axis);
     else
         neighbour.first = vec3_normalize(vec3_mad(path->first, (float)lights->direction_step, axis));
     return neighbour;
@@ -150,7 +155,7 @@ static double light_radius(const PhotonLights *lights, const PhotonPath *path)
 bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
                         const PhotonPath neighbours[PHOTON_NEIGHBOURS], PhotonRecord *record)
 {
-    bool far = light_is_far(lights, path->light);
+    bool far = photon_light_is_far(lights, path->light);
     Frame frame = frame_from_normal(path->first);
     double places[2][4], slopes[2][4], across[4];
     *record = (PhotonRecord){.number = path->number,

@@ -3,19 +3,9 @@
 #ifndef TWINLIGHT_RENDER_PHOTON_LOBE_H
 #define TWINLIGHT_RENDER_PHOTON_LOBE_H
 
-#include "backend/backend.h"
 #include "layout/scene_view.h"
+#include "render/photon_pass.h"
 #include "scene/scene.h"
-
-/* A light subpath that has arrived at a receiver, as kernels/photon.cl hands it back. */
-typedef struct PhotonPath {
-    uint number; /* which random numbers it has */
-    uint light;
-    uint vertices, lobes; /* smooth specular vertices, and which of them transmitted */
-    Vec3 origin, first; /* its first ray */
-    Vec3 point; /* where it has arrived */
-    Vec3 last; /* direction of its last ray */
-} PhotonPath;
 
 /* A photon with its derivatives. Slopes are those of directions in frame_from_normal(direction) (path/photon.h). */
 typedef struct PhotonRecord {
@@ -46,6 +36,9 @@ typedef struct PhotonLights {
 
 bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error);
 void photon_lights_destroy(PhotonLights *lights);
+
+/* At infinity: light arrives in directions that do not change with the place. */
+bool photon_light_is_far(const PhotonLights *lights, uint light);
 
 /* Neighbours of a subpath: two through the same point of the light (or, at infinity, in the same direction), and two
  * through other points (in other directions). */

@@ -66,7 +66,6 @@ static bool passes_run(PassLoop *loop, Error *error)
 {
     RenderRun *run = loop->run;
     const RenderOptions *options = run->options;
-    run->start = run->last_save = timing_now();
     while (loop->next < loop->total) {
         double elapsed = timing_now() - run->start;
         /* Even with --time every pixel gets one sample: no holes in the image. */
@@ -106,6 +105,7 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     run->interface->diagnostics(run->backend, counters);
     result->chains = run->chains;
     result->stopped = *render_run_stop(run);
+    result->photons = run->photons.params.count;
     result->diagnostic_count = 0;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
@@ -134,18 +134,21 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
         frame->scene.guide_count = 0;
 }
 
-unsigned render_photons(const Integrator *integrator, const RenderOptions *options)
+unsigned render_photons(const Integrator *integrator, const RenderOptions *options, uint64_t pixels)
 {
     bool by_depth = options->layers && (options->layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0;
     bool alone = integrator->render && (options->chains.paper || options->chains.chains_only);
     if (!integrator->photons || by_depth || alone)
         return 0;
-    return options->photons == PHOTONS_DEFAULT ? integrator->photons_default : options->photons;
+    if (options->photons != PHOTONS_DEFAULT)
+        return options->photons;
+    return integrator->photons_default ? integrator->photons_default(options, pixels) : 0;
 }
 
 bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
-    if (!photon_map_make(run, scene, render_photons(integrator, run->options), &run->photons, error))
+    uint count = render_photons(integrator, run->options, run->crop_pixels);
+    if (!photon_map_make(run, scene, count, &run->photons, error))
         return false;
     run->photons.params.everywhere = integrator->strategies == STRATEGIES_PT;
     run->frame.photons = run->photons.params;

@@ -16,8 +16,9 @@
 typedef struct RenderResult {
     uint64_t samples; /* paths; MMLT: work in samples of path tracing */
     double samples_per_pixel;
-    double seconds; /* of rendering alone */
+    double seconds; /* of rendering alone, photons included */
     bool stopped; /* by options->stop */
+    uint photons;
     BackendStatistics backend;
     ChainStatistics chains;
     int diagnostic_count;
@@ -37,7 +38,7 @@ typedef struct RenderTask {
 
 /* Number of caustic photons that a rendering asks for: none for images by depth, which have no layer for what photons
  * bring, and none where chains alone are shown, since path tracing draws by photons. */
-unsigned render_photons(const Integrator *integrator, const RenderOptions *options);
+unsigned render_photons(const Integrator *integrator, const RenderOptions *options, uint64_t pixels);
 
 /* Makes the photons of a run, to be destroyed by photon_map_destroy (render/photon_map.h): run->photons, none if there
  * are none to be found, and their parameters in the run's frame. */

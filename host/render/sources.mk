@@ -11,6 +11,8 @@ libtwinlight_host_la_SOURCES += \
 	host/render/photon_grid.c host/render/photon_grid.h \
 	host/render/photon_lobe.c host/render/photon_lobe.h \
 	host/render/photon_map.c host/render/photon_map.h \
+	host/render/photon_pass.c host/render/photon_pass.h \
+	host/render/photon_paths.c host/render/photon_paths.h \
 	host/render/picture.c host/render/picture.h \
 	host/render/progress.c host/render/progress.h \
 	host/render/render.c host/render/render.h \

@@ -165,6 +165,7 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_number(&json, "samples_per_pixel", result->samples_per_pixel);
     json_unsigned(&json, "samples", result->samples);
     json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
+    json_unsigned(&json, "photons", result->photons);
     json_bool(&json, "stopped", result->stopped);
     stats_seconds(&json, stats);
     stats_rays(&json, result);

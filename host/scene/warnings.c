@@ -33,6 +33,6 @@ void scene_advise(const Scene *scene, bool photons)
     if (delta && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
         log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
                               "and after a rough surface is found by photons alone and is missing: render by mmlt, or "
-                              "by pt with --photons=131072");
+                              "by pt with --photons=1048576");
     strays_report(scene);
 }

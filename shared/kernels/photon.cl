@@ -39,13 +39,12 @@ __kernel void photon_start(__global const FrameParams *restrict frame, __global 
     if (item >= frame->pass.item_count)
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    for (uint i = 0u; i < PHOTON_PATH_WORDS; ++i)
+    for (uint i = 0u; i < PHOTON_PATH_VERTICES; ++i)
         state_store(paths, stride, i, item, pass_load(frame, pass, i, item));
     Ray ray = ray_spawn(state_load_vec3(paths, stride, PHOTON_PATH_ORIGIN, item), vec3_splat(0.0f),
                         state_load_vec3(paths, stride, PHOTON_PATH_FIRST, item));
     uint light = state_load(paths, stride, PHOTON_PATH_EMITTER, item);
-    bool begun = light != NONE ||
-                 photon_emit(scene, state_load(paths, stride, PHOTON_PATH_NUMBER, item), &ray, &light);
+    bool begun = light != NONE || photon_emit(scene, state_load(paths, stride, PHOTON_PATH_NUMBER, item), &ray, &light);
     state_store(paths, stride, PHOTON_PATH_EMITTER, item, light);
     state_store(paths, stride, PHOTON_PATH_VERTICES, item, 0u);
     state_store(paths, stride, PHOTON_PATH_LOBES, item, 0u);
@@ -90,15 +89,17 @@ __kernel void photon_walk(__global const FrameParams *restrict frame, __global c
     }
 }
 
-/* From: the finished subpath. To: BUFFER_PASS. */
+/* From: the finished subpath. To: BUFFER_PASS; of one that has not arrived, only that. */
 __kernel void photon_end(__global const FrameParams *restrict frame, __global const uint *restrict paths,
                          __global uint *restrict pass)
 {
     uint item = (uint)get_global_id(0);
     if (item >= frame->pass.item_count)
         return;
-    for (uint i = 0u; i < PHOTON_PATH_WORDS; ++i)
-        pass_store(frame, pass, i, item, state_load(paths, frame->pass.stride, i, item));
+    uint stride = frame->pass.stride;
+    pass_store(frame, pass, PHOTON_PATH_ARRIVED, item, state_load(paths, stride, PHOTON_PATH_ARRIVED, item));
+    for (uint i = 0u; i < PHOTON_PATH_WORDS && state_load(paths, stride, PHOTON_PATH_ARRIVED, item) != 0u; ++i)
+        pass_store(frame, pass, i, item, state_load(paths, stride, i, item));
 }
 
 #endif

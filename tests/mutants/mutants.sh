@@ -195,9 +195,10 @@ likely() {
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
-    shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h) echo test_caustic:photons test_caustic ;;
+    shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h | host/render/photon_*.c) echo test_caustic:photons test_caustic ;;
     shared/chain/pool.h) echo test_chain:shown test_partition test_chain_population test_pool test_layers ;;
     shared/chain/chain_light.h) echo test_chain:shown test_partition test_layers test_shift ;;
+    shared/layout/scene_types.h) echo test_emit test_light ;;
     shared/light/emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
     shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_partition test_bidirectional:walks test_analytic ;;
     shared/camera/film_sum.h) echo test_film test_layers test_emit ;;

@@ -192,6 +192,59 @@ START_TEST(test_lobe)
 }
 END_TEST
 
+/* Among photons of one place and direction, each light's are counted apart, in proportion to their number. */
+START_TEST(test_density)
+{
+    enum { COUNT = 5 };
+    static const uint lights[COUNT] = {NONE, 2, NONE, 7, NONE};
+    uint words[COUNT * (1 + PHOTON_WORDS)] = {0};
+    const PhotonParams params = {
+        .count = COUNT, .first = {0, COUNT, COUNT, COUNT, COUNT}, .level = {1, 1, 1, 1}, .weight = {1.0f}};
+    const float spread = 0.1f;
+    for (uint i = 0; i < COUNT; ++i) {
+        uint *photon = words + COUNT + i * PHOTON_WORDS;
+        photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
+        photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
+        photon[PHOTON_LIGHT] = lights[i];
+    }
+    const PhotonSets found = {{{0, 1, COUNT}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, 1.0f};
+    const Vec3 p = vec3(0.0f, 0.0f, 0.0f), w = vec3(0.0f, 0.0f, 1.0f);
+    const double lobe = 1.0 / (M_PI * (double)(spread * spread));
+    const struct {
+        uint light;
+        double part;
+    } cases[] = {{NONE, 0.6}, {2, 0.2}, {7, 0.2}, {3, 0.0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+        ck_assert_double_eq_tol((double)photon_density(params, words, &found, p, w, cases[i].light),
+                                cases[i].part * lobe, 1e-5 * lobe);
+}
+END_TEST
+
+/* A bead that one of some two thousand light subpaths meets has as many photons as are wanted. */
+START_TEST(test_found)
+{
+    static const char *const LIGHTS[] = {
+        POINT, BALL_LAMP("0.1", "300"), DISTANT,
+        "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "
+        "AttributeEnd\n"};
+    for (size_t i = 0; i < sizeof LIGHTS / sizeof LIGHTS[0]; ++i) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS
+                                           "AttributeBegin Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.15 "
+                                           "AttributeEnd\n",
+                 LIGHTS[i]);
+        const BidirectionalScene scene = {"bead", text, SUPPORT_SUM_ONLY, 6, 2};
+        const RenderSetup setup = {.text = bidirectional_text(&scene), .samples = 1, .threads = 1, .photons = 32768};
+        RenderedImage image;
+        fixture_render(&setup, &image);
+        printf("light %zu: %u photons\n", i, image.result.photons);
+        ck_assert_uint_gt(image.result.photons, 28000);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
 static int codes_compare(const void *a, const void *b)
 {
     const uint *x = a, *y = b;
@@ -248,11 +301,13 @@ int main(void)
     tcase_add_test(photons, test_receivers);
     tcase_add_test(photons, test_rest);
     tcase_add_test(photons, test_lobe);
+    tcase_add_test(photons, test_density);
     tcase_add_test(photons, test_grid);
     suite_add_tcase(suite, photons);
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
     tcase_set_timeout(pictures, 300);
+    tcase_add_test(pictures, test_found);
     tcase_add_loop_test(pictures, test_same, 0, SCENE_COUNT * WAY_COUNT);
     tcase_add_loop_test(pictures, test_unseen, 0, 2 * UNSEEN_COUNT);
     tcase_set_tags(pictures, "pictures");

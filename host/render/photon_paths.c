@@ -1,0 +1,159 @@
+#include "render/photon_paths.h"
+
+#include "path/path_random.h"
+#include "path/photon.h"
+#include "render/photon_grid.h"
+
+#include <stdlib.h>
+
+/* Part of the subpaths that is drawn from the lights, at least FIRST_MIN. */
+#define FIRST_PART 8u
+#define FIRST_MIN 8192u
+
+/* Subpaths drawn from the lights, and between those that have arrived, for each that is wanted: where most light meets
+ * no specular surface, fewer must do. */
+#define DRAWN_FIRST 4u
+#define DRAWN_BETWEEN 4u
+
+/* After this many passes without an arrival there are none. */
+#define BLACK_PASSES 4u
+
+/* Subpaths on either side of one in the order of their grid that count as its neighbours. */
+#define NEAR 8
+
+/* The paths that have arrived, in the order of the cells where they have, by lights. */
+typedef struct PathOrder {
+    uint light, code;
+    const PhotonPath *path;
+} PathOrder;
+
+typedef struct PathSearch {
+    PhotonPass *pass;
+    const PhotonLights *lights;
+    PhotonPath *paths;
+    uint count, found;
+    uint number; /* of the next subpath */
+    PathOrder *order;
+    uint ordered; /* paths that are in it */
+} PathSearch;
+
+static uint at_most(uint a, uint b)
+{
+    return a < b ? a : b;
+}
+
+/* Traces the first `count` items of the pass, and keeps those that arrive. */
+static bool search_run(PathSearch *search, uint count, bool *whole, Error *error)
+{
+    if (!photon_pass_run(search->pass, count, whole, error))
+        return false;
+    search->number += count;
+    for (uint i = 0; i < count && search->found < search->count; ++i)
+        search->found += photon_pass_get(search->pass, i, &search->paths[search->found]);
+    return true;
+}
+
+/* Draws subpaths from the lights until `wanted` have arrived. */
+static bool search_lights(PathSearch *search, uint wanted, bool *whole, Error *error)
+{
+    uint most = (uint)(((uint64_t)search->count * DRAWN_FIRST + PASS_PATHS - 1) / PASS_PATHS);
+    for (uint n = 0; *whole && n < most && search->found < wanted && (search->found > 0 || n < BLACK_PASSES); ++n) {
+        for (uint i = 0; i < PASS_PATHS; ++i)
+            photon_pass_draw(search->pass, i, search->number + i);
+        if (!search_run(search, PASS_PATHS, whole, error))
+            return false;
+    }
+    return true;
+}
+
+static int order_compare(const void *a, const void *b)
+{
+    const PathOrder *x = a, *y = b;
+    if (x->light != y->light)
+        return x->light < y->light ? -1 : 1;
+    if (x->code != y->code)
+        return x->code < y->code ? -1 : 1;
+    return (x->path > y->path) - (x->path < y->path);
+}
+
+static void search_order(PathSearch *search)
+{
+    PhotonParams params;
+    photon_grid_bounds(&search->paths[0].point, sizeof *search->paths, search->found, &params);
+    for (uint i = 0; i < search->found; ++i) {
+        const PhotonPath *path = &search->paths[i];
+        search->order[i] = (PathOrder){path->light, photon_code(params, path->point), path};
+    }
+    search->ordered = search->found;
+    qsort(search->order, search->ordered, sizeof *search->order, order_compare);
+}
+
+/* A neighbour of place `at` in the order, or its own path where there is none. */
+static const PhotonPath *order_neighbour(const PathSearch *search, uint at, uint random)
+{
+    int step = (int)(random % (2u * NEAR + 1u)) - NEAR;
+    int64_t other = (int64_t)at + step;
+    bool near = other >= 0 && other < (int64_t)search->ordered && search->order[other].light == search->order[at].light;
+    return search->order[near ? (uint)other : at].path;
+}
+
+/* v moved by some of the way towards a and b, or away from them. */
+static Vec3 vector_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
+{
+    Vec3 moved = vec3_mad(v, 1.5f * random_float(random[0]) - 0.5f, vec3_sub(a, v));
+    return vec3_mad(moved, 1.5f * random_float(random[1]) - 0.5f, vec3_sub(b, v));
+}
+
+/* A subpath between that of place `at` in the order and two neighbours, from the same point of the light or, from
+ * infinity, in the same direction. */
+static PhotonPath path_between(const PathSearch *search, uint at, uint number)
+{
+    __global const FrameParams *frame = search->lights->view.frame;
+    Random4 random = random_four(number, 0u, 1u, PATH_STREAM_PHOTON, frame->pass.seed_low, frame->pass.seed_high);
+    PhotonPath path = *search->order[at].path;
+    const PhotonPath *a = order_neighbour(search, at, random.x[0]), *b = order_neighbour(search, at, random.x[1]);
+    if (photon_light_is_far(search->lights, path.light))
+        path.origin = vector_between(path.origin, a->origin, b->origin, &random.x[2]);
+    else
+        path.first = vec3_normalize(vector_between(path.first, a->first, b->first, &random.x[2]));
+    path.number = number;
+    return path;
+}
+
+/* Draws subpaths between those that have arrived. */
+static bool search_between(PathSearch *search, bool *whole, Error *error)
+{
+    uint64_t most = (uint64_t)search->count * DRAWN_BETWEEN;
+    uint next = 0;
+    for (uint64_t drawn = 0; *whole && drawn < most && search->found < search->count;) {
+        if (search->found >= 2 * search->ordered) {
+            search_order(search);
+            next = 0;
+        }
+        uint batch = at_most(PASS_PATHS, 2 * search->ordered);
+        for (uint i = 0; i < batch; ++i, ++next) {
+            PhotonPath path = path_between(search, next % search->ordered, search->number + i);
+            photon_pass_follow(search->pass, i, &path);
+        }
+        drawn += batch;
+        if (!search_run(search, batch, whole, error))
+            return false;
+    }
+    return true;
+}
+
+bool photon_paths_find(PhotonPass *pass, const PhotonLights *lights, uint count, PhotonPath *paths, uint *found,
+                       Error *error)
+{
+    bool whole = true;
+    PathSearch search = {
+        .pass = pass, .lights = lights, .paths = paths, .count = count, .order = malloc(count * sizeof *search.order)};
+    uint first = count / FIRST_PART > FIRST_MIN ? count / FIRST_PART : at_most(count, FIRST_MIN);
+    bool done = search.order || error_memory(error, count * sizeof *search.order, "photons");
+    done = done && search_lights(&search, first, &whole, error);
+    if (done && search.found > 0)
+        done = search_between(&search, &whole, error);
+    free(search.order);
+    *found = whole ? search.found : 0;
+    return done;
+}
