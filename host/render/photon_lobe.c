@@ -7,15 +7,16 @@
 #include <stdlib.h>
 
 /* Steps between neighbouring subpaths: small beside the shapes that light passes, large beside rounding. Relative to the
- * scene's radius, and in radians. */
+ * reach of the light (reach_set), and in radians; at least so many times the spacing of floats as large as the scene. */
 #define POINT_STEP 3e-4
+#define POINT_STEP_ULPS 32.0
 #define DIRECTION_STEP 3e-4
 
 /* A neighbour that begins beside the surface of a lamp begins this many steps farther along its ray, so that it is
  * outside unless the ray grazes the surface. */
 #define STEPS_AHEAD 4.0f
 
-/* What lights of no extent count as: a sphere, relative to the scene's radius, and a cone's sine. */
+/* What lights of no extent count as: a sphere, relative to the least reach of one, and a cone's sine. */
 #define POINT_RADIUS 5e-4
 #define DISTANT_SINE 1e-3f
 
@@ -54,23 +55,59 @@ static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
     return true;
 }
 
+static Vec3 light_place(const SceneView *view, const Light *light)
+{
+    if (light->kind != LIGHT_AREA)
+        return light->position;
+    Box box = primitive_box(view, light->primitive);
+    return vec3(0.5f * (box.low[0] + box.high[0]), 0.5f * (box.low[1] + box.high[1]),
+                0.5f * (box.low[2] + box.high[2]));
+}
+
+/* Sets the steps, and the radius of point lights, by each light's reach: how far its subpaths go to the last specular
+ * surface; from infinity, the extent of those. */
+static void reach_set(PhotonLights *lights)
+{
+    const SceneView *view = &lights->view;
+    const SceneParams *scene = &view->frame->scene;
+    double world = (double)scene->world_radius, least = POINT_STEP_ULPS * (double)FLOAT_EPSILON * world,
+           nearest = world;
+    Vec3 center = photon_aims_center(&lights->aims);
+    for (uint i = 0; i < scene->light_count; ++i) {
+        const Light *light = &view->lights[i];
+        double reach = photon_aims_radius(&lights->aims);
+        if (!photon_light_is_far(lights, i))
+            reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
+        reach = fmin(reach, world);
+        lights->step[i] = fmax(POINT_STEP * reach, least);
+        if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+            nearest = fmin(nearest, reach);
+    }
+    lights->params.point_radius = (float)(POINT_RADIUS * nearest);
+}
+
 bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
 {
     const BackendScene packed = scene_backend_view(scene);
     uint count = packed.frame->scene.light_count;
     *lights = (PhotonLights){.view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels),
-                             .point_step = POINT_STEP * (double)packed.frame->scene.world_radius,
+                             .params.distant_sine = DISTANT_SINE,
                              .direction_step = DIRECTION_STEP};
-    lights->params.point_radius = (float)(POINT_RADIUS * (double)packed.frame->scene.world_radius);
-    lights->params.distant_sine = DISTANT_SINE;
     lights->radius = calloc(count + 1, sizeof *lights->radius);
-    return lights->radius ? radii_set(lights, scene->shapes.count, error)
-                          : error_memory(error, count * sizeof *lights->radius, "lights");
+    lights->step = calloc(count + 1, sizeof *lights->step);
+    if (!lights->radius || !lights->step)
+        return error_memory(error, count * (sizeof *lights->radius + sizeof *lights->step), "lights");
+    if (!photon_aims_init(&lights->aims, scene, &lights->view, error))
+        return false;
+    reach_set(lights);
+    return radii_set(lights, scene->shapes.count, error);
 }
 
 void photon_lights_destroy(PhotonLights *lights)
 {
     free(lights->radius);
+    free(lights->step);
+    photon_aims_destroy(&lights->aims);
     *lights = (PhotonLights){0};
 }
 
@@ -81,7 +118,7 @@ PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, 
     Vec3 axis = k % 2u == 0u ? frame.t : frame.b;
     bool other_point = k >= 2u;
     if (other_point != photon_light_is_far(lights, path->light))
-        neighbour.origin = vec3_mad(path->origin, (float)lights->point_step,
+        neighbour.origin = vec3_mad(path->origin, (float)lights->step[path->light],
                                     other_point ? vec3_mad(axis, STEPS_AHEAD, path->first) : axis);
     else
         neighbour.first = vec3_normalize(vec3_mad(path->first, (float)lights->direction_step, axis));
@@ -181,7 +218,7 @@ bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
         return false;
     /* Neighbours through other points of the light have arrived at other places. */
     multiply(record->by_place, places[1], across);
-    double step = far ? lights->direction_step : lights->point_step;
+    double step = far ? lights->direction_step : lights->step[path->light];
     bool finite = true;
     for (int i = 0; i < 4; ++i) {
         record->by_light[i] = (slopes[1][i] - across[i]) / step;

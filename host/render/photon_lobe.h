@@ -4,6 +4,7 @@
 #define TWINLIGHT_RENDER_PHOTON_LOBE_H
 
 #include "layout/scene_view.h"
+#include "render/photon_aims.h"
 #include "render/photon_pass.h"
 #include "scene/scene.h"
 
@@ -26,14 +27,17 @@ typedef struct PhotonRecords {
     uint count;
 } PhotonRecords;
 
-/* What photons need to know of the scene's lights. */
+/* What photons need to know of the scene: its lights, and the specular surfaces that they light. */
 typedef struct PhotonLights {
     SceneView view;
+    PhotonAims aims;
     PhotonParams params; /* the radii of lights of no extent */
     double *radius; /* of a disc with the area of the light's shape; of light at infinity 0 */
-    double point_step, direction_step; /* between neighbouring subpaths */
+    double *step; /* between the origins of neighbouring subpaths */
+    double direction_step; /* between their directions */
 } PhotonLights;
 
+/* Call photon_lights_destroy even on failure. */
 bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error);
 void photon_lights_destroy(PhotonLights *lights);
 

@@ -59,7 +59,7 @@ bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, Photo
     records.records = malloc(count * sizeof *records.records);
     bool done = records.records || error_memory(error, count * sizeof *records.records, "photons");
     done = done && photon_lights_init(&lights, scene, error) && photon_pass_init(&pass, run, error) &&
-           records_make(&pass, &lights, count, &records, error) &&
+           (lights.aims.count == 0 || records_make(&pass, &lights, count, &records, error)) &&
            (records.count == 0 || photon_grid_make(&records, &lights, map, error));
     map->number = atomic_fetch_add(&next_number, 1);
     photon_pass_destroy(&pass);

@@ -82,6 +82,13 @@ void photon_pass_draw(PhotonPass *pass, uint item, uint number)
     word_put(pass, PHOTON_PATH_EMITTER, item, NONE);
 }
 
+void photon_pass_aim(PhotonPass *pass, uint item, uint number, Vec3 through)
+{
+    word_put(pass, PHOTON_PATH_NUMBER, item, number);
+    word_put(pass, PHOTON_PATH_EMITTER, item, PHOTON_AIMED);
+    vector_put(pass, PHOTON_PATH_ORIGIN, item, through);
+}
+
 void photon_pass_follow(PhotonPass *pass, uint item, const PhotonPath *path)
 {
     word_put(pass, PHOTON_PATH_NUMBER, item, path->number);

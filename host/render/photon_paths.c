@@ -42,6 +42,13 @@ static uint at_most(uint a, uint b)
     return a < b ? a : b;
 }
 
+/* Random numbers of a subpath, beside those of kernels/photon.cl. */
+static Random4 search_random(const PathSearch *search, uint number)
+{
+    const FrameParams *frame = &search->pass->run->frame;
+    return random_four(number, 0u, 1u, PATH_STREAM_PHOTON, frame->pass.seed_low, frame->pass.seed_high);
+}
+
 /* Traces the first `count` items of the pass, and keeps those that arrive. */
 static bool search_run(PathSearch *search, uint count, bool *whole, Error *error)
 {
@@ -53,13 +60,27 @@ static bool search_run(PathSearch *search, uint count, bool *whole, Error *error
     return true;
 }
 
+/* Item `item` of the next pass: a subpath from the lights, every other one aimed. */
+static void search_draw(PathSearch *search, uint item, uint number)
+{
+    double u[4];
+    if (item % 2u == 0u) {
+        photon_pass_draw(search->pass, item, number);
+        return;
+    }
+    Random4 random = search_random(search, number);
+    for (int k = 0; k < 4; ++k)
+        u[k] = (double)random_float(random.x[k]);
+    photon_pass_aim(search->pass, item, number, photon_aims_point(&search->lights->aims, u));
+}
+
 /* Draws subpaths from the lights until `wanted` have arrived. */
 static bool search_lights(PathSearch *search, uint wanted, bool *whole, Error *error)
 {
     uint most = (uint)(((uint64_t)search->count * DRAWN_FIRST + PASS_PATHS - 1) / PASS_PATHS);
     for (uint n = 0; *whole && n < most && search->found < wanted && (search->found > 0 || n < BLACK_PASSES); ++n) {
         for (uint i = 0; i < PASS_PATHS; ++i)
-            photon_pass_draw(search->pass, i, search->number + i);
+            search_draw(search, i, search->number + i);
         if (!search_run(search, PASS_PATHS, whole, error))
             return false;
     }
@@ -97,25 +118,32 @@ static const PhotonPath *order_neighbour(const PathSearch *search, uint at, uint
     return search->order[near ? (uint)other : at].path;
 }
 
-/* v moved by some of the way towards a and b, or away from them. */
-static Vec3 vector_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
+/* Some of the way from v towards a and b, or away from them. */
+static Vec3 step_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
 {
-    Vec3 moved = vec3_mad(v, 1.5f * random_float(random[0]) - 0.5f, vec3_sub(a, v));
-    return vec3_mad(moved, 1.5f * random_float(random[1]) - 0.5f, vec3_sub(b, v));
+    Vec3 step = vec3_scale(vec3_sub(a, v), 1.5f * random_float(random[0]) - 0.5f);
+    return vec3_mad(step, 1.5f * random_float(random[1]) - 0.5f, vec3_sub(b, v));
+}
+
+/* Where the first ray is closest to the middle of the specular surfaces. */
+static Vec3 path_crossing(const PathSearch *search, const PhotonPath *path)
+{
+    Vec3 to_center = vec3_sub(photon_aims_center(&search->lights->aims), path->origin);
+    return vec3_mad(path->origin, vec3_dot(to_center, path->first), path->first);
 }
 
 /* A subpath between that of place `at` in the order and two neighbours, from the same point of the light or, from
  * infinity, in the same direction. */
 static PhotonPath path_between(const PathSearch *search, uint at, uint number)
 {
-    __global const FrameParams *frame = search->lights->view.frame;
-    Random4 random = random_four(number, 0u, 1u, PATH_STREAM_PHOTON, frame->pass.seed_low, frame->pass.seed_high);
+    Random4 random = search_random(search, number);
     PhotonPath path = *search->order[at].path;
     const PhotonPath *a = order_neighbour(search, at, random.x[0]), *b = order_neighbour(search, at, random.x[1]);
     if (photon_light_is_far(search->lights, path.light))
-        path.origin = vector_between(path.origin, a->origin, b->origin, &random.x[2]);
+        path.origin = vec3_add(path.origin, step_between(path_crossing(search, &path), path_crossing(search, a),
+                                                         path_crossing(search, b), &random.x[2]));
     else
-        path.first = vec3_normalize(vector_between(path.first, a->first, b->first, &random.x[2]));
+        path.first = vec3_normalize(vec3_add(path.first, step_between(path.first, a->first, b->first, &random.x[2])));
     path.number = number;
     return path;
 }

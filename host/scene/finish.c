@@ -207,13 +207,21 @@ bool scene_material_is_rough(const Material *m)
            (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
 }
 
+bool scene_material_has_delta(const Scene *scene, uint material)
+{
+    if (material == NONE)
+        return false;
+    const Material *m = &ARRAY_AT(&scene->materials, Material, material);
+    if (m->kind == MATERIAL_MIX) /* of materials that were known before it: no cycles */
+        return scene_material_has_delta(scene, m->mix_a) || scene_material_has_delta(scene, m->mix_b);
+    return (bsdf_traits(m->kind) & TRAIT_DELTA) != 0u && !scene_material_is_rough(m);
+}
+
 bool scene_has_delta(const Scene *scene)
 {
-    for (size_t i = 0; i < scene->materials.count; ++i) {
-        const Material *m = &ARRAY_AT(&scene->materials, Material, i);
-        if (m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_DELTA) != 0u && !scene_material_is_rough(m))
+    for (size_t i = 0; i < scene->materials.count; ++i)
+        if (scene_material_has_delta(scene, (uint)i))
             return true;
-    }
     return false;
 }
 

@@ -146,7 +146,9 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
 /* Whether a conductor, dielectric or coat may have a microfacet lobe: a textured roughness counts as rough. */
 bool scene_material_is_rough(const Material *m);
 
-/* Whether any material may have a delta lobe: a mirror, glass or coat that is not rough. */
+/* Whether a material, or one that it mixes, may have a delta lobe: a mirror, glass or coat that is not rough; whether any
+ * of the scene may. */
+bool scene_material_has_delta(const Scene *scene, uint material);
 bool scene_has_delta(const Scene *scene);
 
 /* Number of 32-bit words that the geometry would take when packed now. A buffer may have SCENE_WORDS_MAX, 16 GiB. */

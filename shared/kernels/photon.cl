@@ -15,14 +15,27 @@ SHARED_FUNCTION Random4 photon_random(__global const FrameParams *frame, uint nu
     return random_four(number, block, 0u, PATH_STREAM_PHOTON, frame->pass.seed_low, frame->pass.seed_high);
 }
 
-/* Draws the first ray of a subpath; false if the light emits nothing there. */
-SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, Ray *ray, uint *light)
+/* Turns what a light emits to go through a point; false if it emits nothing that way. From infinity: from outside the
+ * scene, in the direction that was drawn. */
+SHARED_FUNCTION bool photon_aim(const SceneView *scene, uint light, Vec3 through, LightEmission *emission)
+{
+    if (scene->lights[light].kind >= LIGHT_DISTANT) {
+        emission->p = vec3_mad(through, -2.0f * scene->frame->scene.world_radius, emission->w);
+        return true;
+    }
+    emission->w = vec3_normalize(vec3_sub(through, emission->p));
+    return light_emit_pdf_w(scene, light, emission->ng, emission->w) > 0.0f;
+}
+
+/* Draws the first ray of a subpath, perhaps aimed through a point; false if the light emits nothing there. */
+SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed, Vec3 through, Ray *ray, uint *light)
 {
     Random4 choice = photon_random(scene->frame, number, 0u), random = photon_random(scene->frame, number, 1u);
     LightEmission emission = {0};
     *light = light_select(scene, choice.x[0], choice.x[1]);
     if (!light_emit(scene, *light, vec2(random_float(random.x[0]), random_float(random.x[1])),
-                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
+                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission) ||
+        (aimed && !photon_aim(scene, *light, through, &emission)))
         return false;
     bool on_surface = emission.infinite == 0u && emission.delta_position == 0u;
     *ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
@@ -41,10 +54,12 @@ __kernel void photon_start(__global const FrameParams *restrict frame, __global 
     KERNEL_SCENE(frame, geometry, tables, texels);
     for (uint i = 0u; i < PHOTON_PATH_VERTICES; ++i)
         state_store(paths, stride, i, item, pass_load(frame, pass, i, item));
-    Ray ray = ray_spawn(state_load_vec3(paths, stride, PHOTON_PATH_ORIGIN, item), vec3_splat(0.0f),
-                        state_load_vec3(paths, stride, PHOTON_PATH_FIRST, item));
+    Vec3 origin = state_load_vec3(paths, stride, PHOTON_PATH_ORIGIN, item);
+    Ray ray = ray_spawn(origin, vec3_splat(0.0f), state_load_vec3(paths, stride, PHOTON_PATH_FIRST, item));
+    uint number = state_load(paths, stride, PHOTON_PATH_NUMBER, item);
     uint light = state_load(paths, stride, PHOTON_PATH_EMITTER, item);
-    bool begun = light != NONE || photon_emit(scene, state_load(paths, stride, PHOTON_PATH_NUMBER, item), &ray, &light);
+    bool aimed = light == PHOTON_AIMED, given = light != NONE && !aimed;
+    bool begun = given || photon_emit(scene, number, aimed, origin, &ray, &light);
     state_store(paths, stride, PHOTON_PATH_EMITTER, item, light);
     state_store(paths, stride, PHOTON_PATH_VERTICES, item, 0u);
     state_store(paths, stride, PHOTON_PATH_LOBES, item, 0u);

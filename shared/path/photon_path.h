@@ -4,8 +4,8 @@
 #define TWINLIGHT_PATH_PHOTON_PATH_H
 
 #define PHOTON_PATH_NUMBER 0u /* which random numbers it has */
-#define PHOTON_PATH_EMITTER 1u /* its light; NONE before a pass: it is to be drawn */
-#define PHOTON_PATH_ORIGIN 2u /* of its first ray, 3 */
+#define PHOTON_PATH_EMITTER 1u /* its light; before a pass: NONE or PHOTON_AIMED: it is to be drawn */
+#define PHOTON_PATH_ORIGIN 2u /* of its first ray, 3; aimed, before a pass: what it goes through */
 #define PHOTON_PATH_FIRST 5u /* direction of its first ray, 3 */
 #define PHOTON_PATH_VERTICES 8u /* smooth specular vertices */
 #define PHOTON_PATH_LOBES 9u /* bit i: the i-th of them transmitted it */
@@ -13,5 +13,7 @@
 #define PHOTON_PATH_POINT 11u /* where, 3 */
 #define PHOTON_PATH_LAST 14u /* direction of its last ray, 3 */
 #define PHOTON_PATH_WORDS 17u
+
+#define PHOTON_AIMED 0xfffffffeu
 
 #endif

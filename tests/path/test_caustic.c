@@ -94,8 +94,15 @@ END_TEST
 #define DISTANT "LightSource \"distant\" \"rgb L\" [ 2 2 2 ] \"point3 from\" [ 1 3 -1 ] \"point3 to\" [ 0 0 0 ]\n"
 #define SPARK BALL_LAMP("0.01", "30000")
 
-static const char *const UNSEEN[][2] = {
-    {"point", POINT}, {"spot", SPOT}, {"distant", DISTANT}, {"small lamp", SPARK}, {"several", POINT DISTANT SPARK}};
+/* Of a distant light, a millionth meets the pane, which is hardly wider than what is seen. */
+#define WIDE_WORLD "Shape \"bilinearmesh\" \"point3 P\" [ -9e3 -20 -9e3  9e3 -20 -9e3  -9e3 -20 9e3  9e3 -20 9e3 ]\n"
+static const char *const UNSEEN[][2] = {{"point", POINT},
+                                        {"spot", SPOT},
+                                        {"distant", DISTANT},
+                                        {"small lamp", SPARK},
+                                        {"several", POINT DISTANT SPARK},
+                                        {"distant, wide world", DISTANT WIDE_WORLD},
+                                        {"point, wide world", POINT WIDE_WORLD}};
 #define UNSEEN_COUNT (int)(sizeof UNSEEN / sizeof UNSEEN[0])
 
 START_TEST(test_unseen)
