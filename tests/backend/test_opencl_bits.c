@@ -108,6 +108,29 @@ START_TEST(test_bits_of_chains)
 }
 END_TEST
 
+/* Caustics by photons, those of this rendering and not of an earlier one on the device. */
+START_TEST(test_bits_of_photons)
+{
+    RenderedImage cpu;
+    RenderSetup setup = {.text = OPENCL_MATERIALS_SCENE,
+                         .samples = 8,
+                         .max_depth = 6,
+                         .photons = 4096,
+                         .integrator = _i == 0 ? integrator_pt() : integrator_mmlt()};
+    if (!test_device_promises())
+        return;
+    fixture_render(&setup, &cpu);
+    ck_assert_uint_gt(cpu.result.photons, 1000);
+    setup.backend = backend_ocl();
+    setup.after_another = true;
+    RenderedImage image;
+    fixture_render(&setup, &image);
+    films_equal("photons", &cpu.film, &image.film);
+    fixture_destroy(&image);
+    fixture_destroy(&cpu);
+}
+END_TEST
+
 /* Coincident surfaces: both backends hit the same one everywhere. */
 START_TEST(test_bits_of_coincident_surfaces)
 {
@@ -202,6 +225,7 @@ TCase *opencl_bits_tests(void)
     tcase_add_loop_test(bits, test_bits_of_sums_out_of_range, 0, 3);
     tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_chains, 0, 4);
+    tcase_add_loop_test(bits, test_bits_of_photons, 0, 2);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;

@@ -76,6 +76,14 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .backend = {interface, backend},
                              .options = &options,
                              .keep_quantum = setup->quantum_of != NULL};
+    if (setup->after_another) {
+        Film another;
+        require(film_init(&another, image->width, image->height, scene.settings.crop, &error), &error);
+        ++options.seed;
+        require(render_film(&task, &another, &image->result, &error), &error);
+        --options.seed;
+        film_destroy(&another);
+    }
     require(render_film(&task, &image->film, &image->result, &error), &error);
     interface->close(backend);
     image->rgb = malloc((size_t)image->width * (size_t)image->height * 3 * sizeof *image->rgb);
