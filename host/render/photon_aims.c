@@ -60,7 +60,7 @@ bool photon_aims_init(PhotonAims *aims, const Scene *scene, const SceneView *vie
     size_t count = every > 0 ? aims_gather(scene, view, every, NULL) : 0;
     if (count == 0)
         return true;
-    aims->boxes = malloc(count * sizeof *aims->boxes);
+    aims->boxes = calloc(count, sizeof *aims->boxes);
     aims->sums = malloc(count * sizeof *aims->sums);
     if (!aims->boxes || !aims->sums)
         return error_memory(error, count * (sizeof *aims->boxes + sizeof *aims->sums), "photons");
