@@ -41,8 +41,9 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
     [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
-    [OPTION_PHOTONS] = {"photons", 0, "N",
-                        "pt, mmlt: find caustics by at most this many photons (default: what is worth it with mmlt, else 0)"},
+    [OPTION_PHOTONS] =
+        {"photons", 0, "N",
+         "pt, mmlt: find caustics by at most this many photons (default: what is worth it with mmlt, else 0)"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D",
                           "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},

@@ -30,7 +30,7 @@ void photon_pass_destroy(PhotonPass *pass);
 
 /* Item `item` of the next pass: subpath `number`, to be drawn from the lights. */
 void photon_pass_draw(PhotonPass *pass, uint item, uint number);
-/* The same, through a point from wherever its light is; it is not begun if the light emits nothing there. */
+/* The same, aimed at a point; it is not traced if the light emits nothing that way. */
 void photon_pass_aim(PhotonPass *pass, uint item, uint number, Vec3 through);
 /* The same, to begin as `path` does, with the lobes that its number draws. */
 void photon_pass_follow(PhotonPass *pass, uint item, const PhotonPath *path);

@@ -10,18 +10,17 @@
 #define FIRST_PART 8u
 #define FIRST_MIN 8192u
 
-/* Subpaths drawn from the lights, and between those that have arrived, for each that is wanted: where most light meets
- * no specular surface, fewer must do. */
+/* Most subpaths that are drawn from the lights, and between those that have arrived, for each that is wanted. */
 #define DRAWN_FIRST 4u
 #define DRAWN_BETWEEN 4u
 
 /* After this many passes without an arrival there are none. */
 #define BLACK_PASSES 4u
 
-/* Subpaths on either side of one in the order of their grid that count as its neighbours. */
+/* Subpaths on either side of one in that order that count as its neighbours. */
 #define NEAR 8
 
-/* The paths that have arrived, in the order of the cells where they have, by lights. */
+/* A path that has arrived, to be sorted by its light and then by the Morton code of the place. */
 typedef struct PathOrder {
     uint light, code;
     const PhotonPath *path;

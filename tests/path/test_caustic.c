@@ -26,6 +26,9 @@
     " AttributeEnd\n"
 #define WALL "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 2  4 -1 2  -4 3 2  4 3 2 ]\n"
 #define WATER SMOOTH_GLASS "Shape \"bilinearmesh\" \"point3 P\" [ -9 0.9 -9  9 0.9 -9  -9 0.8 9  9 0.8 9 ]\n"
+#define WIDE_SUN                                                                                                       \
+    "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "            \
+    "AttributeEnd\n"
 #define COATED "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.8 0.5 0.3 ] \"float roughness\" 0\n"
 
 /* Lamps of every kind over smooth surfaces of every kind. Under water the caustic has as many segments as a path may. */
@@ -38,10 +41,7 @@ static const BidirectionalScene SCENES[] = {
      "reflectance\" [ 0 0 0 ]\nShape \"bilinearmesh\" \"point3 P\" [ -1 0.8 1  1 1.5 1  -1 0.8 1.5  1 1.5 1.6 ] "
      "AttributeEnd\n" SMOOTH_GLASS BD_BALL,
      SUPPORT_SUM_ONLY, 6, 2},
-    {"sun in the sky",
-     BD_BEGIN BD_GREY BD_FLOOR
-     "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" "
-     "\"$FILES/wide_sun.pfm\" AttributeEnd LightSource \"infinite\" \"rgb L\" [ 0.2 0.2 0.2 ]\n" BEADS,
+    {"sun in the sky", BD_BEGIN BD_GREY BD_FLOOR WIDE_SUN "LightSource \"infinite\" \"rgb L\" [ 0.2 0.2 0.2 ]\n" BEADS,
      SUPPORT_SUM_ONLY, 6, 2},
     {"under water", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.4", "30") WALL WATER, SUPPORT_SUM_ONLY, 4, 2},
     {"rough and smooth",
@@ -230,10 +230,7 @@ END_TEST
 /* A bead that one of some two thousand light subpaths meets has as many photons as are wanted. */
 START_TEST(test_found)
 {
-    static const char *const LIGHTS[] = {
-        POINT, BALL_LAMP("0.1", "300"), DISTANT,
-        "AttributeBegin Rotate -60 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/wide_sun.pfm\" "
-        "AttributeEnd\n"};
+    static const char *const LIGHTS[] = {POINT, BALL_LAMP("0.1", "300"), DISTANT, WIDE_SUN};
     for (size_t i = 0; i < sizeof LIGHTS / sizeof LIGHTS[0]; ++i) {
         char text[4096];
         snprintf(text, sizeof text,
