@@ -36,7 +36,7 @@
  * glossy surfaces; docs/TUNING.md. */
 #define SHIFTS 0.75f
 
-/* Photons: more cost memory (60 bytes each) and time before the first sample, fewer predict directions less well. On two
+/* Most photons, if so many predict better than fewer (render/photon_map.c): more cost memory (60 bytes each) and time before the first sample, fewer predict directions less well. On two
  * cores as many as a second brings take .1 to .2 s. */
 #define MMLT_PHOTONS_MIN 32768u
 #define MMLT_PHOTONS_MAX 1048576u

@@ -149,17 +149,43 @@ static void spread_set(PhotonRecord *record, double error)
     record->spread[2] = sqrt(fmax(bb - below * below, own * own));
 }
 
-/* Sets the spreads of sorted entries and leaves out those of no use; returns how many remain. */
+/* The part of a lobe that the light fills. */
+static double light_part(const PhotonRecord *record)
+{
+    const double *by_light = record->by_light;
+    double scale = SPREAD_OF_LIGHT * record->light_radius;
+    double filled = fabs(by_light[0] * by_light[3] - by_light[1] * by_light[2]) * scale * scale;
+    return fmin(filled / (record->spread[0] * record->spread[2]), 1.0);
+}
+
+static bool record_is_useful(const PhotonRecord *record)
+{
+    return record->light != NONE || M_PI * record->spread[0] * record->spread[2] < LOBE_MAX;
+}
+
+/* Sets the spreads of sorted entries; returns the mean part that lights fill of those that are useful, else 1. */
+static double entries_spread(GridEntry *entries, uint count)
+{
+    double sum = 0.0;
+    uint useful = 0;
+    for (uint i = 0; i < count; ++i) {
+        PhotonRecord *record = entries[i].record;
+        spread_set(record, prediction_error(entries, count, i));
+        if (record_is_useful(record)) {
+            sum += light_part(record);
+            ++useful;
+        }
+    }
+    return useful > 0 ? sum / useful : 1.0;
+}
+
+/* Leaves out entries of no use; returns how many remain. */
 static uint entries_keep(GridEntry *entries, uint count)
 {
     uint kept = 0;
     for (uint i = 0; i < count; ++i)
-        spread_set(entries[i].record, prediction_error(entries, count, i));
-    for (uint i = 0; i < count; ++i) {
-        const PhotonRecord *record = entries[i].record;
-        if (record->light != NONE || M_PI * record->spread[0] * record->spread[2] < LOBE_MAX)
+        if (record_is_useful(entries[i].record))
             entries[kept++] = entries[i];
-    }
     return kept;
 }
 
@@ -200,36 +226,55 @@ static void groups_set(const GridEntry *entries, PhotonParams *params)
     }
 }
 
-bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, PhotonMap *map, Error *error)
+/* Entries of every `every`-th record in the order of the grid, with spreads; NULL: no memory. Sets the grid's place. */
+static GridEntry *entries_make(PhotonRecords *records, uint every, PhotonParams *params, uint *count, double *missed,
+                               Error *error)
 {
-    uint count = records->count;
-    size_t bytes = (size_t)count * (1 + PHOTON_WORDS) * sizeof *map->words;
-    GridEntry *entries = malloc(count * sizeof *entries);
-    map->words = malloc(bytes);
-    if (!entries || !map->words) {
-        free(entries);
-        return error_memory(error, bytes, "photons");
+    GridEntry *entries = malloc(records->count * sizeof *entries);
+    *count = 0;
+    if (!entries) {
+        error_memory(error, records->count * sizeof *entries, "photons");
+        return NULL;
     }
-    map->params = lights->params;
-    photon_grid_bounds(&records->records[0].point, sizeof *records->records, count, &map->params);
-    for (uint i = 0; i < count; ++i)
-        entries[i] = (GridEntry){.group = PHOTON_GROUPS - 1,
-                                 .code = photon_code(map->params, records->records[i].point),
-                                 .number = records->records[i].number,
-                                 .record = &records->records[i]};
-    groups_assign(entries, count);
-    qsort(entries, count, sizeof *entries, entry_compare);
-    count = entries_keep(entries, count);
-    if (count == 0) {
-        free(map->words);
-        free(entries);
-        *map = (PhotonMap){0};
-        return true;
-    }
-    map->params.count = count;
-    map->word_count = (size_t)count * (1 + PHOTON_WORDS);
-    groups_set(entries, &map->params);
-    words_fill(entries, count, map->words);
+    photon_grid_bounds(&records->records[0].point, sizeof *records->records, records->count, params);
+    for (uint i = 0; i < records->count; i += every)
+        entries[(*count)++] = (GridEntry){.group = PHOTON_GROUPS - 1,
+                                          .code = photon_code(*params, records->records[i].point),
+                                          .number = records->records[i].number,
+                                          .record = &records->records[i]};
+    groups_assign(entries, *count);
+    qsort(entries, *count, sizeof *entries, entry_compare);
+    *missed = 1.0 - entries_spread(entries, *count);
+    return entries;
+}
+
+bool photon_grid_missed(PhotonRecords *records, const PhotonLights *lights, uint every, double *missed, Error *error)
+{
+    PhotonParams params = lights->params;
+    uint count;
+    GridEntry *entries = entries_make(records, every, &params, &count, missed, error);
     free(entries);
-    return true;
+    return entries != NULL;
+}
+
+bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, PhotonMap *map, double *missed, Error *error)
+{
+    uint count;
+    map->params = lights->params;
+    GridEntry *entries = entries_make(records, 1, &map->params, &count, missed, error);
+    if (!entries)
+        return false;
+    count = entries_keep(entries, count);
+    size_t bytes = (size_t)count * (1 + PHOTON_WORDS) * sizeof *map->words;
+    map->words = count > 0 ? malloc(bytes) : NULL;
+    if (map->words) {
+        map->params.count = count;
+        map->word_count = bytes / sizeof *map->words;
+        groups_set(entries, &map->params);
+        words_fill(entries, count, map->words);
+    }
+    free(entries);
+    if (count == 0)
+        *map = (PhotonMap){0};
+    return count == 0 || map->words || error_memory(error, bytes, "photons");
 }

@@ -8,41 +8,106 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Traces the neighbours of paths[first ... last - 1], and makes photons of those whose neighbours all arrive the same
+/* Photons at first, and how many times as many follow ... */
+#define PHOTONS_FIRST 32768u
+#define PHOTONS_GROWTH 4u
+
+/* ... while more than this part of the directions that they predict misses the light, and it is so much smaller than
+ * with every PHOTONS_GROWTH-th of them: where surfaces are not smooth between photons, more predict hardly better. */
+#define MISSED_ENOUGH 0.02
+#define MISSED_SHRINKS 0.6
+
+typedef struct PhotonMaker {
+    PhotonPass pass;
+    PhotonLights lights;
+    PhotonSearch search;
+    PhotonRecords records;
+    uint traced; /* subpaths whose neighbours have been traced */
+} PhotonMaker;
+
+/* Traces the neighbours of the next `count` subpaths, and makes photons of those whose neighbours all arrive the same
  * way. */
-static bool neighbours_trace(PhotonPass *pass, const PhotonLights *lights, const PhotonPath *paths, uint count,
-                             PhotonRecords *records, Error *error)
+static bool neighbours_trace(PhotonMaker *maker, uint count, Error *error)
 {
-    bool whole = true;
+    PhotonPass *pass = &maker->pass;
+    const PhotonPath *paths = maker->search.paths + maker->traced;
     for (uint i = 0; i < count; ++i)
         for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k) {
-            PhotonPath neighbour = photon_neighbour(lights, &paths[i], k);
+            PhotonPath neighbour = photon_neighbour(&maker->lights, &paths[i], k);
             photon_pass_follow(pass, i * PHOTON_NEIGHBOURS + k, &neighbour);
         }
-    if (!photon_pass_run(pass, count * PHOTON_NEIGHBOURS, &whole, error))
+    if (!photon_pass_run(pass, count * PHOTON_NEIGHBOURS, &maker->search.whole, error))
         return false;
-    for (uint i = 0; i < count && whole; ++i) {
+    maker->traced += count;
+    for (uint i = 0; i < count && maker->search.whole; ++i) {
         PhotonPath neighbours[PHOTON_NEIGHBOURS];
         bool same = true;
         for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k)
             same = photon_pass_get(pass, i * PHOTON_NEIGHBOURS + k, &neighbours[k]) &&
                    neighbours[k].vertices == paths[i].vertices && neighbours[k].lobes == paths[i].lobes && same;
-        if (same && photon_differences(lights, &paths[i], neighbours, &records->records[records->count]))
-            ++records->count;
+        PhotonRecord *record = &maker->records.records[maker->records.count];
+        maker->records.count += same && photon_differences(&maker->lights, &paths[i], neighbours, record);
     }
     return true;
 }
 
-static bool records_make(PhotonPass *pass, const PhotonLights *lights, uint count, PhotonRecords *records, Error *error)
+/* Finds subpaths until there are `wanted`, and makes photons of those that are new. */
+static bool records_make(PhotonMaker *maker, uint wanted, Error *error)
 {
-    PhotonPath *paths = malloc(count * sizeof *paths);
-    uint found = 0, each = PASS_PATHS / PHOTON_NEIGHBOURS;
-    bool done = paths ? photon_paths_find(pass, lights, count, paths, &found, error)
-                      : error_memory(error, count * sizeof *paths, "photons");
-    for (uint i = 0; i < found && done; i += each)
-        done = neighbours_trace(pass, lights, paths + i, found - i < each ? found - i : each, records, error);
-    free(paths);
+    const uint each = PASS_PATHS / PHOTON_NEIGHBOURS;
+    bool done = photon_search_run(&maker->search, wanted, error);
+    while (done && maker->search.whole && maker->traced < maker->search.found) {
+        uint left = maker->search.found - maker->traced;
+        done = neighbours_trace(maker, left < each ? left : each, error);
+    }
     return done;
+}
+
+static bool maker_init(PhotonMaker *maker, const RenderRun *run, const Scene *scene, uint count, Error *error)
+{
+    maker->records.records = malloc(count * sizeof *maker->records.records);
+    if (!maker->records.records)
+        return error_memory(error, count * sizeof *maker->records.records, "photons");
+    return photon_lights_init(&maker->lights, scene, error) && photon_pass_init(&maker->pass, run, error) &&
+           photon_search_init(&maker->search, &maker->pass, &maker->lights, count, error);
+}
+
+static void maker_destroy(PhotonMaker *maker)
+{
+    photon_search_destroy(&maker->search);
+    photon_pass_destroy(&maker->pass);
+    photon_lights_destroy(&maker->lights);
+    free(maker->records.records);
+}
+
+/* Makes a map of all records. *grow: whether more would be better. */
+static bool map_fill(PhotonMaker *maker, PhotonMap *map, bool *grow, Error *error)
+{
+    double missed = 0.0, by_fewer = 0.0;
+    *grow = false;
+    photon_map_destroy(map);
+    if (maker->records.count == 0 || !maker->search.whole)
+        return true;
+    if (!photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, &by_fewer, error) ||
+        !photon_grid_make(&maker->records, &maker->lights, map, &missed, error))
+        return false;
+    *grow = missed > MISSED_ENOUGH && missed < MISSED_SHRINKS * by_fewer;
+    return true;
+}
+
+/* Makes a map of few photons, then of more until they are enough, `count` at most, or no more are found. */
+static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *error)
+{
+    uint wanted = PHOTONS_FIRST;
+    bool grow = true;
+    while (grow) {
+        wanted = wanted < count ? wanted : count;
+        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &grow, error))
+            return false;
+        grow = grow && wanted <= maker->search.found && maker->search.found < count;
+        wanted = maker->search.found < count / PHOTONS_GROWTH ? PHOTONS_GROWTH * maker->search.found : count;
+    }
+    return true;
 }
 
 /* PhotonMap.number of the next map; 0 is none's. */
@@ -50,21 +115,14 @@ static atomic_uint next_number = 1;
 
 bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error)
 {
-    PhotonPass pass = {0};
-    PhotonLights lights = {0};
-    PhotonRecords records = {0};
+    PhotonMaker maker = {0};
     *map = (PhotonMap){0};
     if (count == 0 || !scene_has_delta(scene))
         return true;
-    records.records = malloc(count * sizeof *records.records);
-    bool done = records.records || error_memory(error, count * sizeof *records.records, "photons");
-    done = done && photon_lights_init(&lights, scene, error) && photon_pass_init(&pass, run, error) &&
-           (lights.aims.count == 0 || records_make(&pass, &lights, count, &records, error)) &&
-           (records.count == 0 || photon_grid_make(&records, &lights, map, error));
+    bool done = maker_init(&maker, run, scene, count, error) &&
+                (maker.lights.aims.count == 0 || maker_run(&maker, count, map, error));
     map->number = atomic_fetch_add(&next_number, 1);
-    photon_pass_destroy(&pass);
-    photon_lights_destroy(&lights);
-    free(records.records);
+    maker_destroy(&maker);
     return done;
 }
 

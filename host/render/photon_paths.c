@@ -14,27 +14,17 @@
 #define DRAWN_FIRST 4u
 #define DRAWN_BETWEEN 4u
 
-/* After this many passes without an arrival there are none. */
-#define BLACK_PASSES 4u
+/* After this many without an arrival there are none. */
+#define BLACK_PATHS 262144u
 
 /* Subpaths on either side of one in that order that count as its neighbours. */
 #define NEAR 8
 
 /* A path that has arrived, to be sorted by its light and then by the Morton code of the place. */
-typedef struct PathOrder {
+struct PathOrder {
     uint light, code;
     const PhotonPath *path;
-} PathOrder;
-
-typedef struct PathSearch {
-    PhotonPass *pass;
-    const PhotonLights *lights;
-    PhotonPath *paths;
-    uint count, found;
-    uint number; /* of the next subpath */
-    PathOrder *order;
-    uint ordered; /* paths that are in it */
-} PathSearch;
+};
 
 static uint at_most(uint a, uint b)
 {
@@ -42,25 +32,25 @@ static uint at_most(uint a, uint b)
 }
 
 /* Random numbers of a subpath, beside those of kernels/photon.cl. */
-static Random4 search_random(const PathSearch *search, uint number)
+static Random4 search_random(const PhotonSearch *search, uint number)
 {
     const FrameParams *frame = &search->pass->run->frame;
     return random_four(number, 0u, 1u, PATH_STREAM_PHOTON, frame->pass.seed_low, frame->pass.seed_high);
 }
 
 /* Traces the first `count` items of the pass, and keeps those that arrive. */
-static bool search_run(PathSearch *search, uint count, bool *whole, Error *error)
+static bool search_trace(PhotonSearch *search, uint count, Error *error)
 {
-    if (!photon_pass_run(search->pass, count, whole, error))
+    if (!photon_pass_run(search->pass, count, &search->whole, error))
         return false;
     search->number += count;
-    for (uint i = 0; i < count && search->found < search->count; ++i)
+    for (uint i = 0; i < count && search->found < search->most; ++i)
         search->found += photon_pass_get(search->pass, i, &search->paths[search->found]);
     return true;
 }
 
 /* Item `item` of the next pass: a subpath from the lights, every other one aimed. */
-static void search_draw(PathSearch *search, uint item, uint number)
+static void search_draw(PhotonSearch *search, uint item, uint number)
 {
     double u[4];
     if (item % 2u == 0u) {
@@ -73,15 +63,18 @@ static void search_draw(PathSearch *search, uint item, uint number)
     photon_pass_aim(search->pass, item, number, photon_aims_point(&search->lights->aims, u));
 }
 
-/* Draws subpaths from the lights until `wanted` have arrived. */
-static bool search_lights(PathSearch *search, uint wanted, bool *whole, Error *error)
+/* Draws subpaths from the lights until a part of `wanted` has arrived. */
+static bool search_lights(PhotonSearch *search, uint wanted, Error *error)
 {
-    uint most = (uint)(((uint64_t)search->count * DRAWN_FIRST + PASS_PATHS - 1) / PASS_PATHS);
-    for (uint n = 0; *whole && n < most && search->found < wanted && (search->found > 0 || n < BLACK_PASSES); ++n) {
+    uint first = wanted / FIRST_PART > FIRST_MIN ? wanted / FIRST_PART : at_most(wanted, FIRST_MIN);
+    uint64_t most = (uint64_t)wanted * DRAWN_FIRST;
+    while (search->whole && search->drawn < most && search->found < first &&
+           (search->found > 0 || search->drawn < BLACK_PATHS)) {
         for (uint i = 0; i < PASS_PATHS; ++i)
             search_draw(search, i, search->number + i);
-        if (!search_run(search, PASS_PATHS, whole, error))
+        if (!search_trace(search, PASS_PATHS, error))
             return false;
+        search->drawn += PASS_PATHS;
     }
     return true;
 }
@@ -96,7 +89,7 @@ static int order_compare(const void *a, const void *b)
     return (x->path > y->path) - (x->path < y->path);
 }
 
-static void search_order(PathSearch *search)
+static void search_order(PhotonSearch *search)
 {
     PhotonParams params;
     photon_grid_bounds(&search->paths[0].point, sizeof *search->paths, search->found, &params);
@@ -109,7 +102,7 @@ static void search_order(PathSearch *search)
 }
 
 /* A neighbour of place `at` in the order, or its own path where there is none. */
-static const PhotonPath *order_neighbour(const PathSearch *search, uint at, uint random)
+static const PhotonPath *order_neighbour(const PhotonSearch *search, uint at, uint random)
 {
     int step = (int)(random % (2u * NEAR + 1u)) - NEAR;
     int64_t other = (int64_t)at + step;
@@ -125,7 +118,7 @@ static Vec3 step_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
 }
 
 /* Where the first ray is closest to the middle of the specular surfaces. */
-static Vec3 path_crossing(const PathSearch *search, const PhotonPath *path)
+static Vec3 path_crossing(const PhotonSearch *search, const PhotonPath *path)
 {
     Vec3 to_center = vec3_sub(photon_aims_center(&search->lights->aims), path->origin);
     return vec3_mad(path->origin, vec3_dot(to_center, path->first), path->first);
@@ -133,7 +126,7 @@ static Vec3 path_crossing(const PathSearch *search, const PhotonPath *path)
 
 /* A subpath between that of place `at` in the order and two neighbours, from the same point of the light or, from
  * infinity, in the same direction. */
-static PhotonPath path_between(const PathSearch *search, uint at, uint number)
+static PhotonPath path_between(const PhotonSearch *search, uint at, uint number)
 {
     Random4 random = search_random(search, number);
     PhotonPath path = *search->order[at].path;
@@ -147,12 +140,12 @@ static PhotonPath path_between(const PathSearch *search, uint at, uint number)
     return path;
 }
 
-/* Draws subpaths between those that have arrived. */
-static bool search_between(PathSearch *search, bool *whole, Error *error)
+/* Draws subpaths between those that have arrived until there are `wanted`. */
+static bool search_between(PhotonSearch *search, uint wanted, Error *error)
 {
-    uint64_t most = (uint64_t)search->count * DRAWN_BETWEEN;
+    uint64_t most = (uint64_t)wanted * DRAWN_BETWEEN;
     uint next = 0;
-    for (uint64_t drawn = 0; *whole && drawn < most && search->found < search->count;) {
+    for (uint64_t drawn = 0; search->whole && drawn < most && search->found < wanted;) {
         if (search->found >= 2 * search->ordered) {
             search_order(search);
             next = 0;
@@ -163,24 +156,32 @@ static bool search_between(PathSearch *search, bool *whole, Error *error)
             photon_pass_follow(search->pass, i, &path);
         }
         drawn += batch;
-        if (!search_run(search, batch, whole, error))
+        if (!search_trace(search, batch, error))
             return false;
     }
     return true;
 }
 
-bool photon_paths_find(PhotonPass *pass, const PhotonLights *lights, uint count, PhotonPath *paths, uint *found,
-                       Error *error)
+bool photon_search_init(PhotonSearch *search, PhotonPass *pass, const PhotonLights *lights, uint most, Error *error)
 {
-    bool whole = true;
-    PathSearch search = {
-        .pass = pass, .lights = lights, .paths = paths, .count = count, .order = malloc(count * sizeof *search.order)};
-    uint first = count / FIRST_PART > FIRST_MIN ? count / FIRST_PART : at_most(count, FIRST_MIN);
-    bool done = search.order || error_memory(error, count * sizeof *search.order, "photons");
-    done = done && search_lights(&search, first, &whole, error);
-    if (done && search.found > 0)
-        done = search_between(&search, &whole, error);
-    free(search.order);
-    *found = whole ? search.found : 0;
-    return done;
+    *search = (PhotonSearch){.pass = pass,
+                             .lights = lights,
+                             .paths = malloc(most * sizeof *search->paths),
+                             .most = most,
+                             .order = malloc(most * sizeof *search->order),
+                             .whole = true};
+    return (search->paths && search->order) ||
+           error_memory(error, most * (sizeof *search->paths + sizeof *search->order), "photons");
+}
+
+void photon_search_destroy(PhotonSearch *search)
+{
+    free(search->paths);
+    free(search->order);
+    *search = (PhotonSearch){0};
+}
+
+bool photon_search_run(PhotonSearch *search, uint wanted, Error *error)
+{
+    return search_lights(search, wanted, error) && (search->found == 0 || search_between(search, wanted, error));
 }

@@ -7,8 +7,25 @@
 #include "render/photon_lobe.h"
 #include "render/photon_pass.h"
 
-/* Fills paths with up to `count` of them; *found: how many, 0 on a stop. */
-bool photon_paths_find(PhotonPass *pass, const PhotonLights *lights, uint count, PhotonPath *paths, uint *found,
-                       Error *error);
+typedef struct PathOrder PathOrder;
+
+typedef struct PhotonSearch {
+    PhotonPass *pass;
+    const PhotonLights *lights;
+    PhotonPath *paths; /* that have been found */
+    uint found, most;
+    uint drawn; /* from the lights */
+    uint number; /* of the next subpath */
+    PathOrder *order;
+    uint ordered; /* paths that are in it */
+    bool whole; /* false: stopped */
+} PhotonSearch;
+
+/* For at most `most` subpaths. Call photon_search_destroy even on failure. */
+bool photon_search_init(PhotonSearch *search, PhotonPass *pass, const PhotonLights *lights, uint most, Error *error);
+void photon_search_destroy(PhotonSearch *search);
+
+/* Finds more, until there are `wanted` <= most or too few arrive. */
+bool photon_search_run(PhotonSearch *search, uint wanted, Error *error);
 
 #endif
