@@ -178,10 +178,12 @@ mkdir -p "$build" && cd "$build" || exit 1
     echo "configure failed: $work/configure.log"
     exit 1
 }
-make -s -j"$jobs" CPPFLAGS="-include $header" all check TESTS= >"$work/make.log" 2>&1 || {
-    tail -n 20 "$work/make.log"
-    exit 1
-}
+for goal in all check; do # one after the other: both make the libraries
+    make -s -j"$jobs" CPPFLAGS="-include $header" $goal TESTS= >"$work/make.log" 2>&1 || {
+        tail -n 20 "$work/make.log"
+        exit 1
+    }
+done
 
 # ---- running ----------------------------------------------------------------------------------------------------------
 
