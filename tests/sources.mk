@@ -51,13 +51,14 @@ endif
 EFFORT = 8
 # Builds a copy with a BSDF and an integrator more: minutes.
 dist_check_SCRIPTS += tests/test_recipes.sh
-LONG_TESTS = tests/test_recipes.sh tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
 endif
 .PHONY: check-long
 check-long:
+	srcdir='$(srcdir)' $(srcdir)/tests/test_recipes.sh
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
 # Whether the tests detect faults that are planted one at a time: mutants.sh -h. Takes a quarter of an hour; not part of

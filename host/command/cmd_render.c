@@ -165,6 +165,7 @@ static bool scene_load(RenderJob *job, Error *error)
     if (!pbrt_load(job->command->scene, job->command->lenient, &job->scene, error))
         return false;
     const RenderOptions options = job_options(job);
+    /* Whether there are any does not depend on the number of pixels. */
     scene_advise(&job->scene, render_photons(job->integrator, &options, 1) > 0);
     return true;
 }

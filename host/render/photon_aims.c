@@ -101,9 +101,7 @@ Vec3 photon_aims_point(const PhotonAims *aims, const double u[4])
 
 Vec3 photon_aims_center(const PhotonAims *aims)
 {
-    const Box *all = &aims->all;
-    return vec3(0.5f * (all->low[0] + all->high[0]), 0.5f * (all->low[1] + all->high[1]),
-                0.5f * (all->low[2] + all->high[2]));
+    return box_center(&aims->all);
 }
 
 double photon_aims_radius(const PhotonAims *aims)

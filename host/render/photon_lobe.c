@@ -60,8 +60,7 @@ static Vec3 light_place(const SceneView *view, const Light *light)
     if (light->kind != LIGHT_AREA)
         return light->position;
     Box box = primitive_box(view, light->primitive);
-    return vec3(0.5f * (box.low[0] + box.high[0]), 0.5f * (box.low[1] + box.high[1]),
-                0.5f * (box.low[2] + box.high[2]));
+    return box_center(&box);
 }
 
 /* Sets the steps, and the radius of point lights, by each light's reach: how far its subpaths go to the last specular

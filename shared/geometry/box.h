@@ -46,6 +46,12 @@ SHARED_FUNCTION void box_join(Box *box, const Box *other)
     }
 }
 
+SHARED_FUNCTION Vec3 box_center(const Box *box)
+{
+    return vec3(0.5f * (box->low[0] + box->high[0]), 0.5f * (box->low[1] + box->high[1]),
+                0.5f * (box->low[2] + box->high[2]));
+}
+
 /* The box of `box`'s image under the map; `box` must not be empty. */
 SHARED_FUNCTION Box box_transform(const Box *box, Affine map)
 {

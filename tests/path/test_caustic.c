@@ -239,11 +239,11 @@ START_TEST(test_found)
                                            "AttributeEnd\n",
                  LIGHTS[i]);
         const BidirectionalScene scene = {"bead", text, SUPPORT_SUM_ONLY, 6, 2};
-        const RenderSetup setup = {.text = bidirectional_text(&scene), .samples = 1, .threads = 1, .photons = 8192};
+        const RenderSetup setup = {.text = bidirectional_text(&scene), .samples = 1, .threads = 1, .photons = 32768};
         RenderedImage image;
         fixture_render(&setup, &image);
         printf("light %zu: %u photons\n", i, image.result.photons);
-        ck_assert_uint_gt(image.result.photons, 7000);
+        ck_assert_uint_gt(image.result.photons, 28000);
         fixture_destroy(&image);
     }
 }
