@@ -109,9 +109,10 @@ START_TEST(test_rare)
     PictureGroups expected, got;
     double probability = test_effort() > 1 ? 1e-4 : 1e-3, worst[2] = {0.0, 0.0};
     rare_text(text, sizeof text, probability);
+    unsigned samples = test_effort() > 1 ? 4000u : 500u;
     GroupSetup setup = {
         .groups = 16,
-        .render = {.text = text, .samples = 500, .max_depth = 3, .threads = 2, .integrator = integrator_bdpt()}};
+        .render = {.text = text, .samples = samples, .max_depth = 3, .threads = 2, .integrator = integrator_bdpt()}};
     groups_render(&setup, &expected);
     setup.render.integrator = integrator_mmlt();
     setup.render.seed = 1000;
