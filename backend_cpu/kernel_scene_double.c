@@ -197,6 +197,7 @@ static bool scene_widen(KernelScene *out, const BackendScene *scene, Error *erro
                                 {STRUCT_Light, from.lights, &to->lights},
                                 {STRUCT_AliasBucket, from.light_alias, &to->light_alias},
                                 {MEMBER_WORDS, from.infinite_lights, &to->infinite_lights},
+                                {STRUCT_Aim, from.aims, &to->aims},
                                 {STRUCT_Distribution2D, from.distributions2d, &to->distributions2d},
                                 {MEMBER_FLOATS, from.lookup, &to->lookup}};
     struct_widen(STRUCT_FrameParams, (const uint *)(const void *)scene->frame, (char *)&out->frame);

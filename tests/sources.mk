@@ -186,6 +186,7 @@ tests_test_chain_SOURCES = tests/mmlt/test_chain.c \
 	tests/mmlt/test_chain_shown.c
 
 tests_test_emit_SOURCES = tests/light/test_emit.c \
+	tests/light/test_emit_aims.c \
 	tests/light/test_emit_area.c \
 	tests/light/test_emit_camera.c \
 	tests/light/test_emit_direction.c \

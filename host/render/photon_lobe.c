@@ -71,10 +71,10 @@ static void reach_set(PhotonLights *lights)
     const SceneParams *scene = &view->frame->scene;
     double world = (double)scene->world_radius, least = POINT_STEP_ULPS * (double)FLOAT_EPSILON * world,
            nearest = world;
-    Vec3 center = photon_aims_center(&lights->aims);
+    Vec3 center = smooth_boxes_center(&lights->aims);
     for (uint i = 0; i < scene->light_count; ++i) {
         const Light *light = &view->lights[i];
-        double reach = photon_aims_radius(&lights->aims);
+        double reach = smooth_boxes_radius(&lights->aims);
         if (!photon_light_is_far(lights, i))
             reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
         reach = fmin(reach, world);
@@ -96,7 +96,7 @@ bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
     lights->step = calloc(count + 1, sizeof *lights->step);
     if (!lights->radius || !lights->step)
         return error_memory(error, count * (sizeof *lights->radius + sizeof *lights->step), "lights");
-    if (!photon_aims_init(&lights->aims, scene, &lights->view, error))
+    if (!smooth_boxes_init(&lights->aims, scene, &lights->view, error))
         return false;
     reach_set(lights);
     return radii_set(lights, scene->shapes.count, error);
@@ -106,7 +106,7 @@ void photon_lights_destroy(PhotonLights *lights)
 {
     free(lights->radius);
     free(lights->step);
-    photon_aims_destroy(&lights->aims);
+    smooth_boxes_destroy(&lights->aims);
     *lights = (PhotonLights){0};
 }
 

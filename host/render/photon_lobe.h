@@ -4,7 +4,7 @@
 #define TWINLIGHT_RENDER_PHOTON_LOBE_H
 
 #include "layout/scene_view.h"
-#include "render/photon_aims.h"
+#include "scene/smooth_boxes.h"
 #include "render/photon_pass.h"
 #include "scene/scene.h"
 
@@ -30,7 +30,7 @@ typedef struct PhotonRecords {
 /* What photons need to know of the scene: its lights, and the specular surfaces that they light. */
 typedef struct PhotonLights {
     SceneView view;
-    PhotonAims aims;
+    SmoothBoxes aims;
     PhotonParams params; /* the radii of lights of no extent */
     double *radius; /* of a disc with the area of the light's shape; of light at infinity 0 */
     double *step; /* between the origins of neighbouring subpaths */

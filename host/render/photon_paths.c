@@ -60,7 +60,7 @@ static void search_draw(PhotonSearch *search, uint item, uint number)
     Random4 random = search_random(search, number);
     for (int k = 0; k < 4; ++k)
         u[k] = (double)random_float(random.x[k]);
-    photon_pass_aim(search->pass, item, number, photon_aims_point(&search->lights->aims, u));
+    photon_pass_aim(search->pass, item, number, smooth_boxes_point(&search->lights->aims, u));
 }
 
 /* Draws subpaths from the lights until a part of `wanted` has arrived. */
@@ -120,7 +120,7 @@ static Vec3 step_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
 /* Where the first ray is closest to the middle of the specular surfaces. */
 static Vec3 path_crossing(const PhotonSearch *search, const PhotonPath *path)
 {
-    Vec3 to_center = vec3_sub(photon_aims_center(&search->lights->aims), path->origin);
+    Vec3 to_center = vec3_sub(smooth_boxes_center(&search->lights->aims), path->origin);
     return vec3_mad(path->origin, vec3_dot(to_center, path->first), path->first);
 }
 

@@ -8,7 +8,6 @@ libtwinlight_host_la_SOURCES += \
 	host/render/integrator_pt.c \
 	host/render/job.h \
 	host/render/layers.c host/render/layers.h \
-	host/render/photon_aims.c host/render/photon_aims.h \
 	host/render/photon_grid.c host/render/photon_grid.h \
 	host/render/photon_lobe.c host/render/photon_lobe.h \
 	host/render/photon_map.c host/render/photon_map.h \

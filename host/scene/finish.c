@@ -4,6 +4,7 @@
 #include "bsdf/material.h"
 #include "geometry/box.h"
 #include "light/delta.h"
+#include "scene/aim_setup.h"
 #include "scene/camera_setup.h"
 #include "scene/center.h"
 #include "scene/coat_table.h"
@@ -78,11 +79,12 @@ static bool primitives_group_by_object(Scene *scene, Error *error)
 
 /* ---- bounds ----------------------------------------------------------------------------------------------------- */
 
-/* A view with the members that primitive_box reads, on the arrays before packing. */
+/* A view with the members that primitive_box and scene/smooth_boxes.h read, on the arrays before packing. */
 static SceneView geometry_view(const Scene *scene)
 {
     return (SceneView){.positions = scene->positions.data,
                        .primitives = scene->primitives.data,
+                       .shapes = scene->shapes.data,
                        .patches = scene->patches.data,
                        .quadrics = scene->quadrics.data};
 }
@@ -386,6 +388,9 @@ bool scene_finish(Scene *scene, Error *error)
         scene->ray_reach =
             fmaxf(scene->ray_reach, light_reach(&scene->frame.scene, &ARRAY_AT(&scene->lights, Light, i)));
     light_guide_setup(scene);
+    SceneView view = geometry_view(scene);
+    if (!aim_setup(scene, &view, error))
+        return false;
     scene->frame.scene.light_count = (uint)scene->lights.count;
     scene->frame.scene.infinite_light_count = (uint)scene->infinite_lights.count;
     scene->frame.pass.pixel_stride = 1;

@@ -22,6 +22,7 @@
     X(lights, Light)                                                                                                   \
     X(light_alias, AliasBucket)                                                                                        \
     X(infinite_lights, uint)                                                                                           \
+    X(aims, Aim)                                                                                                       \
     X(distributions2d, Distribution2D)                                                                                 \
     X(lookup, float)                                                                                                   \
     X(texels, uint)                                                                                                    \

@@ -70,6 +70,7 @@ typedef struct Scene {
     Array lights; /* Light */
     Array light_alias; /* AliasBucket, set by scene_finish */
     Array infinite_lights; /* uint */
+    Array aims; /* Aim, set by scene_finish */
     double light_power; /* luminance of the flux of all lights, set by scene_finish */
     Array distributions2d; /* Distribution2D */
     Array lookup; /* float */

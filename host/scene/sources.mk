@@ -10,6 +10,8 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/format.c host/scene/format.h \
 	host/scene/light_setup.c host/scene/light_setup.h \
 	host/scene/pack.c host/scene/pack.h \
+	host/scene/aim_setup.c host/scene/aim_setup.h \
 	host/scene/scene.c host/scene/scene.h \
+	host/scene/smooth_boxes.c host/scene/smooth_boxes.h \
 	host/scene/summary.c host/scene/summary.h \
 	host/scene/texture_image.c host/scene/texture_image.h

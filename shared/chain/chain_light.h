@@ -29,7 +29,7 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
         Vec3 color =
-            vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], miss->ray.d, miss->from_ng, &ends));
+            vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], &miss->ray, miss->from_ng, &ends));
         if (vec3_is_zero(color))
             continue;
         StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);

@@ -17,8 +17,8 @@
 
 #define NUMBER_CAMERA 0u /* film, lens: 4 */
 #define NUMBER_EMIT 4u /* point and direction on the light: 4 */
-#define NUMBER_SELECT 8u /* which light: 2 */
-#define NUMBER_VERTICES 10u /* then those of every vertex between the ends of the path */
+#define NUMBER_SELECT 8u /* which light, aim: 3 */
+#define NUMBER_VERTICES 11u /* then those of every vertex between the ends of the path */
 
 /* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them. */
 SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
@@ -222,7 +222,7 @@ SHARED_FUNCTION Random4 chain_emit(__global const FrameParams *frame, __global c
 
 SHARED_FUNCTION Random4 chain_select(__global const FrameParams *frame, __global const uint *paths, uint item)
 {
-    return chain_numbers(frame, paths, item, NUMBER_SELECT, 2u);
+    return chain_numbers(frame, paths, item, NUMBER_SELECT, 3u);
 }
 
 /* x: lobe, direction, direction, mix. */
@@ -261,7 +261,7 @@ SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint
     }
     chain_store_numbers(paths, stride, item, NUMBER_CAMERA, 4u, camera);
     chain_store_numbers(paths, stride, item, NUMBER_EMIT, 4u, pool_random(frame, paths, item, BD_RANDOM_EMIT));
-    chain_store_numbers(paths, stride, item, NUMBER_SELECT, 2u, pool_random(frame, paths, item, BD_RANDOM_LIGHT));
+    chain_store_numbers(paths, stride, item, NUMBER_SELECT, 3u, pool_random(frame, paths, item, BD_RANDOM_LIGHT));
     for (uint slot = 0u; slot + 1u < d; ++slot) {
         uint side = slot + 1u < s ? SIDE_LIGHT : SIDE_CAMERA;
         uint i = side == SIDE_LIGHT ? slot + 1u : d - 1u - slot;

@@ -114,7 +114,7 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-            Vec3 sum = walk_environment(scene, view, walk_hit.ray.d, walk_hit.from_ng, depth);
+            Vec3 sum = walk_environment(scene, view, &walk_hit.ray, walk_hit.from_ng, depth);
             bd_add_met(scene, paths, item, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, item);

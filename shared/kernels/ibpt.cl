@@ -43,11 +43,11 @@ SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint
 }
 
 SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
-                                        Vec3 d, Vec3 ng)
+                                        const Ray *ray, Vec3 ng)
 {
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], ray, ng, &ends);
         ib_add_met(scene->frame, paths, item, depth, radiance, &ends);
     }
 }
@@ -73,7 +73,7 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            ib_add_environment(scene, paths, item, depth, walk_hit.ray.d, walk_hit.from_ng);
+            ib_add_environment(scene, paths, item, depth, &walk_hit.ray, walk_hit.from_ng);
         walk_end(paths, rays, stride, item);
         return;
     }

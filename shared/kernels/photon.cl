@@ -5,7 +5,7 @@
 #define TWINLIGHT_PHOTON_CL
 
 #include "layout/pass_data.h"
-#include "light/emit.h"
+#include "light/aim.h"
 #include "path/caustic.h"
 #include "path/photon_path.h"
 
@@ -33,8 +33,9 @@ SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed
     Random4 choice = photon_random(scene->frame, number, 0u), random = photon_random(scene->frame, number, 1u);
     LightEmission emission = {0};
     *light = light_select(scene, choice.x[0], choice.x[1]);
-    if (!light_emit(scene, *light, vec2(random_float(random.x[0]), random_float(random.x[1])),
-                    vec2(random_float(random.x[2]), random_float(random.x[3])), &emission) ||
+    if (!light_emit_aimed(scene, *light, random_float(choice.x[2]),
+                          vec2(random_float(random.x[0]), random_float(random.x[1])),
+                          vec2(random_float(random.x[2]), random_float(random.x[3])), &emission) ||
         (aimed && !photon_aim(scene, *light, through, &emission)))
         return false;
     bool on_surface = emission.infinite == 0u && emission.delta_position == 0u;

@@ -35,6 +35,8 @@ typedef struct SceneParams {
     uint features;
     uint light_count;
     uint infinite_light_count;
+    uint aim_count;
+    float aim_part; /* of light subpaths that are aimed (light/aim.h); 0 without aims */
     uint guide_count; /* light guides of chains and their pools (light/light_guide.h); 0 for other integrators */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;

@@ -205,8 +205,8 @@ typedef struct Material {
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
 /* X(NAME, name, text, feature, position): LIGHT_NAME; its name in `twinlight info`; the group of lights that it is
- * dispatched with; whether Light.position is its place. Delta lights have functions light_name_sample, _emit and
- * _emit_pdf_w (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by `text`). */
+ * dispatched with; whether Light.position is its place. Delta lights have functions light_name_sample, _emit,
+ * _emit_pdf_w and _emitted (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by `text`). */
 #define LIGHT_LIST_DELTA(X)                                                                                            \
     X(POINT, point, "point", FEATURE_DELTA_LIGHT, 1u)                                                                  \
     X(SPOT, spot, "spot", FEATURE_DELTA_LIGHT, 1u)                                                                     \
@@ -259,6 +259,12 @@ typedef struct AliasBucket {
     uint alias;
 } AliasBucket;
 
+/* A sphere around smooth specular surfaces, at which light subpaths are aimed (light/aim.h). */
+typedef struct Aim {
+    Vec3 center;
+    float radius;
+} Aim;
+
 /* ---- camera and film ------------------------------------------------------------------------------------------- */
 
 #define CAMERA_PERSPECTIVE 0u
@@ -302,7 +308,7 @@ typedef struct SceneLayout {
     /* geometry */
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
     /* tables */
-    uint materials, texture_ops, images, lights, light_alias, infinite_lights, distributions2d, lookup;
+    uint materials, texture_ops, images, lights, light_alias, infinite_lights, aims, distributions2d, lookup;
 } SceneLayout;
 
 #endif

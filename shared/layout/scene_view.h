@@ -27,6 +27,7 @@ typedef struct SceneView {
     __global const Light *lights;
     __global const AliasBucket *light_alias;
     __global const uint *infinite_lights;
+    __global const Aim *aims;
     __global const Distribution2D *distributions2d;
     __global const float *lookup;
     __global const uint *texels;
@@ -63,6 +64,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.lights = (__global const Light *)(tables + layout->lights);
     view.light_alias = (__global const AliasBucket *)(tables + layout->light_alias);
     view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
+    view.aims = (__global const Aim *)(tables + layout->aims);
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
     view.lookup = (__global const float *)(tables + layout->lookup);
     view.texels = texels;

@@ -109,6 +109,9 @@
     STRUCT(AliasBucket)                                                                                                \
     MEMBER(AliasBucket, q)                                                                                             \
     MEMBER(AliasBucket, alias)                                                                                         \
+    STRUCT(Aim)                                                                                                        \
+    MEMBER(Aim, center)                                                                                                \
+    MEMBER(Aim, radius)                                                                                                \
     STRUCT(Camera)                                                                                                     \
     MEMBER(Camera, kind)                                                                                               \
     MEMBER(Camera, lens_radius)                                                                                        \
@@ -139,6 +142,7 @@
     MEMBER(SceneLayout, lights)                                                                                        \
     MEMBER(SceneLayout, light_alias)                                                                                   \
     MEMBER(SceneLayout, infinite_lights)                                                                               \
+    MEMBER(SceneLayout, aims)                                                                                          \
     MEMBER(SceneLayout, distributions2d)                                                                               \
     MEMBER(SceneLayout, lookup)                                                                                        \
     STRUCT(SceneParams)                                                                                                \
@@ -146,6 +150,8 @@
     MEMBER(SceneParams, features)                                                                                      \
     MEMBER(SceneParams, light_count)                                                                                   \
     MEMBER(SceneParams, infinite_light_count)                                                                          \
+    MEMBER(SceneParams, aim_count)                                                                                     \
+    MEMBER(SceneParams, aim_part)                                                                                      \
     MEMBER(SceneParams, guide_count)                                                                                   \
     MEMBER(SceneParams, world_center)                                                                                  \
     MEMBER(SceneParams, world_radius)                                                                                  \

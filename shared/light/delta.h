@@ -1,7 +1,8 @@
 /* Lights without extent. No sampled direction can hit them. For each of LIGHT_LIST_DELTA (layout/scene_types.h):
  *   light_NAME_sample: sets the light that arrives at `ref`, for light_sample: wi, p, infinite, radiance;
- *   light_NAME_emit: draws a ray that leaves it, for light_emit: w, pdf_w, p, pdf_p, radiance, delta_* and infinite;
- *   light_NAME_emit_pdf_w: pdf_w of that, from w. */
+ *   light_NAME_emit: draws a ray that leaves it, for light_emit: w, pdf_w, p, pdf_p, delta_* and infinite;
+ *   light_NAME_emit_pdf_w: pdf_w of that, from w;
+ *   light_NAME_emitted: radiance of that, from w. */
 #ifndef TWINLIGHT_LIGHT_DELTA_H
 #define TWINLIGHT_LIGHT_DELTA_H
 
@@ -30,13 +31,12 @@ SHARED_FUNCTION bool position_light_sample(__global const Light *source, Vec3 re
     return true;
 }
 
-/* For light_NAME_emit: all but w, pdf_w and the factor that radiance has in that direction. */
+/* For light_NAME_emit: all but w and pdf_w. */
 SHARED_FUNCTION void position_light_emit(__global const Light *source, LightEmission *emission)
 {
     emission->p = source->position;
     emission->pdf_p = 1.0f;
     emission->delta_position = 1u;
-    emission->radiance = source->emission;
 }
 
 /* ---- point ------------------------------------------------------------------------------------------------------- */
@@ -55,6 +55,12 @@ SHARED_FUNCTION float light_point_emit_pdf_w(__global const Light *source, Vec3 
     (void)source;
     (void)w;
     return INV_4PI;
+}
+
+SHARED_FUNCTION Vec3 light_point_emitted(__global const Light *source, Vec3 w)
+{
+    (void)w;
+    return source->emission;
 }
 
 SHARED_FUNCTION bool light_point_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
@@ -82,14 +88,18 @@ SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_fall
     return t * t * (3.0f - 2.0f * t);
 }
 
+SHARED_FUNCTION Vec3 light_spot_emitted(__global const Light *source, Vec3 w)
+{
+    float cosine = vec3_dot(source->direction, w);
+    return vec3_scale(source->emission, spot_falloff(cosine, source->cos_total, source->cos_falloff));
+}
+
 SHARED_FUNCTION bool light_spot_sample(__global const Light *source, Vec3 ref, LightSample *sample)
 {
     float distance2;
     if (!position_light_sample(source, ref, sample, &distance2))
         return false;
-    float cosine = -vec3_dot(source->direction, sample->wi);
-    float falloff = spot_falloff(cosine, source->cos_total, source->cos_falloff);
-    sample->radiance = vec3_scale(source->emission, falloff / distance2);
+    sample->radiance = vec3_scale(light_spot_emitted(source, vec3_negate(sample->wi)), 1.0f / distance2);
     return true;
 }
 
@@ -145,7 +155,6 @@ SHARED_FUNCTION bool light_spot_emit(const SceneView *scene, __global const Ligh
     emission->w = vec3_normalize(spot_emit_direction(source, u_direction));
     float cosine = vec3_dot(source->direction, emission->w);
     emission->pdf_w = spot_emit_pdf_w(source, cosine);
-    emission->radiance = vec3_scale(source->emission, spot_falloff(cosine, source->cos_total, source->cos_falloff));
     return emission->pdf_w > 0.0f;
 }
 
@@ -167,12 +176,17 @@ SHARED_FUNCTION float light_distant_emit_pdf_w(__global const Light *source, Vec
     return 1.0f;
 }
 
+SHARED_FUNCTION Vec3 light_distant_emitted(__global const Light *source, Vec3 w)
+{
+    (void)w;
+    return source->emission;
+}
+
 SHARED_FUNCTION bool light_distant_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
                                         Vec2 u_direction, LightEmission *emission)
 {
     (void)u_direction;
     emission->w = source->direction;
-    emission->radiance = source->emission;
     emission->pdf_w = 1.0f;
     emission->delta_direction = 1u;
     return light_emit_from_disc(scene, u_point, emission);
@@ -199,8 +213,11 @@ SHARED_FUNCTION bool delta_light_emit(const SceneView *scene, __global const Lig
                                       Vec2 u_direction, LightEmission *emission)
 {
 #define EMIT(NAME, name, text, feature, position)                                                                      \
-    if (source->kind == LIGHT_##NAME)                                                                                  \
-        return light_##name##_emit(scene, source, u_point, u_direction, emission);
+    if (source->kind == LIGHT_##NAME) {                                                                                \
+        bool emits = light_##name##_emit(scene, source, u_point, u_direction, emission);                               \
+        emission->radiance = light_##name##_emitted(source, emission->w);                                              \
+        return emits;                                                                                                  \
+    }
     LIGHT_LIST_DELTA(EMIT)
 #undef EMIT
     return false;
@@ -214,6 +231,17 @@ SHARED_FUNCTION float delta_light_emit_pdf_w(__global const Light *source, Vec3 
     LIGHT_LIST_DELTA(PDF)
 #undef PDF
     return 0.0f;
+}
+
+/* Radiance of LightEmission along w. */
+SHARED_FUNCTION Vec3 delta_light_emitted(__global const Light *source, Vec3 w)
+{
+#define EMITTED(NAME, name, text, feature, position)                                                                   \
+    if (source->kind == LIGHT_##NAME)                                                                                  \
+        return light_##name##_emitted(source, w);
+    LIGHT_LIST_DELTA(EMITTED)
+#undef EMITTED
+    return vec3_splat(0.0f);
 }
 
 #endif

@@ -68,11 +68,11 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Rand
     if (sample.infinite != 0u) {
         ends->own_y0 = select * sample.pdf_w;
         ends->camera_y1 = f.pdf_w;
-        ends->light_z1 = light_emit_pdf_disc(scene) * at_z;
+        ends->light_z1 = light_aimed_pdf_disc(scene, z->p, vec3_negate(sample.wi)) * at_z;
         return true;
     }
     float distance2 = vec3_length_squared(vec3_sub(sample.p, z->p));
-    ends->light_z1 = light_emit_pdf_w(scene, light, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
+    ends->light_z1 = light_aimed_pdf_w(scene, light, sample.p, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
     if (sample.delta != 0u) {
         ends->own_y0 = select;
         ends->camera_y1 = 0.0f; /* cannot be hit */

@@ -6,7 +6,7 @@
 #include "camera/camera.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
-#include "light/emit.h"
+#include "light/aim.h"
 #include "light/light.h"
 #include "path/bd_state.h"
 

@@ -288,20 +288,20 @@ SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hi
     uint light = walk_hit->light;
     Vec3 towards = vec3_negate(walk_hit->ray.d);
     ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
-    ends->light_z2 = light_emit_pdf_w(scene, light, surface->ng, towards) * walk_hit->back;
+    ends->light_z2 = light_aimed_pdf_w(scene, light, surface->p, surface->ng, towards) * walk_hit->back;
     ends->connect = light_connect_ratio(scene, light, walk_hit->from, walk_hit->ray.d, walk_hit->distance2, surface);
     ends->hittable = true;
     return light_emitted(scene, light, surface->ng, towards);
 }
 
-/* The same for a light at infinity. ng: geometric normal of the vertex that d leaves. */
-SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, Vec3 d, Vec3 ng, StrategyEnds *ends)
+/* The same for a light at infinity. ng: geometric normal of the vertex that the ray leaves. */
+SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const Ray *ray, Vec3 ng, StrategyEnds *ends)
 {
-    ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
-    ends->light_z2 = light_emit_pdf_disc(scene) * float_abs(vec3_dot(d, ng));
+    ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, ray->d);
+    ends->light_z2 = light_aimed_pdf_disc(scene, ray->o, vec3_negate(ray->d)) * float_abs(vec3_dot(ray->d, ng));
     ends->connect = 1.0f;
     ends->hittable = true;
-    return environment_light_radiance(scene, light, d);
+    return environment_light_radiance(scene, light, ray->d);
 }
 
 #endif

@@ -49,12 +49,12 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
 }
 
 /* s = 0 at infinity: the sum over all lights there, when the camera walk has missed after `depth` segments. */
-SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, Vec3 d, Vec3 ng, uint depth)
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, const Ray *ray, Vec3 ng, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], d, ng, &ends);
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], ray, ng, &ends);
         if (!vec3_is_zero(radiance))
             sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
     }

@@ -10,6 +10,7 @@ int main(void)
     suite_add_tcase(suite, emit_direction_case());
     suite_add_tcase(suite, emit_power_case());
     suite_add_tcase(suite, emit_distance_case());
+    suite_add_tcase(suite, emit_aims_case());
     suite_add_tcase(suite, emit_camera_case());
     suite_add_tcase(suite, emit_splat_case());
     suite_add_tcase(suite, emit_image_case());

@@ -1,5 +1,6 @@
-/* Emitted power against closed forms, and irradiance of a receiver by light tracing against light_sample. */
-#include "light/emit.h"
+/* Emitted power against closed forms, and irradiance of a receiver by light tracing against light_sample; both with rays
+ * that are aimed, too. */
+#include "light/aim.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
 
@@ -88,17 +89,37 @@ static Estimate estimate(double sum, double squares, double count)
     return (Estimate){mean, sqrt(fmax(0.0, squares / count - mean * mean) / count)};
 }
 
+/* Cases from LIGHT_CASES on: with aims, one in part of the receiver, one wide above it; for lights that are in the scene
+ * also one around them, and one behind. */
+static double setup_aimed(LightFixture *f, int which)
+{
+    static const Aim AIMS[] = {{{0.5f, 0.3f, -2.0f}, 0.3f},
+                               {{-0.3f, 0.2f, -1.5f}, 0.9f},
+                               {{0.1f, 0.0f, 0.1f}, 1.0f},
+                               {{0.3f, -0.5f, 1.5f}, 0.2f}};
+    double power = setup(f, which % LIGHT_CASES);
+    if (which < LIGHT_CASES)
+        return power;
+    Error error = {0};
+    const uint count = which % LIGHT_CASES >= DISTANT ? 2 : 4;
+    memcpy(array_grow(&f->scene.aims, count, &error), AIMS, count * sizeof *AIMS);
+    f->view.aims = f->scene.aims.data;
+    f->scene.frame.scene.aim_count = count;
+    f->scene.frame.scene.aim_part = 0.4f;
+    return power;
+}
+
 /* The area of a patch or a partial sphere comes from the scene's own quadrature. */
 START_TEST(test_power)
 {
     enum { SAMPLES = 100000 };
     LightFixture f;
-    double sum = 0.0, squares = 0.0, expected = setup(&f, _i);
+    double sum = 0.0, squares = 0.0, expected = setup_aimed(&f, _i);
     if (!(expected > 0.0))
         expected = 2.0 * M_PI * scene_primitive_area(&f.scene, 0);
     for (uint i = 0; i < SAMPLES; ++i) {
         LightEmission e;
-        if (!light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e))
+        if (!light_emit_aimed(&f.view, 0, fixture_random(14, i).x, fixture_random(2, i), fixture_random(9, i), &e))
             continue;
         double value = (double)e.radiance.x * (double)e.cosine / ((double)e.pdf_p * (double)e.pdf_w);
         sum += value;
@@ -123,7 +144,7 @@ static Estimate irradiance_by_shooting(const LightFixture *f, uint samples)
     double sum = 0.0, squares = 0.0, area = M_PI * RECEIVER_RADIUS * RECEIVER_RADIUS;
     for (uint i = 0; i < samples; ++i) {
         LightEmission e;
-        if (!light_emit(&f->view, 0, fixture_random(2, i), fixture_random(9, i), &e))
+        if (!light_emit_aimed(&f->view, 0, fixture_random(14, i).x, fixture_random(2, i), fixture_random(9, i), &e))
             continue;
         double cosine = (double)vec3_dot(e.w, RECEIVER_N);
         double t = (double)vec3_dot(vec3_sub(RECEIVER, e.p), RECEIVER_N) / cosine;
@@ -159,8 +180,8 @@ static Estimate irradiance_by_sampling(const LightFixture *f, uint samples)
 START_TEST(test_irradiance)
 {
     LightFixture f;
-    setup(&f, _i);
-    Estimate shot = irradiance_by_shooting(&f, 200000), sampled = irradiance_by_sampling(&f, 100000);
+    setup_aimed(&f, _i);
+    Estimate shot = irradiance_by_shooting(&f, 300000), sampled = irradiance_by_sampling(&f, 100000);
     double error = hypot(shot.error, sampled.error);
     ck_assert_msg(fabs(shot.mean - sampled.mean) <= 4.0 * error, "light %d: %g by shooting, %g by sampling, +- %g", _i,
                   shot.mean, sampled.mean, error);
@@ -173,7 +194,7 @@ TCase *emit_power_case(void)
 {
     TCase *tcase = tcase_create("power");
     tcase_set_timeout(tcase, 60);
-    tcase_add_loop_test(tcase, test_power, 0, LIGHT_CASES);
-    tcase_add_loop_test(tcase, test_irradiance, 0, LIGHT_CASES);
+    tcase_add_loop_test(tcase, test_power, 0, 2 * LIGHT_CASES);
+    tcase_add_loop_test(tcase, test_irradiance, 0, 2 * LIGHT_CASES);
     return tcase;
 }

@@ -260,7 +260,8 @@ END_TEST
 START_TEST(test_environment)
 {
     enum { LIGHTS = 4, N = 4096 };
-    const Vec3 d = vec3(0.6f, 0.0f, 0.8f), ng = vec3(0.0f, 0.0f, 1.0f);
+    const Ray ray = {.d = {0.6f, 0.0f, 0.8f}};
+    const Vec3 ng = vec3(0.0f, 0.0f, 1.0f);
     const uint depth = 3;
     Shown shown;
     FrameParams *frame = &shown.light.scene.frame;
@@ -282,7 +283,7 @@ START_TEST(test_environment)
     DensityView view = {.light = densities, .camera = densities, .stride = 1};
     for (uint i = 0; i < frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], d, ng, &ends);
+        Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], &ray, ng, &ends);
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, depth + 1, &view, &ends);
         colors[i] = vec3_scale(vec3_mul(beta, met), weights.own);
         by_path_tracing[i] = weights.path_tracing;
@@ -291,7 +292,7 @@ START_TEST(test_environment)
         expected[1] += (double)colors[i].y;
         expected[2] += (double)colors[i].z;
     }
-    WalkHit miss = {.ray.d = d, .from_ng = ng, .missed = true};
+    WalkHit miss = {.ray = ray, .from_ng = ng, .missed = true};
     for (uint k = 0; k < N; ++k) {
         float path_tracing = 0.0f;
         Vec3 got = chain_environment(&shown.light.view, beta, view, &miss, depth, ((float)k + 0.5f) / N, &path_tracing);

@@ -181,13 +181,14 @@ static void chain_parts(const Partition *p, PathParts *parts)
 static double light_visits(const Partition *p, uint light, uint d)
 {
     const Item *item = &p->paths;
-    Vec3 direction = ray_load(item->rays, 1, 0).d, ng = state_load_vec3(item->paths, 1, PATH_NG, 0);
+    Ray ray = ray_load(item->rays, 1, 0);
+    Vec3 ng = state_load_vec3(item->paths, 1, PATH_NG, 0);
     Vec3 beta = state_load_vec3(item->paths, 1, PATH_BETA, 0);
     DensityView view = bd_density_view(&p->pool_frame, p->pool.paths, p->pool.densities, 0);
     double all = 0.0, own = 0.0;
     for (uint i = 0; i < p->chain_frame.scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(&p->view, p->view.infinite_lights[i], direction, ng, &ends);
+        Vec3 radiance = environment_met(&p->view, p->view.infinite_lights[i], &ray, ng, &ends);
         double part = (double)rgb_luminance(vec3_mul(beta, radiance)) *
                       (double)bd_weight(&p->chain_frame, 0u, d + 1u, &view, &ends);
         all += part;

@@ -105,8 +105,10 @@ static float emitted(const Walks *walks, const RealPath *path)
     float distance2;
     Vec3 w = path_direction(path, path->k - 1, path->k, &distance2), ng = path->vertices[path->k - 1].ng;
     if (path->infinite)
-        return light_emit_pdf_disc(&walks->view) * float_abs(vec3_dot(w, ng));
-    return light_emit_pdf_w(&walks->view, path->light, path->vertices[path->k].ng, vec3_negate(w)) *
+        return light_aimed_pdf_disc(&walks->view, path->vertices[path->k - 1].p, vec3_negate(w)) *
+               float_abs(vec3_dot(w, ng));
+    return light_aimed_pdf_w(&walks->view, path->light, path->vertices[path->k].p, path->vertices[path->k].ng,
+                             vec3_negate(w)) *
            solid_angle_to_area(w, ng, distance2);
 }
 

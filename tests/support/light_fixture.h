@@ -49,6 +49,7 @@ static inline void fixture_finish(LightFixture *f)
                           .lights = s->lights.data,
                           .light_alias = s->light_alias.data,
                           .infinite_lights = s->infinite_lights.data,
+                          .aims = s->aims.data,
                           .distributions2d = s->distributions2d.data,
                           .lookup = s->lookup.data,
                           .texels = s->texels.data};

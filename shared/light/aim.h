@@ -1,0 +1,124 @@
+/* Light subpaths aimed at smooth specular surfaces. Of a lamp in a room, and of light from infinity, few subpaths meet the
+ * small mirror or the window pane that makes a caustic, and connections to a camera find its light by nothing else. So a
+ * part of the rays that leave a light, SceneParams.aim_part, is drawn through spheres around those surfaces, the aims, with
+ * equal probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from
+ * infinity, uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn as by
+ * light_emit. (Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.3.1, has such projection maps.)
+ *
+ * Here are the densities that result, and the drawing. */
+#ifndef TWINLIGHT_LIGHT_AIM_H
+#define TWINLIGHT_LIGHT_AIM_H
+
+#include "light/emit.h"
+
+/* At squared distances below this many squared radii a point counts as inside the aim. */
+#define AIM_OUTSIDE 1.0001f
+
+/* Whether the line through p along w (unit) meets the aim. */
+SHARED_FUNCTION bool aim_met(Aim aim, Vec3 p, Vec3 w)
+{
+    return vec3_length_squared(vec3_cross(vec3_sub(aim.center, p), w)) <= aim.radius * aim.radius;
+}
+
+/* 1 - cosine of the half-angle that the aim subtends at p; 0 if p is not outside. */
+SHARED_FUNCTION float aim_versine(Aim aim, Vec3 p)
+{
+    float distance2 = vec3_length_squared(vec3_sub(aim.center, p)), radius2 = aim.radius * aim.radius;
+    if (!(distance2 > AIM_OUTSIDE * radius2))
+        return 0.0f;
+    float sin2 = radius2 / distance2;
+    return sin2 / (1.0f + float_sqrt(1.0f - sin2));
+}
+
+/* Density per solid angle of a ray that leaves p along w (unit), given its light and p. ng: light_emit_pdf_w. Distant and
+ * infinite lights: their directions are not aimed. */
+SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3 p, Vec3 ng, Vec3 w)
+{
+    uint count = scene->frame->scene.aim_count, kind = scene->lights[light].kind;
+    float unaimed = light_emit_pdf_w(scene, light, ng, w), sum = 0.0f, part = scene->frame->scene.aim_part;
+    if (count == 0u || (kind != LIGHT_AREA && !light_has_position(kind)))
+        return unaimed;
+    for (uint i = 0u; i < count; ++i) {
+        Aim aim = scene->aims[i];
+        float versine = aim_versine(aim, p);
+        if (!(versine > 0.0f))
+            sum += unaimed;
+        else if (aim_met(aim, p, w) && vec3_dot(vec3_sub(aim.center, p), w) > 0.0f)
+            sum += warp_cone_pdf(versine);
+    }
+    return (1.0f - part) * unaimed + part * (sum / (float)count);
+}
+
+/* Density, per area perpendicular to it, of the ray of a light at infinity that passes p along w (unit), given w. p must be
+ * in the scene. */
+SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, Vec3 p, Vec3 w)
+{
+    uint count = scene->frame->scene.aim_count;
+    float unaimed = light_emit_pdf_disc(scene), sum = 0.0f, part = scene->frame->scene.aim_part;
+    if (count == 0u)
+        return unaimed;
+    for (uint i = 0u; i < count; ++i) {
+        Aim aim = scene->aims[i];
+        if (aim_met(aim, p, w))
+            sum += INV_PI / (aim.radius * aim.radius);
+    }
+    return (1.0f - part) * unaimed + part * (sum / (float)count);
+}
+
+/* Moves the ray's origin so that it passes the disc of the aim; as in light_emit_from_disc, it begins where the bounding
+ * sphere does. */
+SHARED_FUNCTION void aim_from_infinity(const SceneView *scene, Aim aim, Vec2 u, LightEmission *emission)
+{
+    Vec2 disc = warp_disk_concentric(u);
+    Vec3 offset = frame_to_world(frame_from_normal(emission->w), vec3(disc.x, disc.y, 0.0f));
+    Vec3 passed = vec3_mad(aim.center, aim.radius, offset);
+    Vec3 from_center = vec3_sub(passed, scene->frame->scene.world_center);
+    emission->p = vec3_mad(passed, -(light_emit_disc_radius(scene) + vec3_dot(from_center, emission->w)), emission->w);
+}
+
+/* Turns the ray to pass through the aim, which does not contain its origin; false if the light emits nothing there. */
+SHARED_FUNCTION bool aim_from_point(__global const Light *source, Aim aim, Vec2 u, LightEmission *emission)
+{
+    Vec3 axis = vec3_normalize(vec3_sub(aim.center, emission->p));
+    Vec3 w = frame_to_world(frame_from_normal(axis), warp_cone(u, aim_versine(aim, emission->p)));
+    emission->w = vec3_normalize(w);
+    if (source->kind != LIGHT_AREA) {
+        emission->radiance = delta_light_emitted(source, emission->w);
+        return !vec3_is_zero(emission->radiance);
+    }
+    float cosine = vec3_dot(emission->ng, emission->w);
+    if (cosine < 0.0f && (source->flags & LIGHT_TWO_SIDED) != 0u) {
+        emission->ng = vec3_negate(emission->ng);
+        cosine = -cosine;
+    }
+    emission->cosine = cosine;
+    return cosine > 0.0f;
+}
+
+/* light_emit, with a part of the rays aimed. u_aim: uniform in [0, 1). */
+SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float u_aim, Vec2 u_point, Vec2 u_direction,
+                                      LightEmission *emission)
+{
+    uint count = scene->frame->scene.aim_count;
+    float part = scene->frame->scene.aim_part;
+    __global const Light *source = scene->lights + light;
+    if (!light_emit(scene, light, u_point, u_direction, emission))
+        return false;
+    if (count == 0u)
+        return true;
+    uint index = (uint)(u_aim / part * (float)count);
+    bool aimed = u_aim < part && index < count;
+    Aim aim = scene->aims[aimed ? index : 0u];
+    if (emission->infinite != 0u) {
+        if (aimed)
+            aim_from_infinity(scene, aim, u_point, emission);
+        emission->pdf_p = light_aimed_pdf_disc(scene, emission->p, emission->w);
+        return true;
+    }
+    if (aimed && aim_versine(aim, emission->p) > 0.0f && !aim_from_point(source, aim, u_direction, emission))
+        return false;
+    emission->pdf_w = light_aimed_pdf_w(scene, light, emission->p, emission->ng, emission->w);
+    return emission->pdf_w > 0.0f;
+}
+
+#endif
