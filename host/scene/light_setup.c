@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "geometry/texture.h"
+#include "light/delta.h"
 #include "scene/distribution_build.h"
 
 #include <math.h>
@@ -181,7 +182,25 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Fills `powers`, sets select_pdf of every light, and lists the infinite lights. */
+/* Whether what the light sends into the scene grows with the square of the scene's radius. */
+static bool light_is_far(const Light *light)
+{
+    return light->kind != LIGHT_AREA && !light_has_position(light->kind);
+}
+
+/* Scales the powers of far lights so that together they have no more than all others, if there are others. Most of what
+ * they send into a wide scene arrives where no lamp does, and of its lamps' light hardly any sample would be left. */
+static void far_lights_bound(const Scene *scene, double *powers)
+{
+    double far = 0.0, near = 0.0;
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        *(light_is_far(&ARRAY_AT(&scene->lights, Light, i)) ? &far : &near) += powers[i];
+    for (size_t i = 0; near > 0.0 && far > near && i < scene->lights.count; ++i)
+        if (light_is_far(&ARRAY_AT(&scene->lights, Light, i)))
+            powers[i] *= near / far;
+}
+
+/* Fills `powers` with those by which lights are chosen, sets select_pdf of every light, and lists the infinite lights. */
 static bool lights_weigh(Scene *scene, double *powers, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;
@@ -195,6 +214,10 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     if (!(sum > 0.0))
         return no_light(count, error);
     scene->light_power = sum;
+    far_lights_bound(scene, powers);
+    sum = 0.0;
+    for (size_t i = 0; i < count; ++i)
+        sum += powers[i];
     if (dark > 0)
         log_message(LOG_WARNING, "%zu of %zu lights have no power and are ignored", dark, count);
     for (size_t i = 0; i < count; ++i) {

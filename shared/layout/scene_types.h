@@ -235,7 +235,7 @@ typedef struct Light {
                       plane facing it */
     float area; /* area: surface area in world space */
     Vec3 position; /* point, spot */
-    float select_pdf; /* probability of choosing this light, proportional to its power */
+    float select_pdf; /* probability of choosing this light (host/scene/light_setup.h) */
     Vec3 direction; /* spot: axis. distant: direction in which the light travels. unit */
     float cos_total; /* spot: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle */

@@ -8,7 +8,8 @@
 #include "light/delta.h"
 #include "light/infinite.h"
 
-/* Draws a light with probability lights[i].select_pdf (proportional to power). The scene must have at least one. */
+/* Draws a light with probability lights[i].select_pdf (host/scene/light_setup.h). The scene must have at least
+ * one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
 {
     return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);

@@ -3,8 +3,10 @@
 #include "light/test_light.h"
 #include "support/light_fixture.h"
 
+/* Lights are chosen by power; with the far ones bright, those together as often as all others. */
 START_TEST(test_powers)
 {
+    const float bright = _i == 0 ? 1.0f : 0.1f;
     LightFixture f;
     fixture_init(&f);
     f.scene.frame.scene.world_radius = 2.0f;
@@ -16,24 +18,33 @@ START_TEST(test_powers)
     fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
     fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {0, 0, 0}});
     fixture_add_light(&f, (Light){.kind = LIGHT_SPOT, .emission = {1, 1, 1}, .cos_total = 0.5f, .cos_falloff = 0.75f});
-    fixture_add_light(&f, (Light){.kind = LIGHT_DISTANT, .emission = {0.5f, 0.5f, 0.5f}, .direction = {0, 0, 1}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0.1f, 0.1f, 0.1f}});
+    fixture_add_light(&f, (Light){.kind = LIGHT_DISTANT,
+                                  .emission = {0.5f * bright, 0.5f * bright, 0.5f * bright},
+                                  .direction = {0, 0, 1}});
+    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0.1f * bright, 0.1f * bright, 0.1f * bright}});
     fixture_add_environment(&f, texels, 4, 2, LIGHT_EQUIRECTANGULAR, identity);
-    ARRAY_AT(&f.scene.lights, Light, 7).emission = vec3(0.05f, 0.05f, 0.05f);
+    ARRAY_AT(&f.scene.lights, Light, 7).emission = vec3_splat(0.05f * bright);
     fixture_finish(&f);
     /* pbrt-v4's power estimates. The hemispheres of the image average to 2. */
-    const double expected[8] = {2.0 * M_PI,
-                                2.0 * M_PI,
-                                4.0 * M_PI,
-                                0.0,
-                                2.0 * M_PI * (0.25 + 0.125),
-                                0.5 * M_PI * 4.0,
-                                0.1 * 4.0 * M_PI * M_PI * 4.0,
-                                0.05 * 2.0 * 4.0 * M_PI * M_PI * 4.0};
-    double total = 0.0, observed[8] = {0.0}, counts[8];
-    enum { SAMPLES = 200000 };
-    for (int i = 0; i < 8; ++i)
+    double expected[8] = {2.0 * M_PI,
+                          2.0 * M_PI,
+                          4.0 * M_PI,
+                          0.0,
+                          2.0 * M_PI * (0.25 + 0.125),
+                          0.5 * M_PI * 4.0,
+                          0.1 * 4.0 * M_PI * M_PI * 4.0,
+                          0.05 * 2.0 * 4.0 * M_PI * M_PI * 4.0};
+    double total = 0.0, near = 0.0, observed[8] = {0.0}, counts[8];
+    enum { SAMPLES = 200000, FIRST_FAR = 5 };
+    for (int i = 0; i < 8; ++i) {
+        expected[i] *= i >= FIRST_FAR ? (double)bright : 1.0;
         total += expected[i];
+        near += i < FIRST_FAR ? expected[i] : 0.0;
+    }
+    ck_assert((near < total - near) == (_i == 0));
+    for (int i = FIRST_FAR; _i == 0 && i < 8; ++i)
+        expected[i] *= near / (total - near);
+    total = _i == 0 ? 2.0 * near : total;
     for (int i = 0; i < 8; ++i) {
         double pdf = (double)ARRAY_AT(&f.scene.lights, Light, i).select_pdf;
         ck_assert_msg(fabs(pdf - expected[i] / total) < 1e-6, "light %d: %g, not %g", i, pdf, expected[i] / total);
@@ -104,7 +115,7 @@ END_TEST
 TCase *light_select_case(void)
 {
     TCase *tcase = tcase_create("choice of lights");
-    tcase_add_test(tcase, test_powers);
+    tcase_add_loop_test(tcase, test_powers, 0, 2);
     tcase_add_test(tcase, test_no_light);
     tcase_add_test(tcase, test_not_finite);
     return tcase;
