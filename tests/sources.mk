@@ -233,6 +233,7 @@ tests_test_math_SOURCES = tests/math/test_math.c \
 	tests/math/test_math_elementary.c \
 	tests/math/test_math_elementary_pairs.c \
 	tests/math/test_math_rng.c \
+	tests/math/test_math_sobol.c \
 	tests/math/test_math_sphere_maps.c \
 	tests/math/test_math_warp.c
 

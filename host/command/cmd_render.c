@@ -147,6 +147,7 @@ static RenderOptions job_options(RenderJob *job)
         .bad_chains = job->bad_chains.stream,
         .layers = job->layers.wanted != 0 ? &job->layers : NULL,
         .balance = command->balance,
+        .independent = command->sampler && strcmp(command->sampler, "independent") == 0,
         .only_strategy = command->only_strategy,
         .strategy = {command->strategy[0], command->strategy[1]},
         .unweighted = command->unweighted,

@@ -13,6 +13,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
                            "algorithm: mmlt (Metropolis; default), pt (path tracing), bdpt or ibpt (bidirectional)"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "MIS weights of strategies: power (default) or balance"},
+    [OPTION_SAMPLER] = {"sampler", 0, "NAME",
+                        "pt, bdpt, ibpt: random numbers, stratified within a pixel (sobol, default) or independent"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
     [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},
@@ -124,6 +126,15 @@ static bool path_set(const char **path, int option, const char *value, const cha
     return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
 }
 
+static bool sampler_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->sampler = value;
+    if (strcmp(value, "sobol") == 0 || strcmp(value, "independent") == 0)
+        return true;
+    error_set(error, "--sampler=%s: there is no such sampler", value);
+    return error_fix(error, "use sobol or independent");
+}
+
 static bool heuristic_set(RenderCommand *command, const char *value, Error *error)
 {
     command->balance = strcmp(value, "balance") == 0;
@@ -201,6 +212,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return true;
     case OPTION_HEURISTIC:
         return heuristic_set(command, value, error);
+    case OPTION_SAMPLER:
+        return sampler_set(command, value, error);
     case OPTION_FILM:
         return film_set(command, value, error);
     case OPTION_STRATEGY:

@@ -16,6 +16,7 @@ typedef struct RenderCommand {
     double exposure; /* stops */
     const char *integrator; /* NULL: not given */
     bool balance; /* balance heuristic */
+    const char *sampler; /* "sobol" or "independent"; NULL: not given */
     bool only_strategy, unweighted;
     unsigned strategy[2]; /* s, t */
     ChainOptions chains;
@@ -52,6 +53,7 @@ typedef enum RenderOption {
     OPTION_OUTPUT,
     OPTION_INTEGRATOR,
     OPTION_HEURISTIC,
+    OPTION_SAMPLER,
     OPTION_STRATEGY,
     OPTION_UNWEIGHTED,
     OPTION_SAMPLES,

@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Part of light subpaths that is aimed: others have at most a third more variance. */
-#define AIM_PART 0.25f
-
 /* Groups are divided along each axis in this many slices. */
 #define SLICES 16
 
@@ -146,6 +143,5 @@ bool aim_setup(Scene *scene, const SceneView *view, Error *error)
     }
     smooth_boxes_destroy(&boxes);
     scene->frame.scene.aim_count = (uint)scene->aims.count;
-    scene->frame.scene.aim_part = scene->aims.count > 0 ? AIM_PART : 0.0f;
     return done;
 }

@@ -8,7 +8,7 @@
 /* Largest number of aims: every density of a light's rays is a sum over all. */
 #define AIMS_MAX 16
 
-/* Sets scene->aims, aim_count and aim_part; none without smooth specular surfaces. view: of the arrays before they are
+/* Sets scene->aims, and aim_count; none without smooth specular surfaces. view: of the arrays before they are
  * packed. */
 bool aim_setup(Scene *scene, const SceneView *view, Error *error);
 

@@ -226,10 +226,11 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, item),
                                  state_load(paths, stride, PATH_SAMPLE, item), path_random_block(depth, RANDOM_LIGHT));
-    uint light = light_select(scene, random.x[0], random.x[1]);
+    Vec2 u;
+    uint light = light_select_point(scene, random, &u);
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item), ng = state_load_vec3(paths, stride, PATH_NG, item);
     LightSample sample = {0};
-    if (!light_sample(scene, light, p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+    if (!light_sample(scene, light, p, u, &sample))
         return;
     Bsdf bsdf = bsdf_load(scene, paths, stride, PATH_BSDF, item);
     Frame shading = frame_load(paths, stride, PATH_FRAME, item);

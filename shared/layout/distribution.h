@@ -6,14 +6,28 @@
 
 /* Draws an index below `count` (> 0) from an alias table. bits0 and bits1 form one 64-bit fraction. The integer part of
  * its product with `count` is the bucket, the fractional part decides whether the bucket's own index is kept. All
- * buckets are equally probable to within count 2^-64. */
-SHARED_FUNCTION uint alias_sample(__global const AliasBucket *buckets, uint count, uint bits0, uint bits1)
+ * buckets are equally probable to within count 2^-64. *rest: where in its part of the fraction that was, uniform in (0, 1)
+ * given the index, and stratified as bits0 is. */
+SHARED_FUNCTION uint alias_sample_rest(__global const AliasBucket *buckets, uint count, uint bits0, uint bits1,
+                                       float *rest)
 {
     ulong low = (ulong)bits1 * count;
     ulong high = (ulong)bits0 * count + (low >> 32);
     uint bucket = (uint)(high >> 32);
-    float rest = (float)((high << 32) | (low & 0xffffffffu)) * 5.421010862427522e-20f; /* 2^-64 */
-    return rest < buckets[bucket].q ? bucket : buckets[bucket].alias;
+    ulong part = (high << 32) | (low & 0xffffffffu);
+    float q = buckets[bucket].q;
+    ulong kept = q < 1.0f ? (ulong)(q * 18446744073709551616.0f) : 0u; /* q 2^64; 0: all, or none */
+    bool keeps = q >= 1.0f || part < kept;
+    ulong first = keeps ? 0u : kept, all = keeps ? kept : 0u - kept;
+    float size = all > 0u ? (float)all : 18446744073709551616.0f;
+    *rest = float_clamp((float)(part - first) / size, 5.9604645e-8f, 0.99999994f);
+    return keeps ? bucket : buckets[bucket].alias;
+}
+
+SHARED_FUNCTION uint alias_sample(__global const AliasBucket *buckets, uint count, uint bits0, uint bits1)
+{
+    float rest;
+    return alias_sample_rest(buckets, count, bits0, bits1, &rest);
 }
 
 /* The cell i < count of a CDF of count + 1 values with cdf[first + i] <= u < cdf[first + i + 1]; never an empty one.

@@ -35,8 +35,7 @@ typedef struct SceneParams {
     uint features;
     uint light_count;
     uint infinite_light_count;
-    uint aim_count;
-    float aim_part; /* of light subpaths that are aimed (light/aim.h); 0 without aims */
+    uint aim_count; /* of light subpaths (light/aim.h) */
     uint guide_count; /* light guides of chains and their pools (light/light_guide.h); 0 for other integrators */
     Vec3 world_center; /* bounding sphere of the scene */
     float world_radius;
@@ -60,6 +59,7 @@ typedef struct PathParams {
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
     uint unweighted; /* 1: all MIS weights are 1 */
+    uint sobol; /* 1: random numbers of a pixel's samples are stratified (math/sobol.h) */
 } PathParams;
 
 /* How the estimators of MMLT divide a path's contribution (path/partition.h). */

@@ -151,7 +151,6 @@
     MEMBER(SceneParams, light_count)                                                                                   \
     MEMBER(SceneParams, infinite_light_count)                                                                          \
     MEMBER(SceneParams, aim_count)                                                                                     \
-    MEMBER(SceneParams, aim_part)                                                                                      \
     MEMBER(SceneParams, guide_count)                                                                                   \
     MEMBER(SceneParams, world_center)                                                                                  \
     MEMBER(SceneParams, world_radius)                                                                                  \
@@ -185,6 +184,7 @@
     MEMBER(PathParams, only_s)                                                                                         \
     MEMBER(PathParams, only_t)                                                                                         \
     MEMBER(PathParams, unweighted)                                                                                     \
+    MEMBER(PathParams, sobol)                                                                                          \
     STRUCT(PartitionParams)                                                                                            \
     MEMBER(PartitionParams, split_direct)                                                                              \
     MEMBER(PartitionParams, clamp_threshold)                                                                           \

@@ -1,6 +1,6 @@
 /* Light subpaths aimed at smooth specular surfaces. Of a lamp in a room, and of light from infinity, few subpaths meet the
  * small mirror or the window pane that makes a caustic, and connections to a camera find its light by nothing else. So a
- * part of the rays that leave a light, SceneParams.aim_part, is drawn through spheres around those surfaces, the aims, with
+ * part of the rays that leave a light, AIM_PART, is drawn through spheres around those surfaces, the aims, with
  * equal probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from
  * infinity, uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn as by
  * light_emit. (Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.3.1, has such projection maps.)
@@ -10,6 +10,9 @@
 #define TWINLIGHT_LIGHT_AIM_H
 
 #include "light/emit.h"
+
+/* Others have at most a third more variance. docs/CAUSTICS.md */
+#define AIM_PART 0.25f
 
 /* At squared distances below this many squared radii a point counts as inside the aim. */
 #define AIM_OUTSIDE 1.0001f
@@ -35,7 +38,7 @@ SHARED_FUNCTION float aim_versine(Aim aim, Vec3 p)
 SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3 p, Vec3 ng, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count, kind = scene->lights[light].kind;
-    float unaimed = light_emit_pdf_w(scene, light, ng, w), sum = 0.0f, part = scene->frame->scene.aim_part;
+    float unaimed = light_emit_pdf_w(scene, light, ng, w), sum = 0.0f;
     if (count == 0u || (kind != LIGHT_AREA && !light_has_position(kind)))
         return unaimed;
     for (uint i = 0u; i < count; ++i) {
@@ -46,7 +49,7 @@ SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3
         else if (aim_met(aim, p, w) && vec3_dot(vec3_sub(aim.center, p), w) > 0.0f)
             sum += warp_cone_pdf(versine);
     }
-    return (1.0f - part) * unaimed + part * (sum / (float)count);
+    return (1.0f - AIM_PART) * unaimed + AIM_PART * (sum / (float)count);
 }
 
 /* Density, per area perpendicular to it, of the ray of a light at infinity that passes p along w (unit), given w. p must be
@@ -54,7 +57,7 @@ SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3
 SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, Vec3 p, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count;
-    float unaimed = light_emit_pdf_disc(scene), sum = 0.0f, part = scene->frame->scene.aim_part;
+    float unaimed = light_emit_pdf_disc(scene), sum = 0.0f;
     if (count == 0u)
         return unaimed;
     for (uint i = 0u; i < count; ++i) {
@@ -62,7 +65,7 @@ SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, Vec3 p, Vec3 
         if (aim_met(aim, p, w))
             sum += INV_PI / (aim.radius * aim.radius);
     }
-    return (1.0f - part) * unaimed + part * (sum / (float)count);
+    return (1.0f - AIM_PART) * unaimed + AIM_PART * (sum / (float)count);
 }
 
 /* Moves the ray's origin so that it passes the disc of the aim; as in light_emit_from_disc, it begins where the bounding
@@ -100,14 +103,13 @@ SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float 
                                       LightEmission *emission)
 {
     uint count = scene->frame->scene.aim_count;
-    float part = scene->frame->scene.aim_part;
     __global const Light *source = scene->lights + light;
     if (!light_emit(scene, light, u_point, u_direction, emission))
         return false;
     if (count == 0u)
         return true;
-    uint index = (uint)(u_aim / part * (float)count);
-    bool aimed = u_aim < part && index < count;
+    uint index = (uint)(u_aim / AIM_PART * (float)count);
+    bool aimed = u_aim < AIM_PART && index < count;
     Aim aim = scene->aims[aimed ? index : 0u];
     if (emission->infinite != 0u) {
         if (aimed)

@@ -7,12 +7,22 @@
 #include "light/area.h"
 #include "light/delta.h"
 #include "light/infinite.h"
+#include "math/rng.h"
 
 /* Draws a light with probability lights[i].select_pdf (host/scene/light_setup.h). The scene must have at least
  * one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
 {
     return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);
+}
+
+/* light_select with the numbers of a point on the light, the first of which chooses the light and is stretched to what is
+ * left of it, so that points stay stratified; *u: then those of the point. random: x: as bits1 of light_select; z, w: point
+ * (y is not used). */
+SHARED_FUNCTION uint light_select_point(const SceneView *scene, Random4 random, Vec2 *u)
+{
+    u->y = random_float(random.x[3]);
+    return alias_sample_rest(scene->light_alias, scene->frame->scene.light_count, random.x[2], random.x[0], &u->x);
 }
 
 /* Draws light that arrives at `ref` from `light`, occlusion ignored. False: no contribution; *sample is then

@@ -4,5 +4,7 @@ SHARED_FILES += \
 	shared/math/platform_double.h \
 	shared/math/rng.h \
 	shared/math/scaled.h \
+	shared/math/sobol.h \
+	shared/math/sobol_tables.h \
 	shared/math/vec.h \
 	shared/math/warp.h

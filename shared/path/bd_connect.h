@@ -46,14 +46,15 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Ran
     return true;
 }
 
-/* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: which light (x, y), where on it. */
+/* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: of light_select_point. */
 SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
 {
     if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
         return false;
-    uint light = light_select(scene, random.x[0], random.x[1]);
+    Vec2 u;
+    uint light = light_select_point(scene, random, &u);
     LightSample sample = {0};
-    if (!light_sample(scene, light, z->p, vec2(random_float(random.x[2]), random_float(random.x[3])), &sample))
+    if (!light_sample(scene, light, z->p, u, &sample))
         return false;
     BsdfValue f = bsdf_eval(scene, &z->bsdf, z->wo, frame_to_local(z->frame, sample.wi), TRANSPORT_RADIANCE);
     float select = scene->lights[light].select_pdf;

@@ -4,8 +4,8 @@
 #define TWINLIGHT_PATH_BD_RANDOM_H
 
 #include "layout/scene_view.h"
-#include "math/rng.h"
 #include "path/bd_state.h"
+#include "path/path_random.h"
 
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
 #define BD_RANDOM_LIGHT 1u /* x, y: which light; z: aim */
@@ -22,12 +22,20 @@
 /* One block per connection of a pool, to draw the candidate (chain/pool.h); s * 64 + t. */
 #define BD_RANDOM_CANDIDATES 0x2000u
 
+/* The first of two numbers of a block that belong together (sample_random). */
+SHARED_FUNCTION uint bd_random_pair(uint block)
+{
+    if (block >= BD_RANDOM_CONNECTIONS)
+        return block < BD_RANDOM_CONNECTIONS + 2u * 64u ? 2u : 0u; /* s = 1: light_select_point */
+    return block >= BD_RANDOM_VERTICES && (block & 1u) == BD_RANDOM_SCATTER ? 1u : 0u;
+}
+
 SHARED_FUNCTION Random4 bd_random_of(__global const FrameParams *frame, __global const uint *paths, uint item,
                                      uint block, uint stream)
 {
     uint stride = frame->pass.stride;
-    return random_four(state_load(paths, stride, BD_PIXEL, item), state_load(paths, stride, BD_SAMPLE, item), block,
-                       stream, frame->pass.seed_low, frame->pass.seed_high);
+    return sample_random(frame, state_load(paths, stride, BD_PIXEL, item), state_load(paths, stride, BD_SAMPLE, item),
+                         block, stream, bd_random_pair(block));
 }
 
 SHARED_FUNCTION Random4 bd_random(__global const FrameParams *frame, __global const uint *paths, uint item, uint block)
@@ -75,7 +83,7 @@ SHARED_FUNCTION Random4 connection_random_light(Random4 choice, Random4 emit)
     return choice;
 }
 
-/* The numbers of connection (s, t). s = 1: which light (x, y), point on it; t = 1: lens, pixel. */
+/* The numbers of connection (s, t). s = 1: light_select_point; t = 1: lens, pixel. */
 SHARED_FUNCTION Random4 bd_random_connection(__global const FrameParams *frame, __global const uint *paths, uint item,
                                              uint s, uint t)
 {

@@ -18,9 +18,9 @@ SHARED_FUNCTION Random4 caustic_random(__global const FrameParams *frame, __glob
                                        uint depth, uint what)
 {
     uint stride = frame->pass.stride;
-    return random_four(state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
-                       depth * (CAUSTIC_VERTICES + 1u) + what, PATH_STREAM_CAUSTIC, frame->pass.seed_low,
-                       frame->pass.seed_high);
+    return sample_random(frame, state_load(paths, stride, PATH_PIXEL, item),
+                         state_load(paths, stride, PATH_SAMPLE, item), depth * (CAUSTIC_VERTICES + 1u) + what,
+                         PATH_STREAM_CAUSTIC, 1u);
 }
 
 /* Draws a direction for the path's vertex and stores its ray; none if there are no photons around or it brings

@@ -72,7 +72,6 @@ START_TEST(test_none)
     add_ball(&f, NONE, 8, 0, 0, 1.0f);
     choose(&f);
     ck_assert_uint_eq(f.scene.aims.count, 0);
-    ck_assert(f.scene.frame.scene.aim_part == 0.0f);
     fixture_destroy(&f);
 }
 END_TEST
@@ -106,7 +105,6 @@ START_TEST(test_groups)
         area += (double)aim.radius * (double)aim.radius;
     }
     ck_assert_double_lt(area, 5.2 * 5.2 + 2.2 * 2.2); /* of one sphere around the field of balls */
-    ck_assert(f.scene.frame.scene.aim_part > 0.0f);
     fixture_destroy(&f);
 }
 END_TEST
@@ -117,7 +115,6 @@ enum { BALL, LAMP, BOTH_SIDES, POINT, SPOT, DISTANT, CONSTANT, LIGHT_CASES };
 
 static const Aim AIMS[] = {{{3.0f, 1.0f, -2.0f}, 0.05f}, {{-2.0f, 0.5f, -3.0f}, 0.02f}, {{0.0f, 0.0f, 0.0f}, 2.0f}};
 enum { AIM_COUNT = sizeof AIMS / sizeof *AIMS };
-#define PART 0.3f
 
 static void setup(LightFixture *f, int which)
 {
@@ -144,10 +141,9 @@ static void setup(LightFixture *f, int which)
     memcpy(array_grow(&f->scene.aims, AIM_COUNT, &error), AIMS, sizeof AIMS);
     f->view.aims = f->scene.aims.data;
     f->scene.frame.scene.aim_count = AIM_COUNT;
-    f->scene.frame.scene.aim_part = PART;
 }
 
-/* Of all rays, aim_part goes through the aims, which are so small that hardly another does: as many through each. The
+/* Of all rays, AIM_PART goes through the aims, which are so small that hardly another does: as many through each. The
  * last is around the lights with a position, whose rays are then drawn as if it were not there. */
 START_TEST(test_shares)
 {
@@ -162,7 +158,7 @@ START_TEST(test_shares)
         for (int k = 0; k < AIM_COUNT; ++k)
             through[k] += aim_met(AIMS[k], e.p, e.w) && vec3_dot(vec3_sub(AIMS[k].center, e.p), e.w) > 0.0f;
     }
-    const double share = (double)PART / AIM_COUNT, sigma = sqrt(share * (1.0 - share) * SAMPLES);
+    const double share = (double)AIM_PART / AIM_COUNT, sigma = sqrt(share * (1.0 - share) * SAMPLES);
     ck_assert_double_eq_tol(through[0], share * SAMPLES, 4.0 * sigma + 20.0);
     ck_assert_double_eq_tol(through[1], share * SAMPLES, 4.0 * sigma + 20.0);
     if (_i == DISTANT)

@@ -105,7 +105,6 @@ static double setup_aimed(LightFixture *f, int which)
     memcpy(array_grow(&f->scene.aims, count, &error), AIMS, count * sizeof *AIMS);
     f->view.aims = f->scene.aims.data;
     f->scene.frame.scene.aim_count = count;
-    f->scene.frame.scene.aim_part = 0.4f;
     return power;
 }
 

@@ -1,4 +1,4 @@
-/* Elementary functions, generator, warps and tabulated distributions. */
+/* Elementary functions, generators, warps and tabulated distributions. */
 #include "math/test_math.h"
 
 int main(void)
@@ -7,6 +7,7 @@ int main(void)
     suite_add_tcase(suite, test_math_elementary());
     suite_add_tcase(suite, test_math_elementary_pairs());
     suite_add_tcase(suite, test_math_rng());
+    suite_add_tcase(suite, test_math_sobol());
     suite_add_tcase(suite, test_math_warp());
     suite_add_tcase(suite, test_math_sphere_maps());
     suite_add_tcase(suite, test_math_alias());

@@ -17,6 +17,7 @@
 TCase *test_math_elementary(void);
 TCase *test_math_elementary_pairs(void);
 TCase *test_math_rng(void);
+TCase *test_math_sobol(void);
 TCase *test_math_warp(void);
 TCase *test_math_sphere_maps(void);
 TCase *test_math_alias(void);

@@ -116,6 +116,29 @@ static double alias_chi_square(const double *weights, int n, uint draws, uint ke
     return test_chi_square(observed, expected, n);
 }
 
+/* Evenly spaced fractions give every index evenly spaced rests, in each of the up to three parts that it has. */
+START_TEST(test_alias_rest)
+{
+    enum { N = 4096, BINS = 16 };
+    static const double WEIGHTS[3] = {1.0, 3.0, 2.0};
+    AliasBucket buckets[3];
+    int counts[3][BINS] = {{0}};
+    Error error;
+    test_require(alias_build(WEIGHTS, 3, buckets, &error), "%s", error.message);
+    for (uint k = 0; k < N; ++k) {
+        float rest = -1.0f;
+        uint bits = k * (0xffffffffu / N) + 0x7ffffu, i = alias_sample_rest(buckets, 3, bits, 12345u, &rest);
+        test_require(i == alias_sample(buckets, 3, bits, 12345u), "another index");
+        test_require(rest > 0.0f && rest < 1.0f, "rest %g", (double)rest);
+        ++counts[i][(int)(rest * BINS)];
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < BINS; ++k)
+            test_require(fabs(counts[i][k] - WEIGHTS[i] / 6.0 * N / BINS) <= 6.0, "index %d, bin %d: %d", i, k,
+                         counts[i][k]);
+}
+END_TEST
+
 START_TEST(test_alias_chi_square)
 {
     static const int SIZES[] = {2, 17, 600};
@@ -150,6 +173,7 @@ TCase *test_math_alias(void)
     tcase_set_timeout(tcase, 300.0);
     tcase_add_loop_test(tcase, test_alias_implied, 0, 7);
     tcase_add_loop_test(tcase, test_alias_chi_square, 0, 6);
+    tcase_add_test(tcase, test_alias_rest);
     tcase_add_test(tcase, test_alias_arithmetic);
     tcase_add_test(tcase, test_alias_refusals);
     return tcase;

@@ -213,9 +213,9 @@ static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
 {
     LightSample sample = {0};
     Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, 1, t);
-    path->light = light_select(&walks->view, random.x[0], random.x[1]);
-    TEST_TRUE(light_sample(&walks->view, path->light, path->vertices[t - 1].p,
-                           vec2(random_float(random.x[2]), random_float(random.x[3])), &sample));
+    Vec2 u;
+    path->light = light_select_point(&walks->view, random, &u);
+    TEST_TRUE(light_sample(&walks->view, path->light, path->vertices[t - 1].p, u, &sample));
     path->infinite = sample.infinite != 0u;
     path->delta_light = sample.delta != 0u;
     path->ways[path->k] = vec3_negate(sample.wi);
