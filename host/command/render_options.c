@@ -5,6 +5,7 @@
 #include "base/options.h"
 #include "base/path_name.h"
 #include "command/mlt_option.h"
+#include "render/photon_map.h"
 
 #include <string.h>
 
@@ -88,7 +89,7 @@ static bool number_set(const Parse *parse, int option, const char *value, Error 
     case OPTION_SEED:
         return option_whole(name, value, 0, UINT64_MAX, &command->seed, error);
     case OPTION_PHOTONS:
-        if (!option_whole(name, value, 0, 1u << 20, &whole, error))
+        if (!option_whole(name, value, 0, PHOTONS_MOST_ALLOWED, &whole, error))
             return false;
         command->photons = (unsigned)whole;
         return true;

@@ -1,11 +1,13 @@
 #include "render/photon_map.h"
 
+#include "base/log.h"
 #include "render/photon_grid.h"
 #include "render/photon_lobe.h"
 #include "render/photon_pass.h"
 #include "render/photon_paths.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Photons at first, and how many times as many follow ... */
@@ -16,6 +18,9 @@
  * with every PHOTONS_GROWTH-th of them: where surfaces are not smooth between photons, more predict hardly better. */
 #define MISSED_ENOUGH 0.02
 #define MISSED_SHRINKS 0.6
+
+/* A map as large as is allowed of which more than this part misses gets a warning. */
+#define MISSED_TOO_OFTEN 0.5
 
 typedef struct PhotonMaker {
     PhotonPass pass;
@@ -80,30 +85,47 @@ static void maker_destroy(PhotonMaker *maker)
     free(maker->records.records);
 }
 
-/* Makes a map of all records. *grow: whether more would be better. */
-static bool map_fill(PhotonMaker *maker, PhotonMap *map, bool *grow, Error *error)
+/* Makes a map of all records. *grow: whether more would be better. *missed: photon_grid_make. */
+static bool map_fill(PhotonMaker *maker, PhotonMap *map, bool *grow, double *missed, Error *error)
 {
-    double missed = 0.0, by_fewer = 0.0;
+    double by_fewer = 0.0;
     *grow = false;
     photon_map_destroy(map);
     if (maker->records.count == 0 || !maker->search.whole)
         return true;
     if (!photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, &by_fewer, error) ||
-        !photon_grid_make(&maker->records, &maker->lights, map, &missed, error))
+        !photon_grid_make(&maker->records, &maker->lights, map, missed, error))
         return false;
-    *grow = missed > MISSED_ENOUGH && missed < MISSED_SHRINKS * by_fewer;
+    *grow = *missed > MISSED_ENOUGH && *missed < MISSED_SHRINKS * by_fewer;
     return true;
+}
+
+/* Says that there are too few photons for the light that they know of. */
+static void missed_warn(const PhotonMap *map, uint count, double missed)
+{
+    char fix[64] = "render for longer";
+    if (map->params.count == 0 || !(missed > MISSED_TOO_OFTEN))
+        return;
+    if (count < PHOTONS_MOST_ALLOWED)
+        snprintf(fix, sizeof fix, "render for longer, or with --photons=%u", PHOTONS_MOST_ALLOWED);
+    log_message(LOG_WARNING,
+                "%.0f %% of the directions that %u caustic photons predict miss the light: caustics will be noisy, and "
+                "those of point, spot and distant lights incomplete: %s",
+                100.0 * missed, map->params.count, fix);
 }
 
 /* Makes a map of few photons, then of more until they are enough, `count` at most, or no more are found. */
 static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *error)
 {
     uint wanted = PHOTONS_FIRST;
+    double missed = 0.0;
     bool grow = true;
     while (grow) {
         wanted = wanted < count ? wanted : count;
-        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &grow, error))
+        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &grow, &missed, error))
             return false;
+        if (wanted == count)
+            missed_warn(map, count, missed);
         grow = grow && wanted <= maker->search.found && maker->search.found < count;
         wanted = maker->search.found < count / PHOTONS_GROWTH ? PHOTONS_GROWTH * maker->search.found : count;
     }

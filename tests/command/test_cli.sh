@@ -306,6 +306,11 @@ pool() {
 }
 pool 0
 expect 0 'is found by photons alone' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
+sed 's/radius" \[ 0.22 \]/radius" [ 0.0022 ]/; s/440 405 335/4400000 4050000 3350000/' "${scene%/*}/pool.pbrt" >small.pbrt
+expect 0 'caustic photons predict miss the light' render --resolution=4x4 --samples=1 --photons=256 --integrator=pt -o pool.exr small.pbrt
+expect 0 '' render --resolution=4x4 --samples=1 --photons=65536 --integrator=pt -o pool.exr small.pbrt
+! grep -q 'miss the light' err
+result 'a warning of photons that predict well' $?
 pool 0.3
 expect 0 '' render --resolution=4x4 --samples=1 --integrator=pt -o pool.exr pool.pbrt
 ! grep -q 'is found by photons alone' err
