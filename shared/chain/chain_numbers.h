@@ -17,7 +17,7 @@
 
 #define NUMBER_CAMERA 0u /* film, lens: 4 */
 #define NUMBER_EMIT 4u /* point and direction on the light: 4 */
-#define NUMBER_SELECT 8u /* which light, aim: 3 */
+#define NUMBER_SELECT 8u /* of light_select_point, not used, aim: 3 */
 #define NUMBER_VERTICES 11u /* then those of every vertex between the ends of the path */
 
 /* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them. */

@@ -42,8 +42,10 @@ SHARED_FUNCTION uint sobol_sum(uint d, uint index)
  * so on around. The first two have the best projections. */
 SHARED_FUNCTION Random4 sobol_four(uint sample, Random4 seeds, uint first)
 {
-    uint order = seeds.x[0] * 0x9e3779b9u ^ (seeds.x[2] >> 16 | seeds.x[2] << 16);
-    uint index = owen_scrambled(bits_reversed(sample), order);
+    uint order = seeds.x[0] ^ (seeds.x[2] >> 16 | seeds.x[2] << 16); /* mixed as MurmurHash3 ends (Appleby 2011) */
+    order = (order ^ order >> 16) * 0x85ebca6bu;
+    order = (order ^ order >> 13) * 0xc2b2ae35u;
+    uint index = owen_scrambled(bits_reversed(sample), order ^ order >> 16);
     Random4 point;
     point.x[first & 3u] = bits_reversed(owen_scrambled(bits_reversed(index), seeds.x[0]));
     for (uint d = 0u; d < 3u; ++d)

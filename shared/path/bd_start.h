@@ -24,17 +24,17 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     walk_end(paths, rays, stride, item);
 }
 
-/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: which light (x, y), aim (z); random: point,
- * direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
+/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: x: light_select_point, z: aim; random: point and
+ * which light, direction. *own: density of y_0, or of its direction for a light at infinity. False if the light emits nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __global uint *restrict vertices, uint base,
                                       Random4 choice, Random4 random, float *own)
 {
     __global uint *paths = walk.paths;
     uint stride = walk.stride, item = walk.item;
-    uint light = light_select(scene, choice.x[0], choice.x[1]);
+    Vec2 u;
+    uint light = light_select_point(scene, connection_random_light(choice, random), &u);
     LightEmission emission = {0};
-    if (!light_emit_aimed(scene, light, random_float(choice.x[2]),
-                          vec2(random_float(random.x[0]), random_float(random.x[1])),
+    if (!light_emit_aimed(scene, light, random_float(choice.x[2]), u,
                           vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
         return false;
     float select = scene->lights[light].select_pdf;

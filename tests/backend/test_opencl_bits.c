@@ -142,7 +142,7 @@ END_TEST
  * contributions vanish. */
 START_TEST(test_bits_of_sums_out_of_range)
 {
-    static const int EXPONENTS[] = {-66, -61, 4};
+    static const int EXPONENTS[] = {-66, -61, 1};
     const Film film = {.quantum_exponent = EXPONENTS[_i]};
     RenderSetup setup = {.text = OPENCL_MATERIALS_SCENE, .samples = 16, .max_depth = 5, .quantum_of = &film};
     RenderedImage image;
