@@ -87,7 +87,8 @@ for name, s in series.items():
     assert math.isclose(s["speedup"], series["pt"]["equal_seconds"] / s["equal_seconds"], rel_tol=1e-6)
     # The page's table shows the median of the longest time to three digits.
     median = s["groups"][-1]["rel_mse"][1]
-    digits = "%.*f" % (2 - math.floor(math.log10(median)), median)
+    exponent = math.floor(math.log10(median))
+    digits = "%.*f" % (2 - exponent, median) if exponent > -4 else "%.2f\u00d710" % (median / 10 ** exponent)
     assert digits in text, digits
 scene = report["scenes"][0]
 assert 0 < scene["reference_rel_mse"] < 10
