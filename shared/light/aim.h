@@ -1,8 +1,8 @@
 /* Light subpaths aimed at smooth specular surfaces. Of a lamp in a room, and of light from infinity, few subpaths meet the
  * small mirror or the window pane that makes a caustic, and connections to a camera find its light by nothing else. So a
- * part of the rays that leave a light, AIM_PART, is drawn through spheres around those surfaces, the aims, with
- * equal probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from
- * infinity, uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn as by
+ * part of the rays that leave a light, AIM_PART, is drawn through spheres around those surfaces, the aims, with equal
+ * probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from infinity,
+ * uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn as by
  * light_emit. (Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.3.1, has such projection maps.)
  *
  * Here are the densities that result, and the drawing. */

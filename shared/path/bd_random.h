@@ -8,8 +8,8 @@
 #include "path/path_random.h"
 
 #define BD_RANDOM_CAMERA 0u /* filter offset, lens */
-#define BD_RANDOM_LIGHT 1u /* x, y: which light; z: aim */
-#define BD_RANDOM_EMIT 2u /* point and direction on it */
+#define BD_RANDOM_LIGHT 1u /* x: light_select_point; z: aim */
+#define BD_RANDOM_EMIT 2u /* which light and point on it, direction */
 #define BD_RANDOM_PIXEL 3u /* of a pool: film numbers of paths that do not start on the film (t = 1) */
 /* Two blocks for every vertex of either side: scattering (lobe, direction, roulette) and the choice of mix
  * materials. */
