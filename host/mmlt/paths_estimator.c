@@ -41,7 +41,6 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
     uint64_t items = target > paths->done ? (target - paths->done) * run->crop_pixels : 0;
-    frame->path.sobol = run->options->independent ? 0 : 1 + run->options->first_sample + (uint)paths->done;
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
         frame->pass.sample_index = run->options->first_sample + (uint)(paths->done + next / run->crop_pixels);
