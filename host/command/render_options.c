@@ -5,7 +5,6 @@
 #include "base/options.h"
 #include "base/path_name.h"
 #include "command/mlt_option.h"
-#include "render/photon_map.h"
 
 #include <string.h>
 

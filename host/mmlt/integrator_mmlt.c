@@ -41,7 +41,7 @@ static bool generations_run(Mmlt *mmlt, Error *error)
 /* In proportion to what the rendering takes. */
 static unsigned mmlt_photons(const RenderOptions *options, uint64_t pixels)
 {
-    double count = MMLT_PHOTONS_MAX;
+    double count = PHOTONS_MOST_ALLOWED;
     if (options->seconds > 0.0)
         count = fmin(count, MMLT_PHOTONS_PER_SECOND * options->seconds);
     if (options->samples > 0)

@@ -36,10 +36,10 @@
  * glossy surfaces; docs/TUNING.md. */
 #define SHIFTS 0.75f
 
-/* Most photons, if so many predict better than fewer (render/photon_map.c): more cost memory (60 bytes each) and time
- * before the first sample, fewer predict directions less well. On two cores as many as a second brings take .1 to .2 s. */
+/* Most photons, up to PHOTONS_MOST_ALLOWED, if so many predict better than fewer (render/photon_map.c): more cost memory
+ * (60 bytes each) and time before the first sample, fewer predict directions less well. On two cores as many as a second
+ * brings take .1 to .2 s. */
 #define MMLT_PHOTONS_MIN 32768u
-#define MMLT_PHOTONS_MAX 1048576u
 #define MMLT_PHOTONS_PER_SECOND 32768.0
 #define MMLT_PHOTONS_PER_SAMPLE 0.0625
 

@@ -30,6 +30,9 @@ typedef struct ChainOptions {
 /* As many photons as the integrator draws by if nothing else is said. */
 #define PHOTONS_DEFAULT 0xffffffffu
 
+/* Largest number of photons that can be asked for. */
+#define PHOTONS_MOST_ALLOWED 1048576u
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */

@@ -4,9 +4,9 @@
 #define TWINLIGHT_RENDER_PHOTON_LOBE_H
 
 #include "layout/scene_view.h"
-#include "scene/smooth_boxes.h"
 #include "render/photon_pass.h"
 #include "scene/scene.h"
+#include "scene/smooth_boxes.h"
 
 /* A photon with its derivatives. Slopes are those of directions in frame_from_normal(direction) (path/photon.h). */
 typedef struct PhotonRecord {

@@ -7,9 +7,6 @@
 #include "render/run.h"
 #include "scene/scene.h"
 
-/* Largest number of photons that can be asked for. */
-#define PHOTONS_MOST_ALLOWED 1048576u
-
 /* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a stop.
  * Warns if as many as that predict their lights badly.
  * run->frame must be complete but for `photons`. Call photon_map_destroy even on failure. */

@@ -3,8 +3,6 @@
 #include "scene/smooth_boxes.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Groups are divided along each axis in this many slices. */
 #define SLICES 16

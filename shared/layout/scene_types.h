@@ -206,7 +206,8 @@ typedef struct Material {
 
 /* X(NAME, name, text, feature, position): LIGHT_NAME; its name in `twinlight info`; the group of lights that it is
  * dispatched with; whether Light.position is its place. Delta lights have functions light_name_sample, _emit,
- * _emit_pdf_w and _emitted (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by `text`). */
+ * _emit_pdf_w and _emitted (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by
+ * `text`). */
 #define LIGHT_LIST_DELTA(X)                                                                                            \
     X(POINT, point, "point", FEATURE_DELTA_LIGHT, 1u)                                                                  \
     X(SPOT, spot, "spot", FEATURE_DELTA_LIGHT, 1u)                                                                     \

@@ -3,7 +3,6 @@
 #include "light/aim.h"
 #include "light/test_emit.h"
 #include "scene/aim_setup.h"
-#include "scene/smooth_boxes.h"
 #include "support/light_fixture.h"
 
 /* ---- the choice of aims ------------------------------------------------------------------------------------------ */
