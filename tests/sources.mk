@@ -225,7 +225,8 @@ tests_test_light_SOURCES = tests/light/test_light.c \
 	tests/light/test_light_filter.c \
 	tests/light/test_light_irradiance.c \
 	tests/light/test_light_mis.c \
-	tests/light/test_light_select.c
+	tests/light/test_light_select.c \
+	tests/light/test_light_tree.c
 
 tests_test_math_SOURCES = tests/math/test_math.c \
 	tests/math/test_math_alias.c \

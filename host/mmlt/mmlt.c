@@ -23,8 +23,7 @@ static void frame_complete(const Mmlt *mmlt, FrameParams *frame)
 {
     frame->path.min_depth = CHAIN_DEPTH_MIN;
     frame->path.mis_exponent = 1;
-    frame->chains.mutations = mmlt->options.mutations;
-    frame->chains.group_mutations = !mmlt->options.ungrouped;
+    frame->chains.mutations = mmlt->options.mutations | (mmlt->options.ungrouped ? 0u : MUTATION_GROUPED);
     frame->chains.large_step = mmlt->scheme->large_step > 0.0 ? (float)mmlt->options.large_step : 0.0f;
     frame->chains.shifts = mmlt->options.shiftless ? 0.0f : mmlt->scheme->shifts;
     frame->chains.keep = 1;

@@ -4,6 +4,7 @@
 #include "geometry/texture.h"
 #include "light/delta.h"
 #include "scene/distribution_build.h"
+#include "scene/light_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -146,12 +147,18 @@ static double distant_power(const Light *light, double disk)
     return disk;
 }
 
+/* Area of the disk of the bounding sphere. */
+static double world_disk(const Scene *scene)
+{
+    double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
+    return M_PI * radius * radius;
+}
+
 /* Luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
  * bounding sphere. */
 static bool light_power(Scene *scene, Light *light, double *power, Error *error)
 {
-    double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
-    double disk = M_PI * radius * radius, mean = luminance(light->emission);
+    double disk = world_disk(scene), mean = luminance(light->emission);
     switch (light->kind) {
     case LIGHT_AREA:
         *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
@@ -214,6 +221,8 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     if (!(sum > 0.0))
         return no_light(count, error);
     scene->light_power = sum;
+    if (!light_tree_build(scene, powers, world_disk(scene), error))
+        return false;
     far_lights_bound(scene, powers);
     sum = 0.0;
     for (size_t i = 0; i < count; ++i)

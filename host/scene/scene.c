@@ -21,6 +21,7 @@
     X(images, TextureImage)                                                                                            \
     X(lights, Light)                                                                                                   \
     X(light_alias, AliasBucket)                                                                                        \
+    X(light_nodes, LightNode)                                                                                          \
     X(infinite_lights, uint)                                                                                           \
     X(aims, Aim)                                                                                                       \
     X(distributions2d, Distribution2D)                                                                                 \

@@ -69,6 +69,7 @@ typedef struct Scene {
     Array images; /* TextureImage */
     Array lights; /* Light */
     Array light_alias; /* AliasBucket, set by scene_finish */
+    Array light_nodes; /* LightNode, set by scene_finish; none for a single light */
     Array infinite_lights; /* uint */
     Array aims; /* Aim, set by scene_finish */
     double light_power; /* luminance of the flux of all lights, set by scene_finish */

@@ -11,7 +11,7 @@
  * subpath that does not change have nothing to do. */
 SHARED_FUNCTION Random4 mutation_random(__global const FrameParams *frame, uint item, uint step)
 {
-    uint who = frame->chains.group_mutations != 0u ? NONE : frame->pass.first_item + item;
+    uint who = (frame->chains.mutations & MUTATION_GROUPED) != 0u ? NONE : frame->pass.first_item + item;
     return random_four(who, step, frame->pass.sample_index, PATH_STREAM_MUTATION, frame->pass.seed_low,
                        frame->pass.seed_high);
 }

@@ -130,6 +130,14 @@ SHARED_FUNCTION void path_add_met(const SceneView *scene, __global uint *restric
     path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight));
 }
 
+/* The probability with which the vertex that the path has left chooses the light. */
+SHARED_FUNCTION float path_choice_pdf(const SceneView *scene, __global const uint *paths, uint item, uint light)
+{
+    uint stride = scene->frame->pass.stride;
+    return light_choice_pdf(scene, light, state_load_vec3(paths, stride, PATH_POINT, item),
+                            state_load_vec3(paths, stride, PATH_NG, item));
+}
+
 /* Adds what the environment sends along d (unit) to a path that was scattered in that direction, weighted against light
  * sampling. */
 SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 d)
@@ -139,7 +147,7 @@ SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint 
         uint light = scene->infinite_lights[i];
         float pdf_light = 0.0f;
         if ((flags & PATH_FLAG_DELTA) == 0u)
-            pdf_light = scene->lights[light].select_pdf * environment_pdf_w(scene, light, d);
+            pdf_light = path_choice_pdf(scene, paths, item, light) * environment_pdf_w(scene, light, d);
         path_add_met(scene, paths, item, environment_light_radiance(scene, light, d), pdf_light, 1.0f);
     }
 }
@@ -154,7 +162,7 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
     if (vec3_is_zero(radiance))
         return;
     if ((flags & PATH_FLAG_DELTA) == 0u)
-        pdf_light = scene->lights[light].select_pdf *
+        pdf_light = path_choice_pdf(scene, paths, item, light) *
                     light_pdf_w(scene, light, state_load_vec3(paths, stride, PATH_POINT, item), d, surface);
     path_add_met(scene, paths, item, radiance, pdf_light, light_hit_alpha(scene, light, surface));
 }
@@ -227,8 +235,9 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, item),
                                  state_load(paths, stride, PATH_SAMPLE, item), path_random_block(depth, RANDOM_LIGHT));
     Vec2 u;
-    uint light = light_select_point(scene, random, &u);
+    float choice;
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item), ng = state_load_vec3(paths, stride, PATH_NG, item);
+    uint light = light_choose_point(scene, p, ng, random, &u, &choice);
     LightSample sample = {0};
     if (!light_sample(scene, light, p, u, &sample))
         return;
@@ -238,7 +247,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
                                 frame_to_local(shading, sample.wi), TRANSPORT_RADIANCE);
     if (vec3_is_zero(value.f_cos))
         return;
-    float pdf = scene->lights[light].select_pdf * sample.pdf_w;
+    float pdf = choice * sample.pdf_w;
     float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);

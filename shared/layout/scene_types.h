@@ -30,6 +30,7 @@
     X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
     X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
     X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
+    X(LIGHT_TREE, light_tree, "several lights", 0u) /* in different places or directions */                            \
     X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
     X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
 #define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
@@ -241,6 +242,7 @@ typedef struct Light {
     float cos_total; /* spot: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle */
     uint distribution; /* infinite image: index into `distributions2d` */
+    uint leaf; /* number of leaves before it in the tree of lights; NONE: it has no power */
     Affine world_from_light; /* infinite: of directions, scaled to a determinant of 1 or -1 */
     Affine light_from_world;
 } Light;
@@ -259,6 +261,28 @@ typedef struct AliasBucket {
     float q;
     uint alias;
 } AliasBucket;
+
+/* A node of the tree by which a light is chosen for a point (light/light_tree.h): 32 bytes. The left child of a node
+ * follows it. */
+typedef struct LightNode {
+    Vec3 center; /* of a sphere around its lights */
+    float radius; /* -1: lights at infinity */
+    float intensity; /* sum of the largest intensities of its lights; at infinity: of their irradiances (luminance) */
+    uint axis; /* direction_pack: the middle of the normals */
+    uint
+        cones; /* cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and light
+                   leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides */
+    uint
+        link; /* the right child, and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities
+                  matter; or LIGHT_NODE_LEAF and the light */
+} LightNode;
+
+#define LIGHT_NODE_NORMALS 0u /* first bit in `cones` */
+#define LIGHT_NODE_EMISSION 15u
+#define LIGHT_NODE_TWO_SIDED 0x80000000u
+#define LIGHT_NODE_LEAF 0x80000000u
+#define LIGHT_NODE_EVEN 0x40000000u
+#define LIGHT_NODE_INDEX 0x3fffffffu /* of link */
 
 /* A sphere around smooth specular surfaces, at which light subpaths are aimed (light/aim.h). */
 typedef struct Aim {
@@ -309,7 +333,8 @@ typedef struct SceneLayout {
     /* geometry */
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
     /* tables */
-    uint materials, texture_ops, images, lights, light_alias, infinite_lights, aims, distributions2d, lookup;
+    uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, aims, distributions2d,
+        lookup;
 } SceneLayout;
 
 #endif

@@ -26,6 +26,7 @@ typedef struct SceneView {
     __global const TextureImage *images;
     __global const Light *lights;
     __global const AliasBucket *light_alias;
+    __global const LightNode *light_nodes;
     __global const uint *infinite_lights;
     __global const Aim *aims;
     __global const Distribution2D *distributions2d;
@@ -63,6 +64,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.images = (__global const TextureImage *)(tables + layout->images);
     view.lights = (__global const Light *)(tables + layout->lights);
     view.light_alias = (__global const AliasBucket *)(tables + layout->light_alias);
+    view.light_nodes = (__global const LightNode *)(tables + layout->light_nodes);
     view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
     view.aims = (__global const Aim *)(tables + layout->aims);
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);

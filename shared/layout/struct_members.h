@@ -99,6 +99,7 @@
     MEMBER(Light, cos_total)                                                                                           \
     MEMBER(Light, cos_falloff)                                                                                         \
     MEMBER(Light, distribution)                                                                                        \
+    MEMBER(Light, leaf)                                                                                                \
     MEMBER(Light, world_from_light)                                                                                    \
     MEMBER(Light, light_from_world)                                                                                    \
     STRUCT(Distribution2D)                                                                                             \
@@ -109,6 +110,13 @@
     STRUCT(AliasBucket)                                                                                                \
     MEMBER(AliasBucket, q)                                                                                             \
     MEMBER(AliasBucket, alias)                                                                                         \
+    STRUCT(LightNode)                                                                                                  \
+    MEMBER(LightNode, center)                                                                                          \
+    MEMBER(LightNode, radius)                                                                                          \
+    MEMBER(LightNode, intensity)                                                                                       \
+    MEMBER(LightNode, axis)                                                                                            \
+    MEMBER(LightNode, cones)                                                                                           \
+    MEMBER(LightNode, link)                                                                                            \
     STRUCT(Aim)                                                                                                        \
     MEMBER(Aim, center)                                                                                                \
     MEMBER(Aim, radius)                                                                                                \
@@ -141,6 +149,7 @@
     MEMBER(SceneLayout, images)                                                                                        \
     MEMBER(SceneLayout, lights)                                                                                        \
     MEMBER(SceneLayout, light_alias)                                                                                   \
+    MEMBER(SceneLayout, light_nodes)                                                                                   \
     MEMBER(SceneLayout, infinite_lights)                                                                               \
     MEMBER(SceneLayout, aims)                                                                                          \
     MEMBER(SceneLayout, distributions2d)                                                                               \
@@ -197,7 +206,6 @@
     MEMBER(PoolParams, visits)                                                                                         \
     STRUCT(ChainParams)                                                                                                \
     MEMBER(ChainParams, mutations)                                                                                     \
-    MEMBER(ChainParams, group_mutations)                                                                               \
     MEMBER(ChainParams, shifts)                                                                                        \
     MEMBER(ChainParams, large_step)                                                                                    \
     MEMBER(ChainParams, keep)                                                                                          \

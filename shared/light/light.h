@@ -7,10 +7,11 @@
 #include "light/area.h"
 #include "light/delta.h"
 #include "light/infinite.h"
+#include "light/light_tree.h"
 #include "math/rng.h"
 
-/* Draws a light with probability lights[i].select_pdf (host/scene/light_setup.h). The scene must have at least
- * one. */
+/* Draws the light of a light subpath, with probability lights[i].select_pdf (host/scene/light_setup.h). The scene must
+ * have at least one. */
 SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1)
 {
     return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);
@@ -23,6 +24,38 @@ SHARED_FUNCTION uint light_select_point(const SceneView *scene, Random4 random, 
 {
     u->y = random_float(random.x[3]);
     return alias_sample_rest(scene->light_alias, scene->frame->scene.light_count, random.x[2], random.x[0], &u->x);
+}
+
+/* Chooses the light that a vertex at p with geometric normal ng is connected to; numbers as in light_select_point. *pdf:
+ * light_choice_pdf. */
+SHARED_FUNCTION uint light_choose_point(const SceneView *scene, Vec3 p, Vec3 ng, Random4 random, Vec2 *u, float *pdf)
+{
+    if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE)) {
+        uint light = light_select_point(scene, random, u);
+        *pdf = scene->lights[light].select_pdf;
+        return light;
+    }
+    ulong number = (ulong)random.x[2] << 32 | random.x[0];
+    uint light = light_tree_choose(scene, p, ng, &number, pdf);
+    *u = vec2(random_float((uint)(number >> 32)), random_float(random.x[3]));
+    return light;
+}
+
+/* The probability with which light_choose_point chooses the light. */
+SHARED_FUNCTION float light_choice_pdf(const SceneView *scene, uint light, Vec3 p, Vec3 ng)
+{
+    if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE))
+        return scene->lights[light].select_pdf;
+    return light_tree_pdf(scene, light, p, ng);
+}
+
+/* light_choice_pdf over the probability with which a light subpath starts there. */
+SHARED_FUNCTION float light_choice_ratio(const SceneView *scene, uint light, Vec3 p, Vec3 ng)
+{
+    if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE))
+        return 1.0f;
+    float pdf = light_tree_pdf(scene, light, p, ng);
+    return pdf > 0.0f ? pdf / scene->lights[light].select_pdf : 0.0f;
 }
 
 /* Draws light that arrives at `ref` from `light`, occlusion ignored. False: no contribution; *sample is then

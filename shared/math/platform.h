@@ -11,6 +11,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define SHARED_FUNCTION inline static
+#define SHARED_FUNCTION_APART inline static
 #define float_bits(x) as_uint(x)
 #define bits_float(x) as_float(x)
 #define word_float(word) as_float(*(word))
@@ -59,6 +60,8 @@ typedef unsigned char uchar;
 typedef uint32_t uint;
 typedef uint64_t ulong;
 
+/* For what few scenes need: not inlined, so that it costs the others nothing. */
+#define SHARED_FUNCTION_APART static __attribute__((unused, noinline))
 #define __kernel static inline __attribute__((always_inline))
 #define __global
 #define __constant static const

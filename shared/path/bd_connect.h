@@ -46,26 +46,27 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Ran
     return true;
 }
 
-/* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: of light_select_point. */
+/* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: of light_choose_point. */
 SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
 {
     if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
         return false;
     Vec2 u;
-    uint light = light_select_point(scene, random, &u);
+    float choice;
+    uint light = light_choose_point(scene, z->p, z->ng, random, &u, &choice);
     LightSample sample = {0};
     if (!light_sample(scene, light, z->p, u, &sample))
         return false;
     BsdfValue f = bsdf_eval(scene, &z->bsdf, z->wo, frame_to_local(z->frame, sample.wi), TRANSPORT_RADIANCE);
     float select = scene->lights[light].select_pdf;
     connection->contribution =
-        vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (select * sample.pdf_w));
+        vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (choice * sample.pdf_w));
     connection->shadow = light_shadow_ray(z->p, z->ng, &sample);
     StrategyEnds *ends = &connection->ends;
     float at_z = float_abs(vec3_dot(sample.wi, z->ng));
     ends->light_z2 = f.pdf_rev_w * z->back;
     ends->hittable = sample.delta == 0u;
-    ends->connect = 1.0f;
+    ends->connect = choice / select;
     if (sample.infinite != 0u) {
         ends->own_y0 = select * sample.pdf_w;
         ends->camera_y1 = f.pdf_w;
@@ -82,7 +83,7 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Rand
     float to_area = solid_angle_to_area(sample.wi, sample.ng, distance2);
     ends->own_y0 = select * sample.pdf_emit;
     ends->camera_y1 = f.pdf_w * to_area;
-    ends->connect = sample.pdf_emit > 0.0f ? sample.pdf_w * to_area / sample.pdf_emit : 0.0f;
+    ends->connect *= sample.pdf_emit > 0.0f ? sample.pdf_w * to_area / sample.pdf_emit : 0.0f;
     return true;
 }
 

@@ -118,8 +118,8 @@ SHARED_FUNCTION void delta_densities(const BsdfSample *sample, Vec3 wo, float *f
     *reverse = sample->pdf_rev_w * float_abs(wo.z);
 }
 
-/* Density with which the point (p, ng) on the light is drawn for `from` (s = 1), over that of emitting from it. They
- * differ for spheres, which are sampled in the cone that `from` sees. w: unit, from `from` to p. */
+/* Density with which the point (p, ng) on the light, given the light, is drawn for `from` (s = 1), over that of emitting
+ * from it. They differ for spheres, which are sampled in the cone that `from` sees. w: unit, from `from` to p. */
 SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 w, float distance2,
                                           const Surface *point)
 {
@@ -130,22 +130,24 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
-/* BD_CONNECT of y_0, stored at `base`, for y_1 at p. */
+/* BD_CONNECT of y_0, stored at `base`, for y_1. */
 SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
-                                            __global const uint *vertices, uint stride, uint item, uint base, Vec3 p)
+                                            __global const uint *vertices, uint item, uint base, const Vertex *y)
 {
-    uint light = state_load(paths, stride, BD_EMITTER, item);
+    uint stride = scene->frame->pass.stride, light = state_load(paths, stride, BD_EMITTER, item);
+    float choice = light_choice_ratio(scene, light, y->p, y->ng);
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
-        return 1.0f;
+        return choice;
     Surface point = {0}; /* spheres read no more than this */
     point.p = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
     point.ng = state_load_vec3(vertices, stride, base + VERTEX_NG, item);
-    Vec3 d = vec3_sub(point.p, p);
+    Vec3 d = vec3_sub(point.p, y->p);
     float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))
-        return 1.0f;
-    return light_connect_ratio(scene, light, p, vec3_scale(d, 1.0f / float_sqrt(distance2)), distance2, &point);
+        return choice;
+    Vec3 w = vec3_scale(d, 1.0f / float_sqrt(distance2));
+    return choice * light_connect_ratio(scene, light, y->p, w, distance2, &point);
 }
 
 /* Area density with which the walk has made the point that it has just hit. first: by the camera's first ray. */

@@ -230,7 +230,7 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
     /* Before the vertex may overwrite y_0. */
     if (side == SIDE_LIGHT && depth == 1u)
         state_store_float(paths, stride, BD_CONNECT, item,
-                          emitter_connect_ratio(scene, paths, vertices, stride, item, walk_hit->before, vertex->p));
+                          emitter_connect_ratio(scene, paths, vertices, item, walk_hit->before, vertex));
     vertex->back = walk_hit->back;
     return true;
 }
@@ -289,7 +289,8 @@ SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hi
     Vec3 towards = vec3_negate(walk_hit->ray.d);
     ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
     ends->light_z2 = light_aimed_pdf_w(scene, light, surface->p, surface->ng, towards) * walk_hit->back;
-    ends->connect = light_connect_ratio(scene, light, walk_hit->from, walk_hit->ray.d, walk_hit->distance2, surface);
+    ends->connect = light_connect_ratio(scene, light, walk_hit->from, walk_hit->ray.d, walk_hit->distance2, surface) *
+                    light_choice_ratio(scene, light, walk_hit->from, walk_hit->from_ng);
     ends->hittable = true;
     return light_emitted(scene, light, surface->ng, towards);
 }
@@ -299,7 +300,7 @@ SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const R
 {
     ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, ray->d);
     ends->light_z2 = light_aimed_pdf_disc(scene, ray->o, vec3_negate(ray->d)) * float_abs(vec3_dot(ray->d, ng));
-    ends->connect = 1.0f;
+    ends->connect = light_choice_ratio(scene, light, ray->o, ng);
     ends->hittable = true;
     return environment_light_radiance(scene, light, ray->d);
 }

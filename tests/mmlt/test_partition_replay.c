@@ -30,6 +30,24 @@ static Random4 vertex_numbers(const Partition *p, uint depth, uint what)
     return pool_random(&p->pool_frame, p->pool.paths, 0, bd_random_vertex(side, i, what));
 }
 
+/* Numbers with which path tracing chooses the light of the path: those of the pool's sample, or, where its light subpath
+ * has another light, any that do. */
+static Random4 light_numbers(const Partition *p)
+{
+    uint *paths = replayed->paths.paths;
+    Vec3 x = state_load_vec3(paths, 1, PATH_POINT, 0), ng = state_load_vec3(paths, 1, PATH_NG, 0);
+    Random4 random = connection_random_light(pool_random(&p->pool_frame, p->pool.paths, 0, BD_RANDOM_LIGHT),
+                                             pool_random(&p->pool_frame, p->pool.paths, 0, BD_RANDOM_EMIT));
+    for (uint i = 0; p->s > 1u && i < 4096u; ++i) {
+        Vec2 u;
+        float pdf;
+        random.x[2] = i << 20;
+        if (light_choose_point(&p->view, x, ng, random, &u, &pdf) == p->pool.paths[BD_EMITTER])
+            break;
+    }
+    return random;
+}
+
 static Random4 replay_random(const FrameParams *frame, uint pixel, uint sample, uint block)
 {
     const Partition *p = replayed;
@@ -38,8 +56,7 @@ static Random4 replay_random(const FrameParams *frame, uint pixel, uint sample, 
         return pool_random(&p->pool_frame, p->pool.paths, 0, BD_RANDOM_CAMERA);
     uint depth = (block - 1u) / RANDOM_BLOCKS_PER_VERTEX + 1u, what = (block - 1u) % RANDOM_BLOCKS_PER_VERTEX + 1u;
     if (what == RANDOM_LIGHT)
-        return connection_random_light(pool_random(&p->pool_frame, p->pool.paths, 0, BD_RANDOM_LIGHT),
-                                       pool_random(&p->pool_frame, p->pool.paths, 0, BD_RANDOM_EMIT));
+        return light_numbers(p);
     if (what == RANDOM_MIX)
         return vertex_numbers(p, depth, BD_RANDOM_MIX);
     Random4 random = vertex_numbers(p, depth, BD_RANDOM_SCATTER);

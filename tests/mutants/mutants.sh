@@ -202,7 +202,12 @@ likely() {
     shared/chain/chain_light.h) echo test_chain:shown test_partition test_layers test_shift ;;
     shared/layout/scene_types.h) echo test_emit test_light ;;
     shared/light/emit.h) echo test_emit test_bidirectional:walks test_bidirectional:hard ;;
+    shared/light/light_tree.h | host/scene/light_tree.c) echo test_light:tree test_bidirectional:walks ;;
     shared/light/*.h | shared/camera/camera.h) echo test_light test_emit test_partition test_bidirectional:walks test_analytic ;;
+    shared/path/bd_walk.h | shared/path/bd_connect.h | shared/path/bd_vertex.h) echo test_bidirectional:walks test_partition test_emit ;;
+    host/scene/light_setup.c | host/scene/aim_setup.c) echo test_light test_emit test_numerics:lights ;;
+    shared/math/*.h | shared/layout/distribution.h | shared/path/path_random.h) echo test_math test_light test_emit ;;
+    shared/chain/chain_numbers.h) echo test_chain test_partition test_emit ;;
     shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
     host/*) echo test_combination test_pool test_layers ;;

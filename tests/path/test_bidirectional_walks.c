@@ -143,10 +143,10 @@ static void path_densities(const Walks *walks, RealPath *path)
     for (uint i = 1; i + 2 <= k; ++i)
         if (!d->delta[i + 1])
             d->light[i] = scattered(walks, path, i + 2, i + 1, i, TRANSPORT_IMPORTANCE);
-    d->connect = 1.0f;
+    d->connect = light_choice_ratio(&walks->view, path->light, path->vertices[k - 1].p, path->vertices[k - 1].ng);
     if (!path->infinite && !path->delta_light) {
         Vec3 w = path_direction(path, k - 1, k, &distance2);
-        d->connect = light_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, w, distance2, &path->end);
+        d->connect *= light_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, w, distance2, &path->end);
     }
 }
 
@@ -214,7 +214,9 @@ static void light_drawn(const Walks *walks, uint item, uint t, RealPath *path)
     LightSample sample = {0};
     Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, 1, t);
     Vec2 u;
-    path->light = light_select_point(&walks->view, random, &u);
+    float pdf;
+    const Vertex *z = &path->vertices[t - 1];
+    path->light = light_choose_point(&walks->view, z->p, z->ng, random, &u, &pdf);
     TEST_TRUE(light_sample(&walks->view, path->light, path->vertices[t - 1].p, u, &sample));
     path->infinite = sample.infinite != 0u;
     path->delta_light = sample.delta != 0u;

@@ -48,6 +48,7 @@ static inline void fixture_finish(LightFixture *f)
                           .images = s->images.data,
                           .lights = s->lights.data,
                           .light_alias = s->light_alias.data,
+                          .light_nodes = s->light_nodes.data,
                           .infinite_lights = s->infinite_lights.data,
                           .aims = s->aims.data,
                           .distributions2d = s->distributions2d.data,
