@@ -228,6 +228,42 @@ START_TEST(test_far_share)
 }
 END_TEST
 
+/* Bounds of two lights together contain what each sends, even where one has narrower emission, or both other normals. A
+ * third light far away makes them a node of their own. */
+START_TEST(test_joined)
+{
+    static const float flat[9] = {0.1f, 0, 0, 0.2f, 0, 0, 0.1f, 0.1f, 0},
+                       tilted[9] = {0, 0, 0, 0, 0.1f, 0, 0.05f, 0, 0.1f};
+    LightFixture f;
+    fixture_init(&f);
+    const Light spot = {
+        .kind = LIGHT_SPOT, .emission = {1, 1, 1}, .direction = {0, 0, 1}, .cos_total = 0.99f, .cos_falloff = 0.995f};
+    if (_i == 0)
+        fixture_add_light(&f, spot);
+    else if (_i == 1)
+        fixture_add_polygon(&f, tilted, 3, NULL, 0, 0);
+    fixture_add_polygon(&f, flat, 3, NULL, 0, 0);
+    if (_i == 2) /* in the other order */
+        fixture_add_light(&f, spot);
+    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}, .position = {-100, 0, 0}});
+    fixture_finish(&f);
+    ck_assert_uint_eq(f.scene.light_nodes.count, 5);
+    unsigned state = 29, lit = 0;
+    for (int i = 0; i < 20000; ++i) {
+        Vec3 p = vec3_scale(random_unit(&state), 3.0f);
+        for (uint light = 0; light < 2u; ++light) {
+            LightSample sample = {0};
+            if (!light_sample(&f.view, light, p, vec2(0.3f, 0.3f), &sample))
+                continue;
+            ++lit;
+            ck_assert((light_choice_pdf(&f.view, light, p, vec3_normalize(p)) > 0.0f));
+        }
+    }
+    ck_assert_uint_gt(lit, 9000);
+    fixture_destroy(&f);
+}
+END_TEST
+
 /* The triangles of a square need no tree: only their areas matter. A lamp beside them does. */
 START_TEST(test_square)
 {
@@ -268,6 +304,7 @@ TCase *light_tree_case(void)
     tcase_add_test(tcase, test_many);
     tcase_add_loop_test(tcase, test_degenerate, 0, 3);
     tcase_add_test(tcase, test_far_share);
+    tcase_add_loop_test(tcase, test_joined, 0, 3);
     tcase_add_test(tcase, test_square);
     tcase_add_test(tcase, test_direction_pack);
     return tcase;

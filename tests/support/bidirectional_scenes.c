@@ -123,6 +123,11 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "]\n" ROUGH("conductor", "\"rgb reflectance\" [ 0.9 0.8 0.7 ] \"float roughness\" 0.4 \"string normalmap\" "
                               "\"$FILES/normals.pfm\"") BD_BALL,
      SUPPORT_ALL, 4, 3},
+    /* Rays from the sky are aimed at the glass (light/aim.h). */
+    {"glass under a sky",
+     BD_BEGIN "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n" BD_GREY BD_FLOOR
+              "Material \"dielectric\" \"float eta\" 1.5\n" BD_BALL,
+     SUPPORT_SUM_ONLY, 5, 2},
 };
 
 const int BIDIRECTIONAL_SCENE_COUNT = (int)(sizeof BIDIRECTIONAL_SCENES / sizeof BIDIRECTIONAL_SCENES[0]);
