@@ -103,7 +103,7 @@ static Cone area_normals(const SceneView *view, uint light)
     return cone.angle > 0.5 * M_PI ? (Cone){NO_CONE.axis, M_PI} : cone;
 }
 
-/* Irradiance or intensity is that which arrives where a light of the given flux shines at its brightest. */
+/* power: its flux. intensity: the largest in any direction, so that intensity / distance^2 is what arrives there. */
 static Bounds area_bounds(const SceneView *view, uint light, double power)
 {
     const Light *source = &view->lights[light];
@@ -320,8 +320,8 @@ typedef struct Builder {
     bool differ; /* some node's children are not alike */
 } Builder;
 
-/* Makes the nodes of the leaves, 2 count - 1, in the order of a walk that takes left children first. lamps: how many leaves
- * at the start are not at infinity; only the root may have both. */
+/* Makes the nodes of the leaves, 2 count - 1, in the order of a walk that takes left children first. lamps: how many
+ * leaves at the start are not at infinity; only the root may have both. */
 static Bounds nodes_make(Builder *builder, Leaf *leaves, size_t count, size_t lamps, int depth)
 {
     uint own = builder->node_count++;

@@ -79,8 +79,7 @@ typedef struct PoolParams {
 #define MUTATION_GROUPED 0x80000000u /* all chains make the same kind of mutation at a step */
 
 typedef struct ChainParams {
-    uint
-        mutations; /* bit MUTATION_*: the kinds of small steps that chains make (chain/chain_numbers.h), MUTATION_GROUPED */
+    uint mutations; /* MUTATION_GROUPED, and bit MUTATION_*: the kinds of small steps (chain/chain_numbers.h) */
     float shifts; /* fraction of the camera subpath's mutations that are shifts (chain/shift.h) */
     float large_step; /* probability of a large step */
     uint keep; /* 1: a pass hands the chains' coordinates on to the next */

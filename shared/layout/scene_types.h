@@ -263,18 +263,16 @@ typedef struct AliasBucket {
 } AliasBucket;
 
 /* A node of the tree by which a light is chosen for a point (light/light_tree.h): 32 bytes. The left child of a node
- * follows it. */
+ * follows it. cones: cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and light
+ * leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides. link: LIGHT_NODE_LEAF and the light; or the right child,
+ * and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities matter. */
 typedef struct LightNode {
     Vec3 center; /* of a sphere around its lights */
     float radius; /* -1: lights at infinity */
     float intensity; /* sum of the largest intensities of its lights; at infinity: of their irradiances (luminance) */
     uint axis; /* direction_pack: the middle of the normals */
-    uint
-        cones; /* cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and light
-                   leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides */
-    uint
-        link; /* the right child, and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities
-                  matter; or LIGHT_NODE_LEAF and the light */
+    uint cones;
+    uint link;
 } LightNode;
 
 #define LIGHT_NODE_NORMALS 0u /* first bit in `cones` */

@@ -14,8 +14,8 @@
 
 /* ---- a node's packed members ------------------------------------------------------------------------------------- */
 
-/* A unit vector in two times 16 bits, by projecting the octahedron |x| + |y| + |z| = 1 to the plane z = 0 and folding its
- * lower half outwards; to within 1e-4. */
+/* A unit vector in two times 16 bits, to within 1e-4: its projection to the octahedron |x| + |y| + |z| = 1, whose lower
+ * half is folded outwards into the plane z = 0. */
 SHARED_FUNCTION uint direction_pack(Vec3 d)
 {
     float scale = 1.0f / (float_abs(d.x) + float_abs(d.y) + float_abs(d.z));
@@ -83,7 +83,7 @@ SHARED_FUNCTION float cosine_between(float middle, float most)
 
 /* An estimate of the irradiance that the lights of a node cause at p, where the surface has the unit normal n. 0 only if
  * they send nothing to p: with the largest cosines that any point of the sphere allows alone, as by Conty Estevez and
- * Kulla, the variance over many lights was three times as large (docs/NUMERICS.md). */
+ * Kulla, the variance over many lights was three times as large (docs/TUNING.md). */
 SHARED_FUNCTION float light_node_importance(__global const LightNode *node, Vec3 p, Vec3 n)
 {
     float radius = node->radius, intensity = node->intensity;
