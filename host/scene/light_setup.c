@@ -248,7 +248,7 @@ bool light_setup(Scene *scene, Error *error)
     scene->infinite_lights.count = scene->light_alias.count = 0;
     if (count == 0)
         return no_light(0, error);
-    double *powers = malloc(count * sizeof *powers);
+    double *powers = calloc(count, sizeof *powers);
     if (!powers)
         return error_memory(error, count * sizeof *powers, "lights");
     bool ok = lights_weigh(scene, powers, error);

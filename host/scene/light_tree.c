@@ -209,9 +209,10 @@ static void slices_bound(const Leaf *leaves, size_t count, const Division *divis
 {
     ConeSum sums[SLICES];
     Vec3 axes[SLICES];
-    for (int i = 0; i < division->slices; ++i) {
+    for (int i = 0; i < SLICES; ++i) {
         slices[i] = bounds_empty();
         sums[i] = (ConeSum){{0.0, 0.0, 0.0}, -1.0, 1.0};
+        axes[i] = NO_CONE.axis;
     }
     for (size_t i = 0; i < count; ++i) {
         int slice = slice_of(division, &leaves[i]);
@@ -239,7 +240,7 @@ static void slices_bound(const Leaf *leaves, size_t count, const Division *divis
 /* Chooses where the sum of both parts' costs is least. False if all is in one slice. */
 static bool division_choose(const Bounds slices[SLICES], Division *division)
 {
-    double above[SLICES + 1], least = INFINITY;
+    double above[SLICES + 1] = {0.0}, least = HUGE_VAL;
     Bounds part = bounds_empty();
     for (int i = division->slices; i-- > 1;) {
         bounds_join(&part, &slices[i]);
