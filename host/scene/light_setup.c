@@ -189,21 +189,15 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Whether what the light sends into the scene grows with the square of the scene's radius. */
-static bool light_is_far(const Light *light)
-{
-    return light->kind != LIGHT_AREA && !light_has_position(light->kind);
-}
-
-/* Scales the powers of far lights so that together they have no more than all others, if there are others. Most of what
- * they send into a wide scene arrives where no lamp does, and of its lamps' light hardly any sample would be left. */
+/* Scales the powers of far lights, which grow with the square of the scene's radius, so that together they have no more
+ * than all others, if there are others. Most of what they send into a wide scene arrives where no lamp does, and of its lamps' light hardly any sample would be left. */
 static void far_lights_bound(const Scene *scene, double *powers)
 {
     double far = 0.0, near = 0.0;
     for (size_t i = 0; i < scene->lights.count; ++i)
-        *(light_is_far(&ARRAY_AT(&scene->lights, Light, i)) ? &far : &near) += powers[i];
+        *(light_is_far(ARRAY_AT(&scene->lights, Light, i).kind) ? &far : &near) += powers[i];
     for (size_t i = 0; near > 0.0 && far > near && i < scene->lights.count; ++i)
-        if (light_is_far(&ARRAY_AT(&scene->lights, Light, i)))
+        if (light_is_far(ARRAY_AT(&scene->lights, Light, i).kind))
             powers[i] *= near / far;
 }
 

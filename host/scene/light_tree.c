@@ -352,7 +352,7 @@ static size_t leaves_fill(const SceneView *view, const double *powers, double di
     *count = 0;
     for (int far = 0; far < 2; ++far) {
         for (size_t i = 0; i < light_count; ++i) {
-            bool infinite = view->lights[i].kind != LIGHT_AREA && !light_has_position(view->lights[i].kind);
+            bool infinite = light_is_far(view->lights[i].kind);
             if (!(powers[i] > 0.0) || infinite != (far == 1))
                 continue;
             Leaf *leaf = &leaves[(*count)++];

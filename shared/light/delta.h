@@ -17,6 +17,12 @@ SHARED_FUNCTION bool light_has_position(uint kind)
 #undef POSITION_OF
 }
 
+/* Whether a light of this kind is at infinity: distant, or an environment. */
+SHARED_FUNCTION bool light_is_far(uint kind)
+{
+    return kind != LIGHT_AREA && !light_has_position(kind);
+}
+
 /* For light_NAME_sample of lights with a position: sets all but radiance. False: ref is that position. */
 SHARED_FUNCTION bool position_light_sample(__global const Light *source, Vec3 ref, LightSample *sample,
                                            float *distance2)
