@@ -24,8 +24,7 @@ static void record_light(Recorder *recorder, uint segments)
         recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
         recorder_kernel(recorder, KERNEL_ib_connect, true);
         recorder_step(recorder, STEP_TRACE_SHADOW);
-        /* not live_only: items whose walk has ended must clear their last splat */
-        recorder_kernel(recorder, KERNEL_ib_add_connections, false);
+        recorder_kernel(recorder, KERNEL_ib_add_connections, true);
         recorder_step(recorder, STEP_SPLAT);
         if (i == segments)
             break;

@@ -10,12 +10,12 @@
 #include "path/bd_weight.h"
 #include "path/ib_weight.h"
 
-/* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray. */
+/* From: nothing. To: the item's pixel and sample; y_0 and the light's first ray; no splat. */
 __kernel void ib_start_light(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                              __global const uint *restrict tables, __global const uint *restrict texels,
                              __global uint *restrict paths, __global uint *restrict rays,
-                             __global uint *restrict shadows, __global uint *restrict vertices,
-                             __global uint *restrict diagnostics)
+                             __global uint *restrict shadows, __global uint *restrict splats,
+                             __global uint *restrict vertices, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
@@ -23,6 +23,7 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
     KERNEL_SCENE(frame, geometry, tables, texels);
     float own;
     bd_header_begin(frame, paths, rays, shadows, item, item_place(frame, item));
+    state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     Walk walk = {paths, rays, diagnostics, stride, item};
     if (frame->path.max_depth >= 2u &&
         walk_start_light(scene, walk, vertices, 0u, bd_random(frame, paths, item, BD_RANDOM_LIGHT),
@@ -132,11 +133,13 @@ __kernel void ib_add_connections(__global const FrameParams *restrict frame, __g
                    visible);
 }
 
-/* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette. */
+/* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette; no
+ * splat, since the film has taken the vertex's own and no later kernel visits a walk that has ended. */
 __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                               __global const uint *restrict tables, __global const uint *restrict texels,
                               __global uint *restrict paths, __global uint *restrict rays,
-                              __global const uint *restrict vertices, __global uint *restrict diagnostics)
+                              __global uint *restrict splats, __global const uint *restrict vertices,
+                              __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
@@ -144,6 +147,8 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
     uint depth = state_load(paths, stride, BD_DEPTH, item), side = state_load(paths, stride, BD_SIDE, item);
     if (depth == 0u)
         return;
+    if (side == SIDE_LIGHT)
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     KERNEL_SCENE(frame, geometry, tables, texels);
     Random4 random = bd_random(frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_SCATTER));
     WalkStep step = {0};

@@ -47,15 +47,15 @@
     X(bd_add_connections, 6, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS,                  \
       BUFFER_DIAGNOSTICS)                                                                                              \
     X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
-    X(ib_start_light, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
-      BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                                             \
+    X(ib_start_light, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                              \
     X(ib_shade_hits, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
       BUFFER_HITS, BUFFER_VERTICES)                                                                                    \
     X(ib_connect, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_SHADOWS,        \
       BUFFER_VERTICES)                                                                                                 \
     X(ib_add_connections, 5, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)            \
-    X(ib_extend_walks, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
-      BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
+    X(ib_extend_walks, 9, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
+      BUFFER_SPLATS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)
 
 #define KERNEL_LIST_CAUSTICS(X)                                                                                        \
     X(photon_start, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,         \

@@ -191,6 +191,7 @@ done
 # others.
 likely() {
     case $1 in
+    shared/kernels/ibpt.cl) echo test_verify test_partition test_bidirectional ;;
     shared/kernels/*.cl | shared/path/bd_start.h) echo test_partition test_chain:shown test_layers ;;
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/chain/mutation.h) echo test_chain:shown test_partition test_chain test_shift test_layers ;;

@@ -23,19 +23,42 @@ static const char *const SCENE = "LookAt 0 1 4  0 1 0  0 1 0\n"
                                  "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.4 ]\n"
                                  "Shape \"bilinearmesh\" \"point3 P\" [ -9 -1 -9  9 -1 -9  -9 -1 9  9 -1 9 ]\n";
 
+/* Most walks end by Russian roulette, at vertices that the camera sees. */
+static const char *const ROOM = "LookAt 0 1 4  0 1 0  0 1 0\n"
+                                "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 48\n"
+                                "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
+                                "AttributeBegin\n"
+                                "AreaLightSource \"diffuse\" \"rgb L\" [ 5 5 5 ]\n"
+                                "Translate 0 3 0  Rotate 90 1 0 0\n"
+                                "Shape \"disk\" \"float radius\" 0.5\n"
+                                "AttributeEnd\n"
+                                "Material \"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.4 ]\n"
+                                "Shape \"bilinearmesh\" \"point3 P\" [ -9 -1 -9  9 -1 -9  -9 -1 9  9 -1 9 ]\n"
+                                "Shape \"bilinearmesh\" \"point3 P\" [ -9 4 -9  9 4 -9  -9 4 9  9 4 9 ]\n";
+
 static const atomic_int NEVER = 0;
 
-/* Verifies paths of up to `depth` segments on CPU backends with one and three threads, the second with `interface`. */
-static bool scene_verify(const BackendInterface *interface, int depth, uint64_t items, const atomic_int *stop,
-                         VerifyReport *report, Error *error)
+/* Verifies paths of up to setup->max_depth segments on CPU backends with one and three threads, the second with
+ * setup->backend. */
+static bool setup_verify(const RenderSetup *setup, uint64_t items, const atomic_int *stop, VerifyReport *report,
+                         Error *error)
 {
-    const RenderSetup setups[2] = {{.text = SCENE, .max_depth = depth, .seed = 3, .threads = 1},
-                                   {.threads = 3, .backend = interface}};
+    RenderSetup setups[2] = {*setup, {.threads = 3, .backend = setup->backend}};
+    setups[0].threads = 1;
+    setups[0].backend = NULL;
     VerifyPair pair;
     verify_pair_open(setups, &pair);
     bool same = verify_run(pair.sides, &pair.frame, &pair.list, items, stop, report, error);
     verify_pair_close(&pair);
     return same;
+}
+
+/* Path tracing. */
+static bool scene_verify(const BackendInterface *interface, int depth, uint64_t items, const atomic_int *stop,
+                         VerifyReport *report, Error *error)
+{
+    const RenderSetup setup = {.text = SCENE, .max_depth = depth, .seed = 3, .backend = interface};
+    return setup_verify(&setup, items, stop, report, error);
 }
 
 START_TEST(test_equal)
@@ -113,6 +136,24 @@ START_TEST(test_long_list)
 }
 END_TEST
 
+/* Kernels leave paths that have ended unchanged: a backend need not skip, and chunks that skip need not be of one
+ * size. */
+START_TEST(test_unskipped)
+{
+    const Integrator *integrators[] = {integrator_pt(), integrator_ibpt(), integrator_bdpt()};
+    BackendInterface unskipping = unskipping_backend(backend_cpu());
+    for (size_t i = 0; i < sizeof integrators / sizeof integrators[0]; ++i) {
+        const RenderSetup setup = {
+            .text = ROOM, .max_depth = 8, .seed = 3, .integrator = integrators[i], .backend = &unskipping};
+        Error error = {0};
+        VerifyReport report;
+        ck_assert_msg(setup_verify(&setup, 64 * 48 * 2, &NEVER, &report, &error), "%s: %s", integrators[i]->name,
+                      error.message);
+        ck_assert_uint_eq(report.items, 64 * 48 * 2);
+    }
+}
+END_TEST
+
 START_TEST(test_stop)
 {
     static const atomic_int stopped = 1;
@@ -132,6 +173,7 @@ int main(void)
     tcase_add_test(tcase, test_difference_named);
     tcase_add_test(tcase, test_field_names);
     tcase_add_test(tcase, test_long_list);
+    tcase_add_test(tcase, test_unskipped);
     tcase_add_test(tcase, test_stop);
     suite_add_tcase(suite, tcase);
     return test_run(suite);

@@ -27,4 +27,7 @@ typedef struct Fault {
 /* `of`, except that the result of `inspect` has the fault. Only one at a time. */
 BackendInterface fault_backend(const BackendInterface *of, const Fault *fault);
 
+/* `of`, except that `inspect` ignores STEP_SKIP_IF_IDLE, as a backend may. */
+BackendInterface unskipping_backend(const BackendInterface *of);
+
 #endif
