@@ -5,9 +5,10 @@
 #   floor. Variance is half their mean squared difference. Relative variance is half the relMSE of one against the other
 #   without the worst thousandth of the pixels, so that a single firefly does not decide; with the worst is the same
 #   with all pixels. relMSE divides by the square of one of the images, which exaggerates where they are noisy.
-# to the reference, with the worst: relMSE against reference/NAME.exr beside the scene, mean of the two images,
-#   without and with the worst thousandth; a minus sign if there is no reference of this size. Includes the reference's
-#   own error.
+# 8 x 8: half the relMSE of the means of tiles of 8 x 8 pixels, no tile left out.
+# to the reference, with the worst, 8 x 8: the same errors against reference/NAME.exr beside the scene, mean of the two
+#   images; with REFERENCE_SECONDS, against an image that mmlt renders first, with another seed. Minus signs if there is
+#   no reference of this size. Includes the reference's own error.
 # Efficiency is 1 / (relative variance x seconds), median over the budgets; the times to equal error of two integrators
 # have the inverse ratio. `twinlight bench` always measures against a reference: it takes longer, draws charts, and sees
 # light that all seeds miss.
@@ -22,6 +23,7 @@ BUDGETS=${BUDGETS:-2 4 8}
 DEPTH=${DEPTH:-10}
 RESOLUTION=${RESOLUTION:-128x128}
 INTEGRATORS=${INTEGRATORS:-pt ibpt bdpt mmlt}
+REFERENCE_SECONDS=${REFERENCE_SECONDS:-}
 twinlight=$1
 shift
 
@@ -57,43 +59,60 @@ images() {
     done
 }
 
-# to_reference BUDGET SCENE: "relMSE-without-the-worst relMSE", mean of both images.
+# reference_make SCENE: sets $reference.
+reference_make() {
+    reference=$(dirname "$1")/reference/$(basename "$1" .pbrt).exr
+    [ -n "$REFERENCE_SECONDS" ] || return 0
+    reference=$folder/reference.exr
+    "$twinlight" render --quiet --max-depth="$DEPTH" --resolution="$RESOLUTION" --time="${REFERENCE_SECONDS}s" --seed=9 \
+        --no-png -o "$reference" "$1" 2>"$folder/err" || render_failed
+}
+
+# mean_number KEY FILE FILE
+mean_number() {
+    awk "BEGIN { printf \"%.6g\", ($(number "$1" "$2") + $(number "$1" "$3")) / 2 }"
+}
+
+# to_reference BUDGET: the three errors to $reference, means of both images.
 to_reference() {
-    reference=$(dirname "$2")/reference/$(basename "$2" .pbrt).exr
     for seed in 1 2; do
         if ! [ -f "$reference" ] ||
             ! "$twinlight" compare --json "$folder/$seed.$1.exr" "$reference" >"$folder/reference.$seed.json" 2>"$folder/err"; then
-            printf -- '-\t-'
+            printf -- '-\t-\t-'
             return
         fi
     done
-    awk "BEGIN { printf \"%.6g\t%.6g\", \
-        ($(number rel_mse_trimmed "$folder/reference.1.json") + $(number rel_mse_trimmed "$folder/reference.2.json")) / 2, \
-        ($(number rel_mse "$folder/reference.1.json") + $(number rel_mse "$folder/reference.2.json")) / 2 }"
+    for key in rel_mse_trimmed rel_mse rel_mse_8x8; do
+        [ $key = rel_mse_trimmed ] || printf '\t'
+        mean_number $key "$folder/reference.1.json" "$folder/reference.2.json"
+    done
 }
 
-# variances INTEGRATOR SCENE: per budget a line "seconds samples/s variance relative-variance with-the-worst", continued
-# by to_reference.
+# variances INTEGRATOR SCENE: per budget a line "seconds samples/s variance relative-variance with-the-worst 8x8",
+# continued by to_reference.
 variances() {
     images "$1" 1 "$2"
     images "$1" 2 "$2"
     for budget in $BUDGETS; do
         "$twinlight" compare --json "$folder/1.$budget.exr" "$folder/2.$budget.exr" >"$folder/compare.json"
-        awk "BEGIN { printf \"%.3f\t%.0f\t%.6g\t%.6g\t%.6g\t\", \
+        awk "BEGIN { printf \"%.3f\t%.0f\t%.6g\t%.6g\t%.6g\t%.6g\t\", \
             ($(cat "$folder/1.$budget.time") + $(cat "$folder/2.$budget.time")) / 2, \
             ($(number samples_per_second "$folder/1.json") + $(number samples_per_second "$folder/2.json")) / 2, \
             $(number mse "$folder/compare.json") / 2, $(number rel_mse_trimmed "$folder/compare.json") / 2, \
-            $(number rel_mse "$folder/compare.json") / 2 }"
-        to_reference "$budget" "$2"
+            $(number rel_mse "$folder/compare.json") / 2, $(number rel_mse_8x8 "$folder/compare.json") / 2 }"
+        to_reference "$budget"
         echo
     done
 }
 
 head_print
 printf '# setting\t%s segments, %s pixels\n' "$DEPTH" "$RESOLUTION"
-printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\twith the worst\tto the reference\twith the worst\n'
+[ -z "$REFERENCE_SECONDS" ] || printf '# reference\tmmlt, %s seconds\n' "$REFERENCE_SECONDS"
+printf 'scene\tintegrator\tseconds\tsamples/s\tvariance\trelative variance\twith the worst\t8 x 8\t'
+printf 'to the reference\twith the worst\t8 x 8\n'
 for scene in "$@"; do
     name=$(scene_name "$scene")
+    reference_make "$scene"
     for integrator in $INTEGRATORS; do
         variances "$integrator" "$scene" | awk -v head="$name\t$integrator\t" '{ print head $0 }'
     done

@@ -8,6 +8,7 @@
 
 #define RELATIVE_FLOOR 0.01 /* keeps the relative error of dark values finite */
 #define TRIMMED_SHARE 1000 /* one in this many pixels is left out */
+#define TILE 8 /* pixels a side, about what an eye or a denoiser averages over */
 
 typedef struct Pixel {
     double image[3], reference[3];
@@ -38,6 +39,39 @@ static double pixel_rel_mse(const Pixel *p)
         sum += metrics_relative_square(difference * difference, p->reference[c]);
     }
     return sum / 3.0;
+}
+
+/* Means over the pixels of a tile whose first one is (x0, y0). */
+static Pixel tile_mean(const float *image, const float *reference, int width, int height, int x0, int y0)
+{
+    Pixel sum = {{0.0}, {0.0}};
+    int x1 = x0 + TILE < width ? x0 + TILE : width, y1 = y0 + TILE < height ? y0 + TILE : height;
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x1; ++x) {
+            Pixel p;
+            size_t at = 3 * ((size_t)y * (size_t)width + (size_t)x);
+            pixel_clean(image + at, p.image);
+            pixel_clean(reference + at, p.reference);
+            for (int c = 0; c < 3; ++c) {
+                sum.image[c] += p.image[c] / ((x1 - x0) * (y1 - y0));
+                sum.reference[c] += p.reference[c] / ((x1 - x0) * (y1 - y0));
+            }
+        }
+    }
+    return sum;
+}
+
+static double tiles_rel_mse(const float *image, const float *reference, int width, int height)
+{
+    double sum = 0.0, count = 0.0;
+    for (int y = 0; y < height; y += TILE) {
+        for (int x = 0; x < width; x += TILE) {
+            Pixel p = tile_mean(image, reference, width, height, x, y);
+            sum += pixel_rel_mse(&p);
+            count += 1.0;
+        }
+    }
+    return sum / count;
 }
 
 static void metrics_add(Metrics *metrics, const Pixel *p)
@@ -151,6 +185,7 @@ bool metrics_compute(const float *image, const float *reference, int width, int 
     }
     metrics_divide(metrics, pixels);
     rel_mse_set(metrics, relative, pixels);
+    metrics->rel_mse_8x8 = tiles_rel_mse(image, reference, width, height);
     free(relative);
     return blocks_compare(image, reference, width, height, metrics, error);
 }

@@ -4,6 +4,7 @@
  *   MSE     mean (I - R)^2
  *   relMSE  mean (I - R)^2 / (R^2 + 0.01)
  *   relMSE trimmed: the same without the floor(0.1 %) of pixels with the largest value (mean of the three channels)
+ *   relMSE 8 x 8: relMSE of the means of tiles of 8 x 8 pixels, those at the right and lower edge smaller
  *   MAPE    mean |I - R| / (|R| + 0.01)
  *   SMAPE   mean |I - R| / ((|I| + |R|) / 2 + 0.01)
  *   blocks  N x N cells with edges round(i * size / N) (halves to even); with a and r the means of a cell over its
@@ -20,6 +21,7 @@ typedef struct Metrics {
     double mse;
     double rel_mse;
     double rel_mse_trimmed;
+    double rel_mse_8x8;
     double mape;
     double smape;
     double mean, mean_reference; /* of all values */

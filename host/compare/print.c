@@ -10,6 +10,7 @@ static void text_metrics(const Metrics *m)
     printf("MSE              %.6g\n", m->mse);
     printf("relMSE           %.6g\n", m->rel_mse);
     printf("relMSE trimmed   %.6g  (without the worst 0.1 %% of pixels)\n", m->rel_mse_trimmed);
+    printf("relMSE 8 x 8     %.6g  (of the means of tiles of 8 x 8 pixels)\n", m->rel_mse_8x8);
     printf("MAPE             %.6g\n", m->mape);
     printf("SMAPE            %.6g\n", m->smape);
     printf("mean             %.6g  (RGB %.6g %.6g %.6g)\n", m->mean, m->mean_rgb[0], m->mean_rgb[1], m->mean_rgb[2]);
@@ -66,6 +67,7 @@ static void json_metrics(JsonWriter *json, const Metrics *m)
     json_number(json, "mse", m->mse);
     json_number(json, "rel_mse", m->rel_mse);
     json_number(json, "rel_mse_trimmed", m->rel_mse_trimmed);
+    json_number(json, "rel_mse_8x8", m->rel_mse_8x8);
     json_number(json, "mape", m->mape);
     json_number(json, "smape", m->smape);
     json_number(json, "mean", m->mean);

@@ -66,6 +66,27 @@ START_TEST(test_trimmed)
 }
 END_TEST
 
+/* Tiles of 8 x 8, 2 x 8, 8 x 1 and 2 x 1 pixels: errors that cancel within one do not count; the mean is over tiles. */
+START_TEST(test_tiles)
+{
+    float image[270], reference[270];
+    for (int i = 0; i < 270; ++i)
+        image[i] = reference[i] = 1.0f;
+    image[0] = 3.0f; /* first tile, red: 2 - 2 = 0 */
+    image[3 * 77] = -1.0f;
+    image[3 * 8 + 1] = 1.5f; /* right tile of 16 pixels, green */
+    image[3 * 88 + 2] = 2.0f; /* corner tile of 2 pixels, blue */
+    Metrics m = metrics_of(image, reference, 10, 9, 1);
+    double right = 0.5 / 16.0, corner = 0.5;
+    ck_assert_double_eq_tol(m.rel_mse_8x8, (right * right + corner * corner) / 1.01 / 3.0 / 4.0, TOLERANCE);
+    image[3 * 77] = NAN;
+    m = metrics_of(image, reference, 10, 9, 1);
+    double first = (2.0 - 1.0) / 64.0;
+    ck_assert_double_eq_tol(m.rel_mse_8x8, (first * first + right * right + corner * corner) / 1.01 / 3.0 / 4.0,
+                            TOLERANCE);
+}
+END_TEST
+
 START_TEST(test_not_finite)
 {
     const float image[] = {NAN, 1.0f, 1.0f, 1.0f, INFINITY, NAN, 1.0f, 1.0f, 1.0f};
@@ -159,6 +180,7 @@ int main(void)
     tcase_add_test(tcase, test_by_hand);
     tcase_add_test(tcase, test_equal_images);
     tcase_add_test(tcase, test_trimmed);
+    tcase_add_test(tcase, test_tiles);
     tcase_add_test(tcase, test_not_finite);
     tcase_add_test(tcase, test_block_edges);
     tcase_add_test(tcase, test_blocks);
