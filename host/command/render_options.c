@@ -51,9 +51,10 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
-    [OPTION_LAYERS] = {"layers", 0, "NAME,...",
-                       "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
-                           LAYER_TEXT_OF) "or all (but by-depth) or none (default: all with mmlt, else none)"},
+    [OPTION_LAYERS] =
+        {"layers", 0, "NAME,...",
+         "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
+             LAYER_TEXT_OF) "or all (but by-depth) or none (default: with mmlt " AOV_LIST(LAYER_TEXT_OF) "else none)"},
     [OPTION_DESPECKLE] = {"despeckle", 0, "T",
                           "add a layer in which pixels over T times as bright as the median around them are replaced"},
     [OPTION_FRAME] = {"frame", 0, "N", "number that replaces %d, %4d or %04d in file names"},

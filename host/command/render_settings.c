@@ -44,7 +44,7 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
 bool render_settings_layers(const RenderCommand *command, const Integrator *integrator, unsigned *wanted, Error *error)
 {
     bool chains = integrator == integrator_mmlt();
-    *wanted = command->has_layers ? command->layers : chains ? LAYERS_ALL : 0;
+    *wanted = command->has_layers ? command->layers : chains ? LAYERS_AOV : 0;
     if (chains)
         return true;
     if (command->layers == LAYERS_ALL)

@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-/* Most AOV samples per pixel. */
-#define AOV_SAMPLES 16u
+/* Most AOV samples per pixel, which are stratified (math/sobol.h). */
+#define AOV_SAMPLES 8u
 
 static bool wants(const RenderLayers *layers, Layer layer)
 {
@@ -113,6 +113,7 @@ static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const
     FrameParams frame = run->frame;
     const SplatSink sink = render_run_sink(film);
     frame.pass.aov = aov;
+    frame.path.sobol = 1;
     frame.film.exponent = film->quantum_exponent;
     frame.pass.sample_index = run->options->first_sample + sample;
     frame.pass.first_item = 0;

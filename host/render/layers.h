@@ -29,7 +29,7 @@ typedef enum Layer { LAYER_LIST(LAYER_ENUMERATE) LAYER_COUNT } Layer;
 #define LAYER_BIT(layer) (1u << (layer))
 #define LAYER_BIT_OF(NAME, ...) | LAYER_BIT(LAYER_##NAME)
 #define LAYERS_ALL ((0u LAYER_LIST(LAYER_BIT_OF)) & ~LAYER_BIT(LAYER_BY_DEPTH)) /* BY_DEPTH must be named */
-#define LAYERS_AOV (0u AOV_LIST(LAYER_BIT_OF))
+#define LAYERS_AOV (0u AOV_LIST(LAYER_BIT_OF)) /* the default of mmlt: what compositors and denoisers ask for */
 
 /* "albedo, normal, ... ": for texts about the layers of a list. */
 #define LAYER_TEXT_OF(NAME, name, text, ...) text ", "
@@ -54,7 +54,7 @@ bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Er
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
 /* Renders the AOVs that the run's layers want, if any: brings them to as many samples per pixel as `samples` paths of
- * light make, at most 16, since AOVs are nearly noise-free. */
+ * light make, at most 8, since AOVs are nearly noise-free. */
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error);
 
 #endif

@@ -346,8 +346,12 @@ expect 0 'FLIP             0  (exposure 1, 30 pixels per degree)' compare --expo
 expect 0 'SSIM             1' compare one.exr three.exr
 expect 0 'z-test           none' compare one.exr three.exr
 for seed in 1 2; do
-    render --integrator=mmlt --seed=$seed -o halves$seed.exr "$scene"
+    render --integrator=mmlt --layers=halves --seed=$seed -o halves$seed.exr "$scene"
 done
+render --integrator=mmlt -o usual.exr "$scene"
+expect 0 'z-test           none' compare usual.exr halves1.exr
+grep -q albedo.R usual.exr && grep -q normal.X usual.exr && ! grep -q halfA.R usual.exr
+result 'mmlt has other layers than albedo, normal and depth by default' $?
 expect 0 'z-test           no difference found' compare --side-by-side=sheet.png halves1.exr halves2.exr
 file_exists sheet.png
 expect 0 '"z_test": {' compare --json halves1.exr halves2.exr

@@ -63,16 +63,22 @@ END_TEST
 
 /* ---- albedo, normal, depth --------------------------------------------------------------------------------------- */
 
-/* A wall of albedo 0.2, 0.5, 0.7 that turns its back to +z, at distance 5 along the axis, in the lower half of the
- * image. */
-static const char WALL[] = "LookAt 0 0 0  0 0 1  0 1 0\n"
-                           "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"
-                           "PixelFilter \"box\"\n"
-                           "Camera \"perspective\" \"float fov\" 40\n"
-                           "WorldBegin\n"
-                           "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n"
-                           "Material \"diffuse\" \"rgb reflectance\" [ 0.2 0.5 0.7 ]\n"
-                           "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 5  9 -9 5  -9 0 5  9 0 5 ]\n";
+/* A wall of albedo 0.2, 0.5, 0.7 that turns its back to +z, at distance 5 along the axis, up to a height. */
+#define WALL_TO(height)                                                                                                \
+    "LookAt 0 0 0  0 0 1  0 1 0\n"                                                                                     \
+    "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\n"                                               \
+    "PixelFilter \"box\"\n"                                                                                            \
+    "Camera \"perspective\" \"float fov\" 40\n"                                                                        \
+    "WorldBegin\n"                                                                                                     \
+    "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n"                                                                   \
+    "Material \"diffuse\" \"rgb reflectance\" [ 0.2 0.5 0.7 ]\n"                                                       \
+    "Shape \"bilinearmesh\" \"point3 P\" [ -9 -9 5  9 -9 5  -9 " height " 5  9 " height " 5 ]\n"
+
+/* Up to the middle of the image. */
+static const char WALL[] = WALL_TO("0");
+
+/* Up to the middle of the fifth row of pixels. */
+static const char LOW_WALL[] = WALL_TO("-0.227481");
 
 START_TEST(test_variables)
 {
@@ -97,6 +103,23 @@ START_TEST(test_variables)
         /* Within a pixel the distance varies by less than 0.04. */
         TEST_NEAR(depth[3 * i], met ? 5.0 * sqrt(1.0 + x * x + y * y) : 0.0, 0.04);
     }
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* Samples are stratified: exactly half of them meet a wall that covers half of a pixel. */
+START_TEST(test_variables_edge)
+{
+    RenderLayers layers = {.wanted = LAYERS_AOV};
+    RenderedImage image;
+    float albedo[3 * 64];
+    fixture_render(&(RenderSetup){.text = LOW_WALL, .samples = 64, .integrator = integrator_mmlt(), .layers = &layers},
+                   &image);
+    film_resolve(&layers.aovs[AOV_ALBEDO], 1.0f, albedo);
+    for (size_t i = 0; i < 64; ++i)
+        TEST_NEAR(albedo[3 * i + 1], i < 32 ? 0.0f : i < 40 ? 0.25f : 0.5f, 1e-6);
+    ck_assert_uint_eq(layers.aov_samples, 8);
     render_layers_destroy(&layers);
     fixture_destroy(&image);
 }
@@ -216,6 +239,7 @@ int main(void)
     tcase_add_test(tcase, test_series);
     tcase_add_test(tcase, test_despeckle);
     tcase_add_loop_test(tcase, test_variables, 0, 3);
+    tcase_add_test(tcase, test_variables_edge);
     tcase_add_test(tcase, test_halves);
     tcase_add_loop_test(tcase, test_by_depth, 0, 2);
     tcase_add_test(tcase, test_variance);
