@@ -20,10 +20,6 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
         error_set(error, "--%s is not for mmlt, whose chains use all strategies, with the balance heuristic", option);
         return error_fix(error, "add --integrator=bdpt, or leave --%s out", option);
     }
-    if (integrator == integrator_mmlt() && command->sampler && strcmp(command->sampler, "independent") != 0) {
-        error_set(error, "--sampler=%s is not for mmlt, whose estimators need independent samples", command->sampler);
-        return error_fix(error, "add --integrator=pt, bdpt or ibpt, or leave --sampler out");
-    }
     if (command->chain_option && integrator != integrator_mmlt()) {
         error_set(error, "--%s is for mmlt, but %s has no Markov chains", command->chain_option, integrator->name);
         return error_fix(error, "add --integrator=mmlt, or leave --%s out", command->chain_option);

@@ -1,6 +1,7 @@
 #include "film/pixel_series.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 
 bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error)
@@ -56,4 +57,53 @@ double pixel_series_variance(const PixelSeries *series, size_t value)
 {
     double weight = (double)series->weight[value / (size_t)series->channels];
     return weight > 0.0 ? pixel_series_spread(series, value) / weight : 0.0;
+}
+
+static double middle_of(const PixelSeries *a, const PixelSeries *b, size_t value)
+{
+    return 0.5 * ((double)a->mean[value] + (double)b->mean[value]);
+}
+
+/* Mean over the values of a window, and how much of both series' variance is found and stated there. */
+typedef struct WindowSums {
+    double mean, found, stated;
+} WindowSums;
+
+static void row_mean(const PixelSeries *a, const PixelSeries *b, size_t first, size_t end, double count,
+                     WindowSums *sums)
+{
+    for (size_t i = first; i < end; ++i)
+        sums->mean += middle_of(a, b, i) / count;
+}
+
+static void row_compare(const PixelSeries *a, const PixelSeries *b, size_t first, size_t end, double dark,
+                        WindowSums *sums)
+{
+    for (size_t i = first; i < end; ++i) {
+        size_t pixel = i / (size_t)a->channels;
+        double distance = (double)a->mean[i] - (double)b->mean[i], middle = middle_of(a, b, i);
+        double square = middle * middle + dark * sums->mean * sums->mean;
+        if (a->pictures[pixel] < 2 || b->pictures[pixel] < 2 || !(square > 0.0))
+            continue;
+        sums->found += distance * distance / square;
+        sums->stated += (pixel_series_variance(a, i) + pixel_series_variance(b, i)) / square;
+    }
+}
+
+double pixel_series_stratified(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark)
+{
+    size_t channels = (size_t)a->channels, row = (window.x1 - window.x0) * channels;
+    double count = (double)((window.y1 - window.y0) * row);
+    WindowSums sums = {0.0, 0.0, 0.0};
+    if (a == b)
+        return 1.0;
+    for (size_t y = window.y0; y < window.y1; ++y) {
+        size_t first = (y * window.width + window.x0) * channels;
+        row_mean(a, b, first, first + row, count, &sums);
+    }
+    for (size_t y = window.y0; y < window.y1; ++y) {
+        size_t first = (y * window.width + window.x0) * channels;
+        row_compare(a, b, first, first + row, dark, &sums);
+    }
+    return sums.stated > 0.0 ? fmin(sums.found / sums.stated, 1.0) : 1.0;
 }

@@ -31,4 +31,15 @@ double pixel_series_spread(const PixelSeries *series, size_t value);
 /* Estimated variance of a value's weighted mean. */
 double pixel_series_variance(const PixelSeries *series, size_t value);
 
+/* Part of an image: pixels x0 <= x < x1, y0 <= y < y1 of rows of `width`. */
+typedef struct PixelWindow {
+    size_t width, x0, y0, x1, y1;
+} PixelWindow;
+
+/* What is left of these variances if the samples of a series are stratified across its images: a and b are two such series
+ * of the same values, independent of each other, so that the difference of their means shows their real variance. One
+ * factor for all values in the window, each relative to its square plus `dark` times that of their mean; at most 1. 1 if a
+ * is b, or before the second image of either. */
+double pixel_series_stratified(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark);
+
 #endif

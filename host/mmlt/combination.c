@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Avoids division by zero in tiles without variance (black ones). */
-#define SPREAD_MIN 1e-30
-
 bool combination_init(Combination *combination, const Film *film, Error *error)
 {
     *combination = (Combination){0};
@@ -69,6 +66,42 @@ static TileCombination tile_combination(const CombinationTile *tile, const doubl
     return best;
 }
 
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
+
+/* Variance of a chain's step that pool_per_step pool samples accompany, relative to b, the variance within chains: 1 +
+ * (a / b) (cost of all steps / cost of all pool samples). */
+static double step_variance(double pool_per_step)
+{
+    const double root = POOL_PART / (1.0 - POOL_PART);
+    return 1.0 + root * root * estimator_cost(ESTIMATOR_CHAINS) / (estimator_cost(ESTIMATOR_POOL) * pool_per_step);
+}
+
+/* Variance of a step under a plan, relative to its variance with the pools so far. */
+static double chains_factor(const Combination *combination, const double samples[ESTIMATOR_COUNT])
+{
+    double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
+           steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
+    return step_variance(samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]) / step_variance(pools / steps);
+}
+
+/* Relative square error of the picture (up to a constant factor) from this many samples of each estimator. with_direct:
+ * of all light, and not just of what is combined. every: of one tile in so many. */
+static double error_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool with_direct,
+                       size_t every)
+{
+    double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples);
+    for (size_t i = 0; i < combination_tile_count(combination); i += every) {
+        CombinationTile tile = combination->known[i];
+        tile.spread[ESTIMATOR_CHAINS] *= factor;
+        tile.spread[SERIES_EXCESS] *= factor;
+        tile.spread[SERIES_RARE] *= factor;
+        double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
+        sum += (tile_combination(&tile, samples).variance + direct) /
+               fmax(tile.light * tile.light + DARK_PART * light * light, SPREAD_MIN);
+    }
+    return sum;
+}
+
 /* Whether the variances of all estimators that have samples are known. */
 static bool combination_known(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
@@ -126,9 +159,9 @@ static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
     return sums;
 }
 
-/* Replaces the chains' light sums by the combination, scaled to `work` samples. */
+/* Replaces the chains' light sums by the combination, scaled to `worth` samples. */
 static void sums_join(const Combination *combination, const EstimatorSums *sums, const double samples[ESTIMATOR_COUNT],
-                      double work)
+                      double worth)
 {
     size_t values = 3 * (size_t)combination->size[0] * (size_t)combination->size[1];
     for (size_t i = 0; i < values; ++i) {
@@ -139,12 +172,26 @@ static void sums_join(const Combination *combination, const EstimatorSums *sums,
         for (int s = 0; s < ESTIMATOR_COUNT; ++s)
             if (samples[s] > 0.0)
                 sum += tile->weight[s] * (double)film_sum_shown(sums->light[s][i]) / samples[s];
-        sums->light[ESTIMATOR_CHAINS][i] = film_sum_rounded(sum * work);
+        sums->light[ESTIMATOR_CHAINS][i] = film_sum_rounded(sum * worth);
     }
 }
 
-/* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's work,
- * so that film_merge weights generations by work however they divided it between estimators. */
+/* Weight of a generation's picture in that of all: in inverse proportion to its variance, as its work is if all divide
+ * work alike. Generations in which work was divided otherwise, such as those without path tracing, count by the error
+ * expected of that; and less while variances are not known. */
+static double generation_worth(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool known)
+{
+    double work = estimators_work(samples), best[ESTIMATOR_COUNT];
+    if (!known || !(combination->best[ESTIMATOR_PATHS] > 0.0))
+        return FIRST_WORTH * work;
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        best[s] = combination->best[s] * work / estimators_work(combination->best);
+    double own = error_of(combination, samples, false, 1);
+    return own > 0.0 ? work * fmin(error_of(combination, best, false, 1) / own, WORTH_MOST) : work;
+}
+
+/* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's worth, by
+ * which film_merge weights it. */
 static void films_join(Combination *combination, Film *const films[])
 {
     Film *into = films[ESTIMATOR_CHAINS];
@@ -153,7 +200,7 @@ static void films_join(Combination *combination, Film *const films[])
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         samples[s] = (double)films[s]->light_samples;
     bool known = combination_known(combination, samples);
-    double work = fmax(1.0, rint(estimators_work(samples)));
+    double worth = fmax(1.0, rint(generation_worth(combination, samples, known)));
     /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
     uint64_t full = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
@@ -162,12 +209,12 @@ static void films_join(Combination *combination, Film *const films[])
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
         weights_set(combination, &combination->known[i], samples, known);
     EstimatorSums sums = estimator_sums(films);
-    sums_join(combination, &sums, samples, work);
+    sums_join(combination, &sums, samples, worth);
     for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {
         sums = estimator_depth_sums(films, segments);
-        sums_join(combination, &sums, samples, work);
+        sums_join(combination, &sums, samples, worth);
     }
-    into->light_samples = (uint64_t)work;
+    into->light_samples = (uint64_t)worth;
     memcpy(into->sums, films[ESTIMATOR_PATHS]->sums, 3 * pixels * sizeof *into->sums);
     memcpy(into->counts, films[ESTIMATOR_PATHS]->counts, pixels * sizeof *into->counts);
     for (int s = ESTIMATOR_CHAINS + 1; s < ESTIMATOR_COUNT; ++s) {
@@ -188,7 +235,7 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
         combination_films_learn(combination, films, picture, picture + pixels, stop);
         films_join(teacher, films);
         if (!*stop)
-            combination_variances_update(combination, ratios);
+            combination_variances_update(combination, teacher, ratios);
     } else {
         error_memory(error, values * sizeof *picture, "a generation's pictures");
     }
@@ -200,34 +247,9 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
 
-/* Variance of a chain's step that pool_per_step pool samples accompany, relative to b, the variance within chains: 1 +
- * (a / b) (cost of all steps / cost of all pool samples). */
-static double step_variance(double pool_per_step)
-{
-    const double root = POOL_PART / (1.0 - POOL_PART);
-    return 1.0 + root * root * estimator_cost(ESTIMATOR_CHAINS) / (estimator_cost(ESTIMATOR_POOL) * pool_per_step);
-}
-
-/* Variance of a step under a plan, relative to its variance with the pools so far. */
-static double chains_factor(const Combination *combination, const double samples[ESTIMATOR_COUNT])
-{
-    double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
-           steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
-    return step_variance(samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]) / step_variance(pools / steps);
-}
-
-/* Mean light per tile. */
-static double mean_light(const Combination *combination)
-{
-    double light = 0.0;
-    for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        light += combination->known[i].light / (double)combination_tile_count(combination);
-    return light;
-}
-
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors)
 {
-    double light = mean_light(combination);
+    double light = combination_mean_light(combination);
     bool known = combination_known(combination, samples) && light > 0.0;
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         const CombinationTile *tile = &combination->known[i];
@@ -236,25 +258,12 @@ void combination_errors(const Combination *combination, const double samples[EST
     }
 }
 
-/* Relative square error of the picture (up to a constant factor) from this many samples of each estimator. */
-static double error_of(const Combination *combination, const double samples[ESTIMATOR_COUNT])
-{
-    double sum = 0.0, light = mean_light(combination), factor = chains_factor(combination, samples);
-    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        CombinationTile tile = combination->known[i];
-        tile.spread[ESTIMATOR_CHAINS] *= factor;
-        tile.spread[SERIES_EXCESS] *= factor;
-        tile.spread[SERIES_RARE] *= factor;
-        sum += (tile_combination(&tile, samples).variance + tile.direct / samples[ESTIMATOR_PATHS]) /
-               (tile.light * tile.light + DARK_PART * light * light);
-    }
-    return sum;
-}
-
-StepRates combination_rates(const Combination *combination)
+StepRates combination_rates(Combination *combination)
 {
     StepRates best = {0};
     double least = HUGE_VAL;
+    /* odd, so that it is no divisor of most widths */
+    size_t every = combination_tile_count(combination) / PLAN_TILES | 1u;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (!combination->ready[s])
             return best;
@@ -264,9 +273,10 @@ StepRates combination_rates(const Combination *combination)
                 [ESTIMATOR_CHAINS] = PLAN_PARTS - paths - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = paths};
             for (int s = 0; s < ESTIMATOR_COUNT; ++s)
                 samples[s] /= estimator_cost((EstimatorKind)s);
-            double error = error_of(combination, samples);
+            double error = error_of(combination, samples, true, every);
             if (error < least) {
                 least = error;
+                memcpy(combination->best, samples, sizeof samples);
                 best.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS];
                 best.pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS];
             }

@@ -22,7 +22,7 @@ void combination_destroy(Combination *combination);
  *
  * films: of each estimator; light_sums hold light_samples paths (0: no samples in this generation). The path tracing
  * film has direct light in `sums`; the chains' film has the excess in `sums` and rare light in `rare_sums`. On return
- * the chains' film is the combination, direct light included, weighted by what `teacher` has learned, and `combination`
+ * the chains' film is the combination, direct light included, by weights that `teacher` has learned, and `combination`
  * has learned this generation's variances. `teacher` may be `combination` itself if generations are independent. Once
  * *stop is 1 nothing more is learned, since no generation follows. Fails only when out of memory. */
 bool combination_generation(Combination *combination, Combination *teacher, Film *const films[ESTIMATOR_COUNT],
@@ -37,7 +37,8 @@ typedef struct StepRates {
     double paths, pool;
 } StepRates;
 
-/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. */
-StepRates combination_rates(const Combination *combination);
+/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations are
+ * compared with this division of work from then on. */
+StepRates combination_rates(Combination *combination);
 
 #endif

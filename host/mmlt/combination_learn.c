@@ -19,6 +19,14 @@ size_t combination_tile_of(const Combination *combination, size_t pixel)
     return y / TILE_SIDE * (size_t)combination->tiles[0] + x / TILE_SIDE;
 }
 
+double combination_mean_light(const Combination *combination)
+{
+    double light = 0.0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        light += combination->known[i].light / (double)combination_tile_count(combination);
+    return light;
+}
+
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static float luminance_of(const int64_t *sums, double scale)
@@ -136,6 +144,23 @@ static void tiles_sum(Combination *combination)
     }
 }
 
+/* By how much the variance of a tile's sum exceeds the sum of its pixels' variances, relative to light and over all
+ * tiles: 1 if pixels are independent, more for chains, whose steps visit several of them. */
+static double correlation_of(const Combination *combination, int s)
+{
+    const double area = TILE_SIDE * TILE_SIDE;
+    double sums = 0.0, pixels = 0.0, mean = combination_mean_light(combination), dark = DARK_PART * mean * mean;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        double light = combination->known[i].light;
+        sums += pixel_series_spread(&combination->sums[s], i) / fmax(light * light + dark, SPREAD_MIN);
+    }
+    for (size_t i = 0; i < combination->direct.pixels; ++i) {
+        double light = combination->known[combination_tile_of(combination, i)].light;
+        pixels += pixel_series_spread(&combination->pixels[s], i) / fmax(light * light + dark, SPREAD_MIN);
+    }
+    return pixels > 0.0 ? fmin(fmax(sums / pixels, 1.0), area) : 1.0;
+}
+
 /* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
 static double ratio_median(const Combination *combination, int s, double *ratios)
 {
@@ -194,10 +219,28 @@ static void spreads_share(Combination *combination, int s, double *ratios)
     }
 }
 
-void combination_variances_update(Combination *combination, double *ratios)
+/* Samples of path tracing are stratified across the generations of a replica (paths_estimator.h); `other` is the other one. */
+static void stratification_apply(Combination *combination, const Combination *other)
+{
+    const int s = ESTIMATOR_PATHS;
+    const PixelWindow all = {(size_t)combination->size[0], 0, 0, (size_t)combination->size[0],
+                             (size_t)combination->size[1]};
+    double indirect = pixel_series_stratified(&combination->pixels[s], &other->pixels[s], all, DARK_PART),
+           direct = pixel_series_stratified(&combination->direct, &other->direct, all, DARK_PART);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        combination->known[i].spread[s] *= indirect;
+        combination->known[i].direct *= direct;
+    }
+}
+
+void combination_variances_update(Combination *combination, const Combination *other, double *ratios)
 {
     tiles_sum(combination);
+    stratification_apply(combination, other);
     for (int s = 0; s < SERIES_COUNT; ++s) {
+        double factor = 1.0 + CORRELATION_PART * (correlation_of(combination, s) - 1.0);
+        for (size_t i = 0; i < combination_tile_count(combination); ++i)
+            combination->known[i].spread[s] *= factor;
         spreads_share(combination, s, ratios);
         double usual = ratio_median(combination, s, ratios), known = freedom_of(combination, s);
         combination->ready[s] = known >= 1.0;

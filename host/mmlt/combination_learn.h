@@ -9,6 +9,9 @@
 
 #define TILE_SIDE 8 /* pixels a side */
 
+/* Avoids division by zero in tiles without variance or light (black ones). */
+#define SPREAD_MIN 1e-30
+
 /* Two more series of pictures, from chains: light that pools leave out, and light that path tracing leaves out. */
 #define SERIES_EXCESS ESTIMATOR_COUNT
 #define SERIES_RARE (ESTIMATOR_COUNT + 1)
@@ -27,6 +30,7 @@ typedef struct Combination {
     PixelSeries direct; /* of pixels */
     CombinationTile *known; /* one per tile */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
+    double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation, mean over the tiles */
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it; 0: best weights */
 } Combination;
@@ -35,12 +39,16 @@ typedef struct Combination {
 size_t combination_tile_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
 
+/* Mean light of a tile, in luminances summed over its pixels. */
+double combination_mean_light(const Combination *combination);
+
 /* Adds a generation's pictures to the series, until *stop becomes 1. picture, tiles: scratch, a value per pixel and per
  * tile. */
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
                              const atomic_int *stop);
 
-/* Recomputes combination->known from the series. ratios: scratch, a value per tile. */
-void combination_variances_update(Combination *combination, double *ratios);
+/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none.
+ * ratios: scratch, a value per tile. */
+void combination_variances_update(Combination *combination, const Combination *other, double *ratios);
 
 #endif

@@ -6,6 +6,9 @@
 #include "mmlt/tuning.h"
 #include "render/integrator.h"
 
+/* The first sample of a replica. The second replica's are beyond all that the first can make. */
+#define REPLICA_SAMPLES 0x40000000u
+
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool direct_only, const Guide *guide,
                           Error *error)
 {
@@ -40,10 +43,13 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
     film_clear(&paths->own.film);
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
-    uint64_t items = target > paths->done ? (target - paths->done) * run->crop_pixels : 0;
+    uint64_t fresh = target > paths->done ? target - paths->done : 0, items = fresh * run->crop_pixels;
+    uint64_t *of_replica = &paths->of_replica[generation->replica];
+    uint sequence = run->options->first_sample + (uint)generation->replica * REPLICA_SAMPLES;
+    frame->path.sobol = run->options->independent ? 0 : 1 + sequence;
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
-        frame->pass.sample_index = run->options->first_sample + (uint)(paths->done + next / run->crop_pixels);
+        frame->pass.sample_index = sequence + (uint)(*of_replica + next / run->crop_pixels);
         frame->pass.first_item = (uint)(next % run->crop_pixels);
         frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
         if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
@@ -51,7 +57,8 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
         paths->delivered += delivered;
         *whole = delivered == frame->pass.item_count;
     }
-    paths->done = target > paths->done ? target : paths->done;
+    paths->done += fresh;
+    *of_replica += fresh;
     paths->own.film.light_samples = items;
     run->chains.direct_seconds += timing_now() - begin;
     return true;

@@ -9,7 +9,8 @@ typedef struct PathsEstimator {
     Estimator own; /* film.sums: direct light, unless there is no other */
     FrameParams frame;
     uint64_t delivered; /* single-pixel samples in the generation under way */
-    uint64_t done; /* samples of every pixel so far */
+    uint64_t done; /* samples of every pixel so far ... */
+    uint64_t of_replica[REPLICAS]; /* ... in the generations of either replica: a stratified sequence each */
     double wanted; /* the same according to the plan, fractions included */
 } PathsEstimator;
 

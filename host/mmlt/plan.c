@@ -51,7 +51,7 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
     plan->chains = left < plan->chains ? (uint)left : plan->chains;
 }
 
-void plan_learn(Plan *plan, const Combination *combination)
+void plan_learn(Plan *plan, Combination *combination)
 {
     StepRates rates = combination_rates(combination);
     if (rates.paths > 0.0)

@@ -23,7 +23,7 @@ typedef struct Plan {
 void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples);
 
 /* Adopts the best rates by what is known; no change until variances are. */
-void plan_learn(Plan *plan, const Combination *combination);
+void plan_learn(Plan *plan, Combination *combination);
 
 /* Counts a generation's work. */
 void plan_count(Plan *plan, uint64_t work);

@@ -92,14 +92,24 @@
 /* Errors are relative to light^2 plus this fraction of the squared mean light. */
 #define DARK_PART 0.1
 
+/* How much the error of a tile's mean counts, against that of its pixels: chains' errors are alike in neighbouring pixels. */
+#define CORRELATION_PART 0.5
+
 /* ---- weights and plans ------------------------------------------------------------------------------------------ */
 
 /* Until variances are known, path tracing is weighted by this fraction of its work, against all of a pool's;
  * docs/TUNING.md. */
 #define FIRST_PATHS 0.25
 
+/* Weight of a generation's picture per work: until variances are known, and at most; 1 if its work is divided as is best. */
+#define FIRST_WORTH 0.25
+#define WORTH_MOST 2.0
+
 /* Plans are searched on a grid that divides time into this many parts. */
 #define PLAN_PARTS 20
+
+/* About how many of the tiles a search looks at. */
+#define PLAN_TILES 1000u
 
 /* The fraction of time for pools in the best division between pools and steps. It stands for how much of the chains'
  * variance a / T_pool + b / T_steps is due to starts and how much to steps: POOL_PART = sqrt(a) / (sqrt(a) + sqrt(b));

@@ -30,6 +30,34 @@ static bool halves_init(RenderLayers *layers, const Film *film, Error *error)
     return true;
 }
 
+/* Pixels a side of the tiles in which stratification is taken to do the same for all pixels. */
+#define TILE 8u
+
+/* Makes all values of a tile count alike, however bright they are (pixel_series_stratified). */
+#define ALIKE 1e6
+
+static size_t tiles_along(size_t pixels)
+{
+    return (pixels + TILE - 1) / TILE;
+}
+
+static bool variance_init(RenderLayers *layers, const Film *film, Error *error)
+{
+    for (int i = 0; i < 2; ++i)
+        layers->size[i] = (size_t)(film->crop[i + 2] - film->crop[i]);
+    size_t tiles = tiles_along(layers->size[0]) * tiles_along(layers->size[1]);
+    for (int i = 0; i < 2; ++i) {
+        layers->stratified[i] = calloc(tiles, sizeof *layers->stratified[i]);
+        if (!layers->stratified[i])
+            return error_memory(error, tiles * sizeof *layers->stratified[i], "variances");
+    }
+    for (int i = 0; i < 2; ++i)
+        if (!pixel_series_init(&layers->own[i], film_pixels(film), 3, error) ||
+            !pixel_series_init(&layers->light[i], film_pixels(film), 3, error))
+            return false;
+    return true;
+}
+
 static bool aovs_init(RenderLayers *layers, const Film *film, double radius, Error *error)
 {
     for (uint aov = 0; aov < AOV_COUNT; ++aov) {
@@ -46,52 +74,83 @@ bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film,
 {
     *layers = (RenderLayers){.wanted = wanted};
     return (!wants(layers, LAYER_HALVES) || halves_init(layers, film, error)) &&
-           (!wants(layers, LAYER_VARIANCE) || (pixel_series_init(&layers->own, film_pixels(film), 3, error) &&
-                                               pixel_series_init(&layers->light, film_pixels(film), 3, error))) &&
+           (!wants(layers, LAYER_VARIANCE) || variance_init(layers, film, error)) &&
            aovs_init(layers, film, radius, error);
 }
 
 void render_layers_destroy(RenderLayers *layers)
 {
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 2; ++i) {
         film_destroy(&layers->halves[i]);
+        pixel_series_destroy(&layers->own[i]);
+        pixel_series_destroy(&layers->light[i]);
+        free(layers->stratified[i]);
+    }
     for (uint aov = 0; aov < AOV_COUNT; ++aov)
         film_destroy(&layers->aovs[aov]);
-    pixel_series_destroy(&layers->own);
-    pixel_series_destroy(&layers->light);
     *layers = (RenderLayers){0};
 }
 
 /* ---- halves and variance ----------------------------------------------------------------------------------------- */
 
-static bool variance_add(RenderLayers *layers, const Film *part, Error *error)
+static void stratified_set(const RenderLayers *layers, const PixelSeries halves[2], float *stratified)
+{
+    size_t columns = tiles_along(layers->size[0]), rows = tiles_along(layers->size[1]);
+    for (size_t tile = 0; tile < columns * rows; ++tile) {
+        PixelWindow window = {layers->size[0], tile % columns * TILE, tile / columns * TILE, 0, 0};
+        window.x1 = window.x0 + TILE < layers->size[0] ? window.x0 + TILE : layers->size[0];
+        window.y1 = window.y0 + TILE < layers->size[1] ? window.y0 + TILE : layers->size[1];
+        stratified[tile] = (float)pixel_series_stratified(&halves[0], &halves[1], window, ALIKE);
+    }
+}
+
+static bool variance_add(RenderLayers *layers, const Film *part, unsigned half, Error *error)
 {
     size_t bytes = 3 * film_pixels(part) * sizeof(float);
     float *rgb = malloc(bytes);
     if (!rgb)
         return error_memory(error, bytes, "variances");
     film_resolve_part(part, FILM_OWN, 1.0f, rgb);
-    pixel_series_add(&layers->own, rgb, part->counts, 1.0);
+    pixel_series_add(&layers->own[half], rgb, part->counts, 1.0);
     if (part->light_samples > 0) {
         film_resolve_part(part, FILM_LIGHT, 1.0f, rgb);
-        pixel_series_add(&layers->light, rgb, NULL, (double)part->light_samples);
+        pixel_series_add(&layers->light[half], rgb, NULL, (double)part->light_samples);
     }
     free(rgb);
+    stratified_set(layers, layers->own, layers->stratified[0]);
+    stratified_set(layers, layers->light, layers->stratified[1]);
     return true;
+}
+
+/* Variance of the mean over both halves. */
+static double variance_of(const PixelSeries halves[2], size_t value)
+{
+    size_t pixel = value / (size_t)halves->channels;
+    double sum = 0.0, weight = 0.0;
+    for (int i = 0; i < 2; ++i) {
+        double own = (double)halves[i].weight[pixel];
+        sum += own * own * pixel_series_variance(&halves[i], value);
+        weight += own;
+    }
+    return weight > 0.0 ? sum / (weight * weight) : 0.0;
 }
 
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error)
 {
     return (!wants(layers, LAYER_HALVES) || film_merge(&layers->halves[half], part, error)) &&
-           (!wants(layers, LAYER_VARIANCE) || variance_add(layers, part, error));
+           (!wants(layers, LAYER_VARIANCE) || variance_add(layers, part, half, error));
 }
 
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb)
 {
     double square = (double)scale * (double)scale;
-    for (size_t value = 3 * first; value < 3 * (first + count); ++value)
-        rgb[value - 3 * first] = (float)(square * (pixel_series_variance(&layers->own, value) +
-                                                   pixel_series_variance(&layers->light, value)));
+    for (size_t value = 3 * first; value < 3 * (first + count); ++value) {
+        size_t x = value / 3 % layers->size[0], y = value / 3 / layers->size[0];
+        size_t tile = y / TILE * tiles_along(layers->size[0]) + x / TILE;
+        rgb[value - 3 * first] =
+            (float)(square * ((double)layers->stratified[0][tile] * variance_of(layers->own, value) +
+                              (double)layers->stratified[1][tile] * variance_of(layers->light, value)));
+    }
 }
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */

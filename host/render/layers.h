@@ -37,7 +37,9 @@ typedef enum Layer { LAYER_LIST(LAYER_ENUMERATE) LAYER_COUNT } Layer;
 typedef struct RenderLayers {
     unsigned wanted; /* LAYER_BIT of each */
     Film halves[2];
-    PixelSeries own, light; /* for the variance of FILM_OWN and of FILM_LIGHT */
+    PixelSeries own[2], light[2]; /* for the variance of FILM_OWN and of FILM_LIGHT: of both halves */
+    size_t size[2]; /* of the crop */
+    float *stratified[2]; /* what is left of these two, per tile (pixel_series_stratified) */
     Film aovs[AOV_COUNT];
     unsigned aov_samples; /* samples per pixel so far */
 } RenderLayers;

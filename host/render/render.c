@@ -123,7 +123,7 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->path.only_s = options->only_strategy ? options->strategy[0] : NONE;
     frame->path.only_t = options->only_strategy ? options->strategy[1] : NONE;
     frame->path.unweighted = options->unweighted;
-    frame->path.sobol = !options->independent && !integrator->render;
+    frame->path.sobol = options->independent || integrator->render ? 0 : 1;
     frame->pass.seed_low = (uint)options->seed;
     frame->pass.seed_high = (uint)(options->seed >> 32);
     frame->pass.sample_index = options->first_sample;

@@ -59,7 +59,9 @@ typedef struct PathParams {
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */
     uint unweighted; /* 1: all MIS weights are 1 */
-    uint sobol; /* 1: random numbers of a pixel's samples are stratified (math/sobol.h) */
+    /* 1 + b: random numbers of a pixel's samples from b on are stratified (math/sobol.h), independently of those from
+     * another b on; 0: all are independent */
+    uint sobol;
 } PathParams;
 
 /* How the estimators of MMLT divide a path's contribution (path/partition.h). */

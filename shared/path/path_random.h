@@ -1,5 +1,5 @@
 /* Which random numbers a path uses for what. A number is a function of (seed, pixel, sample, block of four): nothing is
- * stored, and any path can be replayed. With PathParams.sobol, the samples of a pixel are stratified in the four dimensions
+ * stored, and any path can be replayed. With PathParams.sobol, samples of a pixel are stratified in the four dimensions
  * of every block (math/sobol.h); of different pixels, blocks and seeds they are independent. */
 #ifndef TWINLIGHT_PATH_PATH_RANDOM_H
 #define TWINLIGHT_PATH_PATH_RANDOM_H
@@ -20,9 +20,10 @@ SHARED_FUNCTION Random4 sample_random(__global const FrameParams *frame, uint pi
                                       uint stream, uint pair)
 {
     uint low = frame->pass.seed_low, high = frame->pass.seed_high;
-    if (frame->path.sobol == 0u)
+    uint behind = frame->path.sobol;
+    if (behind == 0u)
         return random_four(pixel, sample, block, stream, low, high);
-    return sobol_four(sample, random_four(pixel, ~0u, block, stream, low, high), pair);
+    return sobol_four(sample + 1u - behind, random_four(pixel, 0u - behind, block, stream, low, high), pair);
 }
 
 SHARED_FUNCTION Random4 path_random(__global const FrameParams *frame, uint pixel, uint sample, uint block)

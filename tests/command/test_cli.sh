@@ -81,7 +81,6 @@ expect 2 'the image of pt has no layers of light' render --integrator=pt --layer
 expect 2 'the image of bdpt has no layers of light' render --integrator=bdpt --layers=by-depth "$scene"
 expect 2 '--despeckle=0: out of range' render --despeckle=0 "$scene"
 expect 2 '--sampler=best: there is no such sampler' render --sampler=best "$scene"
-expect 2 '--sampler=sobol is not for mmlt' render --sampler=sobol "$scene"
 expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
 expect 2 '--heuristic is for bidirectional integrators' render --integrator=pt --heuristic=balance "$scene"
 expect 2 '--strategy is for bidirectional integrators' render --integrator=pt --strategy=1,2 "$scene"
@@ -257,6 +256,10 @@ render --integrator=bdpt --sampler=sobol --max-depth=3 -o sobol.exr "$scene"
 result '--sampler changes nothing' $?
 cmp -s sobol.exr power.exr
 result 'sobol is not the default' $?
+render --integrator=mmlt --sampler=independent --max-depth=3 -o independent.exr "$scene"
+render --integrator=mmlt --max-depth=3 -o sobol.exr "$scene"
+! cmp -s independent.exr sobol.exr
+result '--sampler changes nothing of mmlt' $?
 render --integrator=bdpt --strategy=1,2 --max-depth=3 -o weighted.exr "$scene"
 render --integrator=bdpt --strategy=1,2 --unweighted --max-depth=3 -o unweighted.exr "$scene"
 ! cmp -s weighted.exr unweighted.exr

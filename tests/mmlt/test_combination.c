@@ -74,6 +74,72 @@ static double generation(Estimators *estimators)
     return generation_until(estimators, &never);
 }
 
+/* Path tracing whose samples cancel each other's errors over the generations of a replica (_i 1): the replicas' means
+ * differ less than their generations say, and so path tracing gets most of the weight. If all samples are independent
+ * (_i 0), replicas change nothing: test_weights. */
+START_TEST(test_stratified)
+{
+    Estimators replicas[2];
+    Error error = {0};
+    static double errors[2][PIXELS];
+    for (int r = 0; r < 2; ++r) {
+        estimators_init(&replicas[r]);
+        replicas[r].draws = (uint)r << 30;
+    }
+    for (int g = 0; g < 80; ++g) {
+        Estimators *own = &replicas[g % 2];
+        estimator_set(own, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(own, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
+        estimator_set(own, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
+        for (size_t i = 0; i < PIXELS && _i == 1; ++i) {
+            double *last = &errors[g % 2][i], now = g / 2 % 2 == 0 ? 2.0 * noise(own) / sqrt(2.0) : -*last;
+            *last = now;
+            for (size_t c = 0; c < 3; ++c)
+                own->films[ESTIMATOR_PATHS].light_sums[3 * i + c] = llrint((1.0 + now) * 2.0 * 0x1p30);
+        }
+        Film *const films[ESTIMATOR_COUNT] = {&own->films[0], &own->films[1], &own->films[2]};
+        ck_assert(combination_generation(&own->combination, &replicas[1 - g % 2].combination, films, &never, &error));
+    }
+    double weight = replicas[0].combination.weight[ESTIMATOR_PATHS];
+    printf("stratified %d: weight of path tracing %.3f\n", _i, weight);
+    if (_i == 1)
+        ck_assert_double_gt(weight, 0.7);
+    else
+        ck_assert_double_eq_tol(weight, 0.5 / 8.5, 0.02);
+    for (int r = 0; r < 2; ++r)
+        estimators_destroy(&replicas[r]);
+}
+END_TEST
+
+/* Chains whose error is the same in all pixels of a tile: the variance of the tile's mean is 64 times that of independent
+ * pixels, and counts as much as that of the pixels. */
+START_TEST(test_correlated)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 200; ++g) {
+        double errors[PIXELS / 64];
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 0.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
+        for (size_t tile = 0; tile < PIXELS / 64; ++tile)
+            errors[tile] = noise(&estimators) / sqrt(4.0);
+        for (size_t i = 0; i < 3 * PIXELS; ++i) {
+            size_t x = i / 3 % SIDE, y = i / 3 / SIDE;
+            estimators.films[ESTIMATOR_CHAINS].light_sums[i] =
+                llrint((1.0 + errors[y / 8 * (SIDE / 8) + x / 8]) * 4.0 * 0x1p30);
+        }
+        generation(&estimators);
+    }
+    /* 4 / (1 + 64) x 2, 1 / 0.25, 2 / 4 */
+    const double *weight = estimators.combination.weight, chains = 8.0 / 65.0, all = chains + 4.5;
+    printf("correlated: weights %.3f %.3f %.3f\n", weight[0], weight[1], weight[2]);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_CHAINS], chains / all, 0.01);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], 4.0 / all, 0.02);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
 /* A generation that a stop has ended is shown like any other, and nothing is learnt from it. */
 START_TEST(test_stopped)
 {
@@ -368,6 +434,8 @@ int main(void)
     Suite *suite = suite_create("combination");
     TCase *tcase = tcase_create("combination");
     tcase_add_test(tcase, test_weights);
+    tcase_add_loop_test(tcase, test_stratified, 0, 2);
+    tcase_add_test(tcase, test_correlated);
     tcase_add_test(tcase, test_stopped);
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
     tcase_add_loop_test(tcase, test_absent, 0, 6);

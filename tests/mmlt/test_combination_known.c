@@ -138,7 +138,7 @@ START_TEST(test_weights_known)
         others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
     ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
     double work = (double)pupil.film.light_samples / PIXELS;
-    TEST_NEAR(work * PIXELS, estimators_work(samples), 1.0);
+    TEST_NEAR(work * PIXELS, FIRST_WORTH * estimators_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
         const CombinationTile *tile = &teacher.combination.known[combination_tile_of(&teacher.combination, i)];
         double w = 0.0, c = weight_search(tile, samples, false, 0.0);
@@ -255,6 +255,58 @@ START_TEST(test_plan_known)
 }
 END_TEST
 
+/* Once a plan is known, a generation counts by its work times the error of the plan's division over that of its own, direct
+ * light left out: also one without path tracing, which may count twice at most. */
+START_TEST(test_worth_known)
+{
+    Known teacher, pupil, others[2];
+    Error error = {0};
+    double costs[ESTIMATOR_COUNT], w, c;
+    known_init(&teacher, 21);
+    known_init(&pupil, 22);
+    known_init(&others[0], 23);
+    known_init(&others[1], 24);
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        double one[ESTIMATOR_COUNT] = {0.0};
+        one[s] = 1.0;
+        costs[s] = estimators_work(one);
+    }
+    for (int round = 0; round < ROUNDS; ++round) {
+        known_tell(&teacher, 4.0);
+        StepRates rates = combination_rates(&teacher.combination);
+        double samples[ESTIMATOR_COUNT] = {4.0 * PIXELS, floor(octaves(&teacher, 2.0) * PIXELS),
+                                           round % 2 == 0 ? 0.0 : floor(octaves(&teacher, 2.0) * PIXELS)};
+        double best[ESTIMATOR_COUNT] = {1.0, rates.pool, rates.paths}, errors[2] = {0.0};
+        double scale = estimators_work(samples) / estimators_work(best), dark = dark_square(&teacher.combination);
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            best[s] *= scale;
+        for (size_t i = 0; i < combination_tile_count(&teacher.combination); ++i)
+            for (int k = 0; k < 2; ++k) {
+                const double *of = k == 0 ? best : samples;
+                CombinationTile tile = teacher.combination.known[i];
+                double factor = chains_vary(&teacher.combination, of, costs);
+                tile.spread[ESTIMATOR_CHAINS] *= factor;
+                tile.spread[SERIES_EXCESS] *= factor;
+                tile.spread[SERIES_RARE] *= factor;
+                double least = of[ESTIMATOR_PATHS] > 0.0
+                                   ? least_variance(&tile, of, &w, &c)
+                                   : combined_variance(&tile, of, 0.0, weight_search(&tile, of, false, 0.0));
+                errors[k] += least / (tile.light * tile.light + dark);
+            }
+        Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            films[s]->light_samples = (uint64_t)samples[s];
+        ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
+        double expected = estimators_work(samples) * fmin(errors[0] / errors[1], 2.0);
+        TEST_NEAR((double)pupil.film.light_samples / expected, 1.0, 1e-4);
+    }
+    known_destroy(&teacher);
+    known_destroy(&pupil);
+    known_destroy(&others[0]);
+    known_destroy(&others[1]);
+}
+END_TEST
+
 /* ---- importance and visits ---------------------------------------------------------------------------------------- */
 
 static uint cell_of(size_t x, size_t y)
@@ -355,6 +407,7 @@ TCase *combination_known_tests(void)
     tcase_add_loop_test(tcase, test_weights_known, 0, 3);
     tcase_add_test(tcase, test_errors_known);
     tcase_add_test(tcase, test_plan_known);
+    tcase_add_test(tcase, test_worth_known);
     tcase_add_test(tcase, test_importance_known);
     tcase_add_loop_test(tcase, test_visits_known, 0, 2);
     return tcase;

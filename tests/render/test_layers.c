@@ -125,6 +125,24 @@ START_TEST(test_variables_edge)
 }
 END_TEST
 
+/* So is path tracing, across generations: direct light at the edge of the wall is closer to the truth than that of
+ * independent samples, whose standard deviation is half the difference of both sides over the root of their number. */
+START_TEST(test_direct_edge)
+{
+    RenderedImage image;
+    double square = 0.0;
+    fixture_render(&(RenderSetup){.text = LOW_WALL, .samples = 200, .integrator = integrator_mmlt()}, &image);
+    double samples = (double)image.film.counts[32];
+    for (size_t i = 32; i < 40; ++i)
+        square += pow((double)image.rgb[3 * i + 1] - 0.75, 2.0) / 8.0;
+    double independent = 0.25 * 0.25 / samples;
+    printf("edge: %.0f samples, variance %.3g of independent ones\n", samples, square / independent);
+    ck_assert_double_gt(samples, 50.0);
+    ck_assert_double_lt(square, 0.2 * independent);
+    fixture_destroy(&image);
+}
+END_TEST
+
 /* ---- halves and variance ----------------------------------------------------------------------------------------- */
 
 /* The two halves have the image's film size, and all sums are sums of theirs. */
@@ -213,7 +231,7 @@ START_TEST(test_variance)
                                       .integrator = integrator_mmlt(),
                                       .layers = &layers},
                        &image);
-        render_layers_variance(&layers, 1.0f, 0, layers.own.pixels, variance);
+        render_layers_variance(&layers, 1.0f, 0, layers.own[0].pixels, variance);
         for (size_t i = 0; i < VALUES; ++i) {
             sum[i] += (double)image.rgb[i];
             square[i] += (double)image.rgb[i] * (double)image.rgb[i];
@@ -240,6 +258,7 @@ int main(void)
     tcase_add_test(tcase, test_despeckle);
     tcase_add_loop_test(tcase, test_variables, 0, 3);
     tcase_add_test(tcase, test_variables_edge);
+    tcase_add_test(tcase, test_direct_edge);
     tcase_add_test(tcase, test_halves);
     tcase_add_loop_test(tcase, test_by_depth, 0, 2);
     tcase_add_test(tcase, test_variance);
