@@ -219,7 +219,7 @@ static void spreads_share(Combination *combination, int s, double *ratios)
     }
 }
 
-/* Samples of path tracing are stratified across the generations of a replica (paths_estimator.h); `other` is the other one. */
+/* Samples of path tracing are stratified across the generations of a replica (paths_estimator.h); `other` is the other one, if there are two. */
 static void stratification_apply(Combination *combination, const Combination *other)
 {
     const int s = ESTIMATOR_PATHS;

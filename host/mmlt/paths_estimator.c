@@ -6,8 +6,8 @@
 #include "mmlt/tuning.h"
 #include "render/integrator.h"
 
-/* The first sample of a replica. The second replica's are beyond all that the first can make. */
-#define REPLICA_SAMPLES 0x40000000u
+/* The number of the first sample in odd generations, beyond all that even ones can make. */
+#define HALF_SAMPLES 0x40000000u
 
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool direct_only, const Guide *guide,
                           Error *error)
@@ -44,12 +44,12 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
     uint64_t fresh = target > paths->done ? target - paths->done : 0, items = fresh * run->crop_pixels;
-    uint64_t *of_replica = &paths->of_replica[generation->replica];
-    uint sequence = run->options->first_sample + (uint)generation->replica * REPLICA_SAMPLES;
+    uint half = generation->index % REPLICAS;
+    uint sequence = run->options->first_sample + half * HALF_SAMPLES;
     frame->path.sobol = run->options->independent ? 0 : 1 + sequence;
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
-        frame->pass.sample_index = sequence + (uint)(*of_replica + next / run->crop_pixels);
+        frame->pass.sample_index = sequence + (uint)(paths->of_half[half] + next / run->crop_pixels);
         frame->pass.first_item = (uint)(next % run->crop_pixels);
         frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
         if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
@@ -58,7 +58,7 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
         *whole = delivered == frame->pass.item_count;
     }
     paths->done += fresh;
-    *of_replica += fresh;
+    paths->of_half[half] += fresh;
     paths->own.film.light_samples = items;
     run->chains.direct_seconds += timing_now() - begin;
     return true;

@@ -10,7 +10,7 @@ typedef struct PathsEstimator {
     FrameParams frame;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
-    uint64_t of_replica[REPLICAS]; /* ... in the generations of either replica: a stratified sequence each */
+    uint64_t of_half[REPLICAS]; /* ... in even and in odd generations, the layers' halves: a stratified sequence each */
     double wanted; /* the same according to the plan, fractions included */
 } PathsEstimator;
 
