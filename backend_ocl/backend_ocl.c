@@ -19,6 +19,10 @@
  * will do. */
 #define GROUP_ITEMS 64u
 
+/* BackendStatistics.width of a GPU per compute unit. Its commands start one after the other, with delays in which it is
+ * idle; an H100 runs 2048 work-items on each of its 132 units. */
+#define WIDTH_PER_GPU_UNIT 1024u
+
 struct Backend {
     OclDevice device;
     cl_context context;
@@ -29,7 +33,7 @@ struct Backend {
     FilmAdders *adders;
     int adder_count;
     Batch batches[BATCH_SLOTS];
-    bool film_on_device; /* if the sink supports it */
+    FilmPlace film;
     int slots; /* batches in flight: BATCH_SLOTS, or 1 without overlap */
     uint64_t next_batch;
     double build_seconds;
@@ -89,6 +93,7 @@ static void launcher_init(Backend *backend, const BackendOptions *options)
     launcher->records = options->record_spans;
     launcher->group = backend->device.group_limit < GROUP_ITEMS ? 1 : GROUP_ITEMS;
     launcher->first_check = 2;
+    launcher->check_every = 1;
     launcher->fail_at = fail ? strtoull(fail, NULL, 10) : UINT64_MAX;
 }
 
@@ -108,9 +113,9 @@ static bool scene_build(Backend *backend, const BackendScene *scene, const Backe
 static bool backend_build(Backend *backend, const BackendScene *scene, const BackendOptions *options, Error *error)
 {
     if (!ocl_device_choose(options->device, &backend->device, error) ||
-        (options->film_on_device && !device_film_check(&backend->device, error)))
+        (options->film == FILM_ON_DEVICE && !device_film_check(&backend->device, error)))
         return false;
-    backend->film_on_device = options->film_on_device;
+    backend->film = options->film;
     rounding_ask(&backend->device);
     backend->adder_count = adder_count(options);
     backend->slots = environment_is("TWINLIGHT_OVERLAP", "0") ? 1 : BATCH_SLOTS;
@@ -198,7 +203,7 @@ static bool device_failed(Backend *backend, Error *error)
 static bool batches_run(Backend *backend, const FrameParams *frame, const StepList *list, const atomic_int *stop,
                         bool *dropped, Error *error)
 {
-    uint batch = backend->memory.batch;
+    uint batch = device_memory_batch(&backend->memory, list);
     for (uint first = 0; first < frame->pass.item_count && !*stop && !*dropped;) {
         uint left = frame->pass.item_count - first, count = left < batch ? left : batch;
         int slot = (int)(backend->next_batch % (uint64_t)backend->slots);
@@ -214,13 +219,24 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
     return true;
 }
 
+/* On a GPU the sums of a pass cost about as much to clear, copy and merge as that many splats to copy and add. */
+static bool film_is_on_device(const Backend *backend, const FrameParams *frame, const StepList *list,
+                              const SplatSink *sink)
+{
+    uint64_t splats = (uint64_t)frame->pass.item_count * step_list_splats(list);
+    if (backend->film != FILM_BY_DEVICE)
+        return backend->film == FILM_ON_DEVICE;
+    return ocl_device_is_gpu(&backend->device) && backend->device.info.atomics64 && splats >= sink->sum_words &&
+           device_memory_film_fits(&backend->memory, sink->sum_words * sizeof(cl_ulong));
+}
+
 /* Runs all batches and waits until no command is in flight. */
 static bool pass_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
                      const atomic_int *stop, Error *error)
 {
     Launcher *launcher = &backend->launcher;
     bool splats = list->words_per_item[BUFFER_SPLATS] > 0;
-    launcher->adds = splats && backend->film_on_device && sink->sums;
+    launcher->adds = splats && sink->sums && film_is_on_device(backend, frame, list, sink);
     launcher->stop = stop;
     launcher->whole = sink->whole;
     adders_begin(backend->adders, splats && !launcher->adds ? sink : NULL);
@@ -265,7 +281,7 @@ static bool backend_ocl_inspect(Backend *backend, const FrameParams *frame, cons
 {
     bool done =
         device_memory_reserve(&backend->memory, list, error) && pass_data_begin(&backend->memory, frame, list, error);
-    uint size = backend->memory.batch;
+    uint size = device_memory_batch(&backend->memory, list);
     for (uint first = 0; done && first < frame->pass.item_count; first += size) {
         uint left = frame->pass.item_count - first;
         Batch *batch = batch_prepare(backend, 0, frame, first, left < size ? left : size);
@@ -296,6 +312,7 @@ static void backend_ocl_statistics(Backend *backend, BackendStatistics *statisti
     statistics->build_seconds = backend->build_seconds;
     statistics->bytes = backend->memory.bytes;
     statistics->threads = backend->adder_count;
+    statistics->width = ocl_device_is_gpu(&backend->device) ? WIDTH_PER_GPU_UNIT * info->units : 0;
     snprintf(statistics->device, sizeof statistics->device, "%s", info->name);
 }
 

@@ -152,8 +152,13 @@ static void counted_release(Launch *launch)
     launch->counted = NULL;
 }
 
-/* Counts live rays and traces them. From one turn before first_check on, the count is read back while the rays are
- * traced, so that the device stays busy while the host waits for it. */
+static bool turn_is_checked(const Launch *launch, uint turn)
+{
+    return turn >= launch->launcher->first_check && turn % launch->launcher->check_every == 0;
+}
+
+/* Counts live rays and traces them. Before a check, the count of this turn and of the one before is read back while the
+ * rays are traced, so that the device stays busy while the host waits for it. */
 static bool trace_closest(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -162,7 +167,7 @@ static bool trace_closest(Launch *launch)
     counted_release(launch);
     if (!kernel_enqueue(launch, KERNEL_count_closest, (items + COUNT_RAYS - 1) / COUNT_RAYS, false))
         return false;
-    if (launch->turn + 1 >= launcher->first_check &&
+    if ((turn_is_checked(launch, launch->turn) || turn_is_checked(launch, launch->turn + 1)) &&
         !check(launch,
                clEnqueueReadBuffer(launcher->compute, launcher->memory->state[BUFFER_COUNTS], CL_FALSE,
                                    COUNT_CLOSEST * sizeof(uint), sizeof(uint),
@@ -197,11 +202,11 @@ static bool splats_put_aside(Launch *launch)
                  "putting splats aside");
 }
 
-/* Sets *idle if the turn just enqueued has no live ray; false before turn first_check, where counts are not read. */
+/* Sets *idle if the turn just enqueued has no live ray; false in turns without a check. */
 static bool turn_was_idle(Launch *launch, bool *idle)
 {
     *idle = false;
-    if (launch->turn < launch->launcher->first_check)
+    if (!turn_is_checked(launch, launch->turn))
         return true;
     if (!check(launch, clFlush(launch->launcher->compute), "starting commands") ||
         !check(launch, clWaitForEvents(1, &launch->counted), "tracing rays"))
@@ -254,8 +259,11 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
     return done;
 }
 
+/* A GPU waits longer for the host than a few turns without a live ray take. */
+#define GPU_CHECK_EVERY 4u
+
 /* The next batch starts to check for live rays one turn before this one ended, since batches differ by a turn or two.
- * With several walks in the list, each of which may end early, every turn is checked. */
+ * With several walks in the list, each of which may end early, checks begin at once. */
 static void first_check_adapt(Launch *launch)
 {
     Launcher *launcher = launch->launcher;
@@ -265,12 +273,14 @@ static void first_check_adapt(Launch *launch)
             continue;
         if (target > 0 && launch->list->steps[i].target != target) {
             launcher->first_check = 2;
+            launcher->check_every = ocl_device_is_gpu(launcher->device) ? GPU_CHECK_EVERY : 1;
             return;
         }
         target = launch->list->steps[i].target;
     }
     uint turns = launch->idle_turn > 0 ? launch->idle_turn : launch->turn;
     launcher->first_check = turns > 2 ? turns - 1 : 2;
+    launcher->check_every = 1;
 }
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */

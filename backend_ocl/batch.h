@@ -36,7 +36,9 @@ typedef struct Launcher {
     bool adds; /* splats are added to memory->film instead of being copied to the host */
     bool records; /* keep the events of all commands, not only of ray queries */
     size_t group; /* work-items per work-group */
-    uint first_check; /* closest-hit query (turn) at which the host first checks whether a batch has ended early */
+    /* Closest-hit query (turn) at which the host first checks whether a batch has ended early, and how many turns there
+     * are from one check to the next. */
+    uint first_check, check_every;
     const atomic_int *stop; /* of the pass: nonzero when batches are to end at the next step; NULL: never */
     bool whole; /* SplatSink.whole */
     uint64_t fail_at; /* number of the batch that fails on purpose, for tests; UINT64_MAX: none */

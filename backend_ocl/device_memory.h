@@ -40,7 +40,8 @@ typedef struct DeviceMemory {
     size_t photon_bytes;
     cl_mem film; /* sums of the film, if the device adds splats (device_film.h) */
     uint words_per_item[BUFFER_COUNT]; /* for which the state was allocated */
-    uint batch; /* items per batch; 0: no state yet */
+    uint batch; /* items per batch at most; 0: no state yet */
+    uint64_t splat_words; /* of each batch in flight */
     uint batch_wanted; /* --batch, set by the owner; 0: chosen automatically */
     size_t scene_bytes, film_bytes, bytes;
 } DeviceMemory;
@@ -56,7 +57,16 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
 /* Allocates state for this list, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
 
-/* Allocates a film of `bytes` bytes, unless the existing one suffices. No command may be in flight. */
+/* Items per batch of a list for which memory is reserved. Fewer than `batch` if the list has so many splats per item, as
+ * those of chains, that pinning host memory for them all would take seconds. */
+uint device_memory_batch(const DeviceMemory *memory, const StepList *list);
+
+/* Splats per item: one for every STEP_SPLAT and one for the end of the list. */
+uint step_list_splats(const StepList *list);
+
+/* Whether the sums of a film of `bytes` bytes fit beside all else; allocates them, unless the existing ones suffice (no
+ * command may be in flight). */
+bool device_memory_film_fits(const DeviceMemory *memory, size_t bytes);
 bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error);
 
 /* Copies a map of photons to the device unless it is there already. photons: may be NULL. No command may be in flight. */

@@ -50,6 +50,11 @@ static const char *device_kind(cl_device_id id)
                                                : "device";
 }
 
+bool ocl_device_is_gpu(const OclDevice *device)
+{
+    return strcmp(device->info.kind, "GPU") == 0;
+}
+
 /* Kernels use only + - * / and sqrt in single precision (docs/NUMERICS.md): if these are correctly rounded and
  * denormals are kept, every device computes the same bits as the CPU. */
 static bool device_same_bits(const OclDevice *device)

@@ -25,6 +25,8 @@ size_t ocl_devices_find(OclDevice *devices, size_t capacity);
  * warning if the claim is false. A probe takes a fraction of a second; unless `anew`, a stored result is used. */
 void ocl_device_probe(OclDevice *device, bool anew);
 
+bool ocl_device_is_gpu(const OclDevice *device);
+
 /* BackendInterface.devices (backend/backend.h). */
 size_t ocl_devices_list(BackendDevice *devices, size_t capacity, bool probe_all);
 

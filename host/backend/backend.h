@@ -105,11 +105,18 @@ typedef struct BackendScene {
     size_t instance_count;
 } BackendScene;
 
+/* Where the splats of a device are added to the film. The image is the same. */
+typedef enum FilmPlace {
+    FILM_BY_DEVICE, /* on GPUs that can and have room, if the pass has splats enough to be worth the copy of the sums */
+    FILM_ON_HOST,
+    FILM_ON_DEVICE /* to sums of its own, if the sink has `sums` */
+} FilmPlace;
+
 typedef struct BackendOptions {
     int threads; /* 0: one per processor */
     const char *device; /* device number or part of its name, for backends with several devices; NULL: the first */
     uint batch; /* items that a device takes through the list at a time; 0: chosen by the backend */
-    bool film_on_device; /* a device adds splats to sums of its own, if the sink has `sums` */
+    FilmPlace film;
     bool record_spans; /* record timings, for `spans` */
 } BackendOptions;
 
@@ -149,6 +156,7 @@ typedef struct BackendStatistics {
     double build_seconds; /* time to build the acceleration structure */
     size_t bytes; /* memory of device or backend now in use */
     int threads;
+    uint width; /* items that a device must work on at a time to be busy: a pass of few takes as long as one of these */
     char device[256]; /* its name */
 } BackendStatistics;
 
@@ -156,7 +164,7 @@ typedef struct BackendStatistics {
 typedef struct SplatSink {
     /* Receives the splat buffer of a finished chunk: `count` items at `stride`, fields as in layout/state.h. */
     void (*splats)(void *context, const uint *splats, uint count, uint stride);
-    /* Receives instead the sums made on a device (BackendOptions.film_on_device): `sum_words` words, laid out as in
+    /* Receives instead the sums made on a device (BackendOptions.film): `sum_words` words, laid out as in
      * camera/film_sum.h for the crop and film_exponent of the pass. NULL: not supported. */
     void (*sums)(void *context, ulong *words);
     size_t sum_words;

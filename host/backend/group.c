@@ -181,6 +181,7 @@ static void group_statistics(Backend *backend, BackendStatistics *statistics)
         statistics->build_seconds += own.build_seconds;
         statistics->bytes += own.bytes;
         statistics->threads += own.threads;
+        statistics->width += own.width;
         device_append(statistics->device, sizeof statistics->device, own.device);
     }
 }

@@ -177,7 +177,7 @@ static bool backend_build(RenderJob *job, Error *error)
     const RenderCommand *command = job->command;
     const BackendOptions options = {.threads = command->threads,
                                     .batch = command->batch,
-                                    .film_on_device = command->film && strcmp(command->film, "device") == 0,
+                                    .film = command->film_place,
                                     .record_spans = command->trace != NULL};
     return backend_choices_open(&command->backends, &view, &options, &job->backend, error);
 }

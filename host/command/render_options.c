@@ -23,7 +23,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
                        "OpenCL devices, by number or part of a name as in twinlight devices (default: 0)"},
     [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
-    [OPTION_FILM] = {"film", 0, "WHERE", "what adds the paths of OpenCL devices to the film: host (default) or device"},
+    [OPTION_FILM] = {"film", 0, "WHERE",
+                     "what adds the paths of OpenCL devices to the film: host or device (default: by device)"},
     [OPTION_MLT] = {"mlt", 0, "KEY=VALUE,...", "mmlt: the switches listed below; several --mlt add up"},
     /* deprecated (command/mlt_option.h) */
     [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME", NULL},
@@ -147,7 +148,8 @@ static bool heuristic_set(RenderCommand *command, const char *value, Error *erro
 static bool film_set(RenderCommand *command, const char *value, Error *error)
 {
     command->film = value;
-    if (strcmp(value, "device") == 0 || strcmp(value, "host") == 0)
+    command->film_place = strcmp(value, "device") == 0 ? FILM_ON_DEVICE : FILM_ON_HOST;
+    if (command->film_place == FILM_ON_DEVICE || strcmp(value, "host") == 0)
         return true;
     error_set(error, "--film=%s: there is no such place", value);
     return error_fix(error, "use host or device");

@@ -32,6 +32,7 @@ typedef struct RenderCommand {
     const char *device; /* as given; parsed into `backends` */
     unsigned batch;
     const char *film; /* "host" or "device" */
+    FilmPlace film_place;
     uint64_t samples;
     double seconds;
     int threads;

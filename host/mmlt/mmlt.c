@@ -56,10 +56,13 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
 
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
 {
+    BackendStatistics statistics;
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .scheme = mmlt_scheme(run->options->chains.paper)};
     options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
     plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
+    run->interface->statistics(run->backend, &statistics);
+    mmlt->plan.width = statistics.width;
     if (!estimators_init(mmlt, error))
         return false;
     for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica) {

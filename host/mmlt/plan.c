@@ -64,15 +64,35 @@ void plan_count(Plan *plan, uint64_t work)
     plan->done += work;
 }
 
+/* How many times longer a generation of `next` chains takes than one of plan->chains, which with a limit of work does
+ * not depend on the backend. Each takes as long as its chains and the backend's width together. */
+static double growth(const Plan *plan, uint next)
+{
+    double width = plan->timed ? (double)plan->width : 0.0;
+    return (width + (double)next) / (width + (double)plan->chains);
+}
+
+/* Twice as many chains if a generation may take that long; several times twice where it hardly takes longer. */
+static uint chains_grown(const Plan *plan, double seconds, double elapsed)
+{
+    double part = plan->timed ? seconds / elapsed : (double)plan->last / (double)plan->done;
+    uint next = plan->chains;
+    for (int i = 0; i < GROWTHS && next < plan->options->chains; ++i) {
+        double longer = growth(plan, 2 * next);
+        if (!(longer < GROWTH_FREE || (i == 0 && longer * part < GENERATION_PART)))
+            break;
+        next *= 2;
+    }
+    return next;
+}
+
 void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 {
     uint most = plan->options->chains, whole = chains_of_sample(plan), next = plan->chains;
-    bool grow = plan->timed ? 2.0 * seconds < GENERATION_PART * elapsed
-                            : 2.0 * (double)plan->last < GENERATION_PART * (double)plan->done;
     if (!plan->scheme->grows || plan->done >= plan->total)
         return;
     if (index % 2 == 0) {
-        next = grow && next < most ? 2 * next : next;
+        next = chains_grown(plan, seconds, elapsed);
         next = next < whole ? whole : next;
     }
     next = next < most ? next : most;

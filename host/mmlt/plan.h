@@ -15,6 +15,7 @@ typedef struct Plan {
     uint64_t total; /* estimators_work that is wanted */
     bool timed; /* `total` is no limit: the time is */
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
+    uint width; /* of the backend (BackendStatistics.width); 0 until set */
     uint chains; /* in the next generation */
 } Plan;
 

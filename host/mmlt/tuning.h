@@ -50,6 +50,11 @@
 /* A generation may take this fraction of the time or work so far, so that stopping and saving are prompt ... */
 #define GENERATION_PART 0.1
 
+/* ... or any if twice the chains take less than this many times as long, as on a GPU that few chains leave idle; the
+ * number of chains then doubles up to GROWTHS times at once. */
+#define GROWTH_FREE 1.25
+#define GROWTHS 3
+
 /* ... or this much if that allows a path tracing sample of every pixel. */
 #define WHOLE_SAMPLE_PART 0.25
 

@@ -12,6 +12,7 @@
 
 #define SHARED_FUNCTION inline static
 #define SHARED_FUNCTION_APART inline static
+#define SHARED_FUNCTION_CALLED __attribute__((noinline)) static
 #define float_bits(x) as_uint(x)
 #define bits_float(x) as_float(x)
 #define word_float(word) as_float(*(word))
@@ -70,6 +71,10 @@ typedef uint64_t ulong;
 #else
 #define SHARED_FUNCTION static inline __attribute__((unused))
 #endif
+
+/* Calls on devices, whose compilers otherwise inline everything; for what makes a kernel too large to compile. NVIDIA's
+ * (driver 580) spent minutes and more on a kernel with all three kinds of connection inlined, and 2 s without. */
+#define SHARED_FUNCTION_CALLED SHARED_FUNCTION
 
 /* Index of the work item that a kernel runs for, set by the caller of the kernel (backend_cpu/kernel_loop.h). One copy
  * per translation unit and thread. */

@@ -31,7 +31,8 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
 }
 
 /* t = 1: connects y = y_{s-1}, s >= 2, to a point on the lens. random: lens. */
-SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Random4 random, Connection *connection)
+SHARED_FUNCTION_CALLED bool connect_camera(const SceneView *scene, const Vertex *y, Random4 random,
+                                           Connection *connection)
 {
     CameraConnection camera;
     if ((y->bsdf.flags & BSDF_SMOOTH) != 0u ||
@@ -47,7 +48,8 @@ SHARED_FUNCTION bool connect_camera(const SceneView *scene, const Vertex *y, Ran
 }
 
 /* s = 1: connects z = z_{t-1}, t >= 2, to a point drawn on a light. random: of light_choose_point. */
-SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Random4 random, Connection *connection)
+SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *z, Random4 random,
+                                          Connection *connection)
 {
     if ((z->bsdf.flags & BSDF_SMOOTH) != 0u)
         return false;
@@ -88,7 +90,8 @@ SHARED_FUNCTION bool connect_light(const SceneView *scene, const Vertex *z, Rand
 }
 
 /* s >= 2, t >= 2: connects two surfaces. */
-SHARED_FUNCTION bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z, Connection *connection)
+SHARED_FUNCTION_CALLED bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z,
+                                             Connection *connection)
 {
     Vec3 d = vec3_sub(y->p, z->p);
     float distance2 = vec3_length_squared(d);

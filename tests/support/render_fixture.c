@@ -41,7 +41,7 @@ Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error
     BackendScene view = scene_backend_view(scene);
     BackendOptions options = {.threads = setup->threads > 0 ? setup->threads : 2,
                               .batch = setup->batch,
-                              .film_on_device = setup->film_on_device,
+                              .film = setup->film_on_device ? FILM_ON_DEVICE : FILM_ON_HOST,
                               .record_spans = setup->record_spans};
     return setup_interface(setup)->open(&view, &options, error);
 }
