@@ -46,7 +46,9 @@
       BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                               \
     X(bd_add_connections, 6, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS,                  \
       BUFFER_DIAGNOSTICS)                                                                                              \
-    X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
+    X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
+
+#define KERNEL_LIST_IBPT(X)                                                                                            \
     X(ib_start_light, 10, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,      \
       BUFFER_SHADOWS, BUFFER_SPLATS, BUFFER_VERTICES, BUFFER_DIAGNOSTICS)                                              \
     X(ib_shade_hits, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,        \
@@ -87,7 +89,7 @@
 
 #define KERNEL_LIST(X)                                                                                                 \
     KERNEL_LIST_PATHS(X)                                                                                               \
-    KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_CHAINS(X)
+    KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_IBPT(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths, ...: the values of Step.kernel. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

@@ -54,6 +54,7 @@ static void play_statistics(Backend *backend, BackendStatistics *statistics)
     memset(statistics, 0, sizeof *statistics);
     statistics->closest_rays = 10;
     statistics->threads = 2;
+    statistics->width = 3;
     snprintf(statistics->device, sizeof statistics->device, "%s", backend->name);
 }
 
@@ -179,6 +180,7 @@ START_TEST(test_sums)
     ck_assert_str_eq(statistics.device, "a + b");
     ck_assert_uint_eq(statistics.closest_rays, 20);
     ck_assert_int_eq(statistics.threads, 4);
+    ck_assert_uint_eq(statistics.width, 6);
     ck_assert_uint_eq(counters[0], 2);
     ck_assert_uint_eq(backend_group_members(member, out), 2);
     ck_assert_ptr_eq(out[1].backend, &backends[1]);

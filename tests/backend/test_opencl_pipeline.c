@@ -100,6 +100,29 @@ START_TEST(test_scene_too_large)
 }
 END_TEST
 
+/* A list with many splats per item has smaller batches, whose splats fit the memory that is reserved. */
+START_TEST(test_batch_of_many_splats)
+{
+    static const uint SECTIONS[] = {1, 64, 3000, 16384};
+    Step steps[16384];
+    for (int i = 0; i < 16384; ++i)
+        steps[i] = (Step){.kind = STEP_SPLAT};
+    const DeviceMemory memory = {.batch = 1u << 20, .splat_words = 1u << 26};
+    for (int i = 0; i < 4; ++i) {
+        StepList list = {.steps = steps, .count = SECTIONS[i] - 1, .words_per_item[BUFFER_SPLATS] = SPLAT_WORDS};
+        uint batch = device_memory_batch(&memory, &list);
+        uint64_t words = (uint64_t)device_memory_stride(batch) * SPLAT_WORDS * SECTIONS[i];
+        ck_assert_uint_eq(step_list_splats(&list), SECTIONS[i]);
+        ck_assert_uint_ge(batch, 256);
+        ck_assert_uint_le(words, memory.splat_words);
+        if (i == 0)
+            ck_assert_uint_eq(batch, memory.batch);
+        else /* hardly any is left unused */
+            ck_assert_uint_ge(words + 200ull * SPLAT_WORDS * SECTIONS[i], memory.splat_words);
+    }
+}
+END_TEST
+
 START_TEST(test_film_too_large)
 {
     OclDevice device;
@@ -257,6 +280,7 @@ TCase *opencl_pipeline_tests(void)
     tcase_set_timeout(pipeline, 120);
     tcase_add_test(pipeline, test_batch_too_large);
     tcase_add_test(pipeline, test_scene_too_large);
+    tcase_add_test(pipeline, test_batch_of_many_splats);
     tcase_add_test(pipeline, test_film_too_large);
     tcase_add_test(pipeline, test_film_without_atomics);
     tcase_add_loop_test(pipeline, test_failure_on_the_way, 0, 4);

@@ -79,6 +79,27 @@ START_TEST(test_text_is_whole)
 }
 END_TEST
 
+/* Every kernel is a kernel in one program and a function in the others, on the same line. */
+START_TEST(test_text_of_programs)
+{
+    char folder[PATH_MAX], begin[80];
+    char *whole = text_read(sources_folder(folder, sizeof folder), "kernels.cl");
+    for (unsigned kernel = 0; kernel < KERNEL_COUNT; ++kernel) {
+        int found = 0;
+        snprintf(begin, sizeof begin, "__kernel void %s(", ocl_kernel_name(kernel));
+        for (int which = 0; which < OCL_PROGRAMS; ++which) {
+            char *text = ocl_program_text(whole, which);
+            ck_assert_ptr_nonnull(text);
+            ck_assert_int_eq(occurrences(text, "\n"), occurrences(whole, "\n"));
+            found += occurrences(text, begin);
+            free(text);
+        }
+        ck_assert_msg(found == 1, "%s is in %d programs", ocl_kernel_name(kernel), found);
+    }
+    free(whole);
+}
+END_TEST
+
 /* A line after an include has its original number. */
 START_TEST(test_text_keeps_lines)
 {
@@ -243,6 +264,39 @@ START_TEST(test_program_comes_from_the_cache)
 }
 END_TEST
 
+/* A program is built when one of its kernels is first wanted, and kept like the first. */
+START_TEST(test_program_built_on_demand)
+{
+    char folder[PATH_MAX];
+    OclDevice device;
+    Error error = {0};
+    cl_int status;
+    folder_with_cache(folder, sizeof folder,
+                      "__kernel void pt_splat(__global int *a) { a[0] = 1; }\n"
+                      "__kernel void mlt_end(__global int *a) { a[0] = 2; }\n");
+    setenv("TWINLIGHT_KERNELS", folder, 1);
+    test_device(&device);
+    device.keeps_programs = false;
+    cl_context context = clCreateContext(NULL, 1, &device.id, NULL, NULL, &status);
+    ck_assert_int_eq(status, CL_SUCCESS);
+    for (int i = 0; i < 2; ++i) {
+        OclProgram program;
+        ck_assert_msg(ocl_program_init(&program, context, &device, 1u, &error), "%s", error.message);
+        ck_assert_ptr_nonnull(program.programs[PROGRAM_PATHS]);
+        ck_assert_ptr_null(program.programs[PROGRAM_CHAINS]);
+        cl_kernel kernel = ocl_program_kernel(&program, KERNEL_mlt_end, &error);
+        ck_assert_msg(kernel != NULL, "%s", error.message);
+        ck_assert_ptr_eq(ocl_program_kernel(&program, KERNEL_mlt_end, &error), kernel);
+        ck_assert_ptr_nonnull(program.programs[PROGRAM_CHAINS]);
+        ck_assert_int_eq(program.cached, i == 1);
+        ck_assert_ptr_null(ocl_program_kernel(&program, KERNEL_bd_splat, &error)); /* the source has none */
+        ocl_program_destroy(&program);
+    }
+    clReleaseContext(context);
+    scratch_remove(folder);
+}
+END_TEST
+
 START_TEST(test_program_without_a_cache)
 {
     char folder[PATH_MAX];
@@ -323,12 +377,14 @@ TCase *opencl_program_tests(void)
     TCase *program = tcase_create("program");
     tcase_set_timeout(program, 60);
     tcase_add_test(program, test_text_is_whole);
+    tcase_add_test(program, test_text_of_programs);
     tcase_add_test(program, test_text_keeps_lines);
     tcase_add_test(program, test_text_missing);
     tcase_add_test(program, test_cache_keys_differ);
     tcase_add_test(program, test_cache_gives_back_or_nothing);
     tcase_add_test(program, test_cache_without_a_place);
     tcase_add_test(program, test_program_comes_from_the_cache);
+    tcase_add_test(program, test_program_built_on_demand);
     tcase_add_test(program, test_program_without_a_cache);
     tcase_add_test(program, test_program_left_to_the_driver);
     tcase_add_test(program, test_program_that_the_device_refuses);

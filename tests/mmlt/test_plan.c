@@ -66,6 +66,27 @@ START_TEST(test_clock)
 }
 END_TEST
 
+/* A device that few chains leave idle takes hardly longer for more of them, so generations grow whatever the time up to
+ * half of its width, then by time. With a limit of work the width does not matter. */
+START_TEST(test_width)
+{
+    static const struct {
+        double part; /* seconds of the latest generation / elapsed, in units of GENERATION_PART */
+        uint chains; /* in units of CHAINS_FIRST */
+    } NEXT[] = {{9.0, 8},   {9.0, 16},  {9.0, 32},   {9.0, 32},
+                {0.74, 64}, {0.68, 64}, {0.66, 128}, {0.51, 256}}; /* 4/3, 3/2, 3/2, 5/3 times longer */
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, _i == 0 ? 0 : 1000000);
+    plan.width = 64 * CHAINS_FIRST;
+    plan_count(&plan, 1000);
+    for (uint i = 0; i < sizeof NEXT / sizeof NEXT[0]; ++i) {
+        plan_next(&plan, 2 * i + 2, NEXT[i].part * GENERATION_PART, 1.0);
+        ck_assert_uint_eq(plan.chains, CHAINS_FIRST * (_i == 0 ? NEXT[i].chains : 1));
+    }
+}
+END_TEST
+
 /* Pools have whole samples of all pixels if they have one at least; --mlt=pool is their size. */
 START_TEST(test_pools)
 {
@@ -104,6 +125,7 @@ int main(void)
     TCase *tcase = tcase_create("plan");
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_clock);
+    tcase_add_loop_test(tcase, test_width, 0, 2);
     tcase_add_test(tcase, test_pools);
     tcase_add_test(tcase, test_published);
     suite_add_tcase(suite, tcase);
