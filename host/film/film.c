@@ -269,8 +269,13 @@ static bool pixel_full(const int64_t *sums, size_t pixel)
 
 size_t film_full_pixels(const Film *film)
 {
+    return film_full_pixels_of(film, 0, film_pixels(film));
+}
+
+size_t film_full_pixels_of(const Film *film, size_t first, size_t end)
+{
     size_t full = 0;
-    for (size_t i = 0; i < film_pixels(film); ++i)
+    for (size_t i = first; i < end; ++i)
         if (pixel_full(film->sums, i) || pixel_full(film->light_sums, i) || pixel_full(film->rare_sums, i))
             ++full;
     return full;

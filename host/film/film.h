@@ -85,6 +85,7 @@ int64_t film_sum_rounded(double units);
 
 /* Number of pixels with a sum at or beyond 2^62 units; they are darker than they should be. */
 size_t film_full_pixels(const Film *film);
+size_t film_full_pixels_of(const Film *film, size_t first, size_t end); /* ... of the pixels first ... end - 1 */
 
 /* Number of pixels of the whole image, times `scale`, that overflow a float. */
 size_t film_infinite_pixels(const Film *film, float scale);

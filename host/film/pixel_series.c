@@ -29,8 +29,14 @@ void pixel_series_destroy(PixelSeries *series)
 
 void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
 {
+    pixel_series_add_part(series, picture, weights, weight, 0, series->pixels);
+}
+
+void pixel_series_add_part(PixelSeries *series, const float *picture, const uint32_t *weights, double weight,
+                           size_t first, size_t end)
+{
     size_t channels = (size_t)series->channels;
-    for (size_t i = 0; i < series->pixels; ++i) {
+    for (size_t i = first; i < end; ++i) {
         double own = weights ? weight * (double)weights[i] : weight;
         if (!(own > 0.0))
             continue;
@@ -64,25 +70,25 @@ static double middle_of(const PixelSeries *a, const PixelSeries *b, size_t value
     return 0.5 * ((double)a->mean[value] + (double)b->mean[value]);
 }
 
-/* Mean over the values of a window, and how much of both series' variance is found and stated there. */
-typedef struct WindowSums {
-    double mean, found, stated;
-} WindowSums;
-
-static void row_mean(const PixelSeries *a, const PixelSeries *b, size_t first, size_t end, double count,
-                     WindowSums *sums)
+double pixel_series_sum(const PixelSeries *a, const PixelSeries *b, PixelWindow window)
 {
-    for (size_t i = first; i < end; ++i)
-        sums->mean += middle_of(a, b, i) / count;
+    size_t channels = (size_t)a->channels, row = (window.x1 - window.x0) * channels;
+    double sum = 0.0;
+    for (size_t y = window.y0; y < window.y1; ++y) {
+        size_t first = (y * window.width + window.x0) * channels;
+        for (size_t i = first; i < first + row; ++i)
+            sum += middle_of(a, b, i);
+    }
+    return sum;
 }
 
 static void row_compare(const PixelSeries *a, const PixelSeries *b, size_t first, size_t end, double dark,
-                        WindowSums *sums)
+                        PixelVariances *sums)
 {
     for (size_t i = first; i < end; ++i) {
         size_t pixel = i / (size_t)a->channels;
         double distance = (double)a->mean[i] - (double)b->mean[i], middle = middle_of(a, b, i);
-        double square = middle * middle + dark * sums->mean * sums->mean;
+        double square = middle * middle + dark;
         if (a->pictures[pixel] < 2 || b->pictures[pixel] < 2 || !(square > 0.0))
             continue;
         sums->found += distance * distance / square;
@@ -90,20 +96,27 @@ static void row_compare(const PixelSeries *a, const PixelSeries *b, size_t first
     }
 }
 
-double pixel_series_stratified(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark)
+PixelVariances pixel_series_compare(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark)
 {
     size_t channels = (size_t)a->channels, row = (window.x1 - window.x0) * channels;
-    double count = (double)((window.y1 - window.y0) * row);
-    WindowSums sums = {0.0, 0.0, 0.0};
-    if (a == b)
-        return 1.0;
-    for (size_t y = window.y0; y < window.y1; ++y) {
-        size_t first = (y * window.width + window.x0) * channels;
-        row_mean(a, b, first, first + row, count, &sums);
-    }
+    PixelVariances sums = {0.0, 0.0};
     for (size_t y = window.y0; y < window.y1; ++y) {
         size_t first = (y * window.width + window.x0) * channels;
         row_compare(a, b, first, first + row, dark, &sums);
     }
+    return sums;
+}
+
+double pixel_variances_left(PixelVariances sums)
+{
     return sums.stated > 0.0 ? fmin(sums.found / sums.stated, 1.0) : 1.0;
+}
+
+double pixel_series_stratified(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark)
+{
+    double values = (double)((window.y1 - window.y0) * (window.x1 - window.x0) * (size_t)a->channels);
+    if (a == b)
+        return 1.0;
+    double mean = pixel_series_sum(a, b, window) / values;
+    return pixel_variances_left(pixel_series_compare(a, b, window, dark * mean * mean));
 }

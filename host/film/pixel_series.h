@@ -24,6 +24,10 @@ void pixel_series_destroy(PixelSeries *series);
 /* Adds an image. `weights`: per pixel, 0 where it was not sampled; NULL: all 1. They are multiplied by `weight` > 0. */
 void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight);
 
+/* The same for the pixels first ... end - 1 alone. */
+void pixel_series_add_part(PixelSeries *series, const float *picture, const uint32_t *weights, double weight,
+                           size_t first, size_t end);
+
 /* Estimate of sigma^2, the variance of a value of weight 1; 0 before the second image. value: pixel x channels +
  * channel. */
 double pixel_series_spread(const PixelSeries *series, size_t value);
@@ -35,6 +39,20 @@ double pixel_series_variance(const PixelSeries *series, size_t value);
 typedef struct PixelWindow {
     size_t width, x0, y0, x1, y1;
 } PixelWindow;
+
+/* The values of a window summed, means of two series. */
+double pixel_series_sum(const PixelSeries *a, const PixelSeries *b, PixelWindow window);
+
+/* How much of the variance of two series, relative to the square of each value plus `dark`, is found from their difference,
+ * and how much they state. */
+typedef struct PixelVariances {
+    double found, stated;
+} PixelVariances;
+
+PixelVariances pixel_series_compare(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark);
+
+/* The part of the stated variance that is found; at most 1. */
+double pixel_variances_left(PixelVariances sums);
 
 /* What is left of these variances if the samples of a series are stratified across its images: a and b are two such series
  * of the same values, independent of each other, so that the difference of their means shows their real variance. One

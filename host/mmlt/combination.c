@@ -15,8 +15,10 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
         combination->tiles[i] = (combination->size[i] + TILE_SIDE - 1) / TILE_SIDE;
     }
     size_t tiles = combination_tile_count(combination);
+    combination->threads = 1;
     combination->known = calloc(tiles, sizeof *combination->known);
-    if (!combination->known)
+    combination->rows = calloc((size_t)combination->tiles[1], sizeof *combination->rows);
+    if (!combination->known || !combination->rows)
         return error_memory(error, tiles * sizeof *combination->known, "tiles");
     for (int s = 0; s < SERIES_COUNT; ++s)
         if (!pixel_series_init(&combination->pixels[s], film_pixels(film), 1, error) ||
@@ -33,6 +35,7 @@ void combination_destroy(Combination *combination)
     }
     pixel_series_destroy(&combination->direct);
     free(combination->known);
+    free(combination->rows);
     *combination = (Combination){0};
 }
 
@@ -114,7 +117,7 @@ static bool combination_known(const Combination *combination, const double sampl
 /* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
  * the weight of the pool they start from. So a large picture, of which the first pools visit few pixels, shows mostly
  * path tracing at first. */
-static void weights_set(Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
+static void weights_set(const Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                         bool known)
 {
     memset(tile->weight, 0, sizeof tile->weight);
@@ -131,8 +134,6 @@ static void weights_set(Combination *combination, CombinationTile *tile, const d
         tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / (2.0 * pool + paths);
         tile->weight[ESTIMATOR_PATHS] = paths / (2.0 * pool + paths);
     }
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        combination->weight[s] += tile->weight[s] / (double)combination_tile_count(combination);
 }
 
 /* Film sums of the same paths in all estimators, 3 values a pixel. */
@@ -159,12 +160,11 @@ static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
     return sums;
 }
 
-/* Replaces the chains' light sums by the combination, scaled to `worth` samples. */
+/* Replaces the chains' light sums of the pixels first ... end - 1 by the combination, scaled to `worth` samples. */
 static void sums_join(const Combination *combination, const EstimatorSums *sums, const double samples[ESTIMATOR_COUNT],
-                      double worth)
+                      double worth, size_t first, size_t end)
 {
-    size_t values = 3 * (size_t)combination->size[0] * (size_t)combination->size[1];
-    for (size_t i = 0; i < values; ++i) {
+    for (size_t i = 3 * first; i < 3 * end; ++i) {
         const CombinationTile *tile = &combination->known[combination_tile_of(combination, i / 3)];
         double sum = ((1.0 - tile->weight[ESTIMATOR_PATHS]) * (double)film_sum_shown(sums->excess[i]) +
                       tile->weight[ESTIMATOR_PATHS] * (double)film_sum_shown(sums->rare[i])) /
@@ -190,33 +190,57 @@ static double generation_worth(const Combination *combination, const double samp
     return own > 0.0 ? work * fmin(error_of(combination, best, false, 1) / own, WORTH_MOST) : work;
 }
 
+typedef struct FilmsJoining {
+    const Combination *combination;
+    Film *const *films;
+    double samples[ESTIMATOR_COUNT], worth;
+    bool known; /* the variances are */
+} FilmsJoining;
+
+static void row_join(void *context, size_t row)
+{
+    const FilmsJoining *joining = context;
+    const Combination *combination = joining->combination;
+    const size_t columns = (size_t)combination->tiles[0];
+    Film *into = joining->films[ESTIMATOR_CHAINS];
+    const Film *paths = joining->films[ESTIMATOR_PATHS];
+    PixelWindow window = combination_row_window(combination, row);
+    size_t first = window.y0 * window.width, end = window.y1 * window.width;
+    /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
+    combination->rows[row].full = 0;
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        combination->rows[row].full += film_full_pixels_of(joining->films[s], first, end);
+    for (size_t tile = row * columns; tile < (row + 1) * columns; ++tile)
+        weights_set(combination, &combination->known[tile], joining->samples, joining->known);
+    EstimatorSums sums = estimator_sums(joining->films);
+    sums_join(combination, &sums, joining->samples, joining->worth, first, end);
+    for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {
+        sums = estimator_depth_sums(joining->films, segments);
+        sums_join(combination, &sums, joining->samples, joining->worth, first, end);
+    }
+    memcpy(into->sums + 3 * first, paths->sums + 3 * first, 3 * (end - first) * sizeof *into->sums);
+    memcpy(into->counts + first, paths->counts + first, (end - first) * sizeof *into->counts);
+}
+
 /* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's worth, by
  * which film_merge weights it. */
 static void films_join(Combination *combination, Film *const films[])
 {
     Film *into = films[ESTIMATOR_CHAINS];
-    size_t pixels = film_pixels(into);
-    double samples[ESTIMATOR_COUNT];
+    FilmsJoining joining = {.combination = combination, .films = films};
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        samples[s] = (double)films[s]->light_samples;
-    bool known = combination_known(combination, samples);
-    double worth = fmax(1.0, rint(generation_worth(combination, samples, known)));
-    /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
+        joining.samples[s] = (double)films[s]->light_samples;
+    joining.known = combination_known(combination, joining.samples);
+    joining.worth = fmax(1.0, rint(generation_worth(combination, joining.samples, joining.known)));
+    combination_rows_run(combination, row_join, &joining);
     uint64_t full = 0;
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        full += film_full_pixels(films[s]);
+    for (int row = 0; row < combination->tiles[1]; ++row)
+        full += combination->rows[row].full;
     memset(combination->weight, 0, sizeof combination->weight);
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        weights_set(combination, &combination->known[i], samples, known);
-    EstimatorSums sums = estimator_sums(films);
-    sums_join(combination, &sums, samples, worth);
-    for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {
-        sums = estimator_depth_sums(films, segments);
-        sums_join(combination, &sums, samples, worth);
-    }
-    into->light_samples = (uint64_t)worth;
-    memcpy(into->sums, films[ESTIMATOR_PATHS]->sums, 3 * pixels * sizeof *into->sums);
-    memcpy(into->counts, films[ESTIMATOR_PATHS]->counts, pixels * sizeof *into->counts);
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            combination->weight[s] += combination->known[i].weight[s] / (double)combination_tile_count(combination);
+    into->light_samples = (uint64_t)joining.worth;
     for (int s = ESTIMATOR_CHAINS + 1; s < ESTIMATOR_COUNT; ++s) {
         into->saturated += films[s]->saturated;
         into->vanished += films[s]->vanished;
@@ -258,28 +282,50 @@ void combination_errors(const Combination *combination, const double samples[EST
     }
 }
 
+/* The best division of work for each part of path tracing. */
+typedef struct RatesSearch {
+    const Combination *combination;
+    size_t every;
+    struct {
+        double samples[ESTIMATOR_COUNT], error;
+    } best[PLAN_PARTS];
+} RatesSearch;
+
+static void rates_of_paths(void *context, size_t paths)
+{
+    RatesSearch *search = context;
+    search->best[paths].error = HUGE_VAL;
+    for (size_t pool = 1; paths > 0 && paths + pool < PLAN_PARTS; ++pool) {
+        double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)(PLAN_PARTS - paths - pool),
+                                           [ESTIMATOR_POOL] = (double)pool,
+                                           [ESTIMATOR_PATHS] = (double)paths};
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            samples[s] /= estimator_cost((EstimatorKind)s);
+        double error = error_of(search->combination, samples, true, search->every);
+        if (error < search->best[paths].error) {
+            search->best[paths].error = error;
+            memcpy(search->best[paths].samples, samples, sizeof samples);
+        }
+    }
+}
+
 StepRates combination_rates(Combination *combination)
 {
-    StepRates best = {0};
-    double least = HUGE_VAL;
     /* odd, so that it is no divisor of most widths */
-    size_t every = combination_tile_count(combination) / PLAN_TILES | 1u;
+    RatesSearch search = {.combination = combination, .every = combination_tile_count(combination) / PLAN_TILES | 1u};
+    size_t best = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (!combination->ready[s])
-            return best;
-    for (int paths = 1; paths < PLAN_PARTS; ++paths)
-        for (int pool = 1; paths + pool < PLAN_PARTS; ++pool) {
-            double samples[ESTIMATOR_COUNT] = {
-                [ESTIMATOR_CHAINS] = PLAN_PARTS - paths - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = paths};
-            for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-                samples[s] /= estimator_cost((EstimatorKind)s);
-            double error = error_of(combination, samples, true, every);
-            if (error < least) {
-                least = error;
-                memcpy(combination->best, samples, sizeof samples);
-                best.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS];
-                best.pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS];
-            }
-        }
-    return best;
+            return (StepRates){0};
+    parallel_run(PLAN_PARTS, combination_tile_count(combination) < PLAN_TILES ? 1 : combination->threads,
+                 rates_of_paths, &search);
+    for (size_t paths = 1; paths < PLAN_PARTS; ++paths)
+        if (search.best[paths].error < search.best[best].error)
+            best = paths;
+    if (best == 0)
+        return (StepRates){0};
+    const double *samples = search.best[best].samples;
+    memcpy(combination->best, samples, sizeof search.best[best].samples);
+    return (StepRates){.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
+                       .pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
 }

@@ -27,6 +27,40 @@ double combination_mean_light(const Combination *combination)
     return light;
 }
 
+/* ---- rows of tiles ----------------------------------------------------------------------------------------------- */
+
+/* Pixels of an image whose sums take longer than it takes to start threads. */
+#define THREADED_PIXELS 65536u
+
+void combination_rows_run(const Combination *combination, ParallelPart *part, void *context)
+{
+    size_t pixels = (size_t)combination->size[0] * (size_t)combination->size[1];
+    parallel_run((size_t)combination->tiles[1], pixels < THREADED_PIXELS ? 1 : combination->threads, part, context);
+}
+
+PixelWindow combination_row_window(const Combination *combination, size_t row)
+{
+    size_t width = (size_t)combination->size[0], height = (size_t)combination->size[1], end = (row + 1) * TILE_SIDE;
+    return (PixelWindow){width, 0, row * TILE_SIDE, width, end < height ? end : height};
+}
+
+/* Numbers of things in a row: first ... end - 1. */
+typedef struct RowRange {
+    size_t first, end;
+} RowRange;
+
+static RowRange row_pixels(const Combination *combination, size_t row)
+{
+    PixelWindow window = combination_row_window(combination, row);
+    return (RowRange){window.y0 * window.width, window.y1 * window.width};
+}
+
+static RowRange row_tiles(const Combination *combination, size_t row)
+{
+    size_t columns = (size_t)combination->tiles[0];
+    return (RowRange){row * columns, (row + 1) * columns};
+}
+
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 static float luminance_of(const int64_t *sums, double scale)
@@ -37,44 +71,66 @@ static float luminance_of(const int64_t *sums, double scale)
     return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
-/* The luminances of `sums`: picture, a value per pixel, and tiles, their sum per tile. */
-static void image_of(const Combination *combination, const Film *film, const int64_t *sums, float *picture,
-                     float *tiles)
+/* An image of a generation, and the series that it is added to. */
+typedef struct LearnedImage {
+    const Film *film;
+    const int64_t *sums;
+    PixelSeries *pixels, *tiles; /* tiles: NULL if their sums are not wanted */
+} LearnedImage;
+
+typedef struct FilmsLearning {
+    Combination *combination;
+    LearnedImage images[SERIES_COUNT + 1];
+    int count;
+    float *picture, *tiles; /* scratch: luminances of pixels, and their sums */
+    const atomic_int *stop;
+} FilmsLearning;
+
+/* The luminances of an image in a row of tiles. */
+static void row_image(const FilmsLearning *learning, const LearnedImage *image, RowRange pixels, RowRange tiles)
 {
-    size_t pixels = film_pixels(film);
-    double unit = ldexp((double)pixels / (double)film->light_samples, film->quantum_exponent);
-    memset(tiles, 0, combination_tile_count(combination) * sizeof *tiles);
-    for (size_t i = 0; i < pixels; ++i) {
-        picture[i] = luminance_of(sums + 3 * i, unit);
-        tiles[combination_tile_of(combination, i)] += picture[i];
+    const Film *film = image->film;
+    double unit = ldexp((double)film_pixels(film) / (double)film->light_samples, film->quantum_exponent);
+    memset(learning->tiles + tiles.first, 0, (tiles.end - tiles.first) * sizeof *learning->tiles);
+    for (size_t i = pixels.first; i < pixels.end; ++i) {
+        learning->picture[i] = luminance_of(image->sums + 3 * i, unit);
+        learning->tiles[combination_tile_of(learning->combination, i)] += learning->picture[i];
     }
 }
 
-/* Adds the luminances of `sums` to series s. picture, tiles: scratch, a value per pixel and per tile. */
-static void series_learn(Combination *combination, int s, const Film *film, const int64_t *sums, float *picture,
-                         float *tiles)
+static void row_learn(void *context, size_t row)
 {
-    double samples = (double)film->light_samples;
-    image_of(combination, film, sums, picture, tiles);
-    pixel_series_add(&combination->pixels[s], picture, NULL, samples);
-    pixel_series_add(&combination->sums[s], tiles, NULL, samples);
+    const FilmsLearning *learning = context;
+    RowRange pixels = row_pixels(learning->combination, row), tiles = row_tiles(learning->combination, row);
+    for (int i = 0; i < learning->count && !*learning->stop; ++i) {
+        const LearnedImage *image = &learning->images[i];
+        double samples = (double)image->film->light_samples;
+        row_image(learning, image, pixels, tiles);
+        pixel_series_add_part(image->pixels, learning->picture, NULL, samples, pixels.first, pixels.end);
+        if (image->tiles)
+            pixel_series_add_part(image->tiles, learning->tiles, NULL, samples, tiles.first, tiles.end);
+    }
+}
+
+static void image_learn(FilmsLearning *learning, int s, const Film *film, const int64_t *sums)
+{
+    Combination *combination = learning->combination;
+    learning->images[learning->count++] = (LearnedImage){film, sums, &combination->pixels[s], &combination->sums[s]};
 }
 
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
                              const atomic_int *stop)
 {
     const Film *chains = films[ESTIMATOR_CHAINS], *paths = films[ESTIMATOR_PATHS];
-    for (int s = 0; s < ESTIMATOR_COUNT && !*stop; ++s)
+    FilmsLearning learning = {.combination = combination, .picture = picture, .tiles = tiles, .stop = stop};
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (films[s]->light_samples > 0)
-            series_learn(combination, s, films[s], films[s]->light_sums, picture, tiles);
-    if (!*stop)
-        series_learn(combination, SERIES_EXCESS, chains, chains->sums, picture, tiles);
-    if (!*stop)
-        series_learn(combination, SERIES_RARE, chains, chains->rare_sums, picture, tiles);
-    if (!*stop && paths->light_samples > 0) {
-        image_of(combination, paths, paths->sums, picture, tiles);
-        pixel_series_add(&combination->direct, picture, NULL, (double)paths->light_samples);
-    }
+            image_learn(&learning, s, films[s], films[s]->light_sums);
+    image_learn(&learning, SERIES_EXCESS, chains, chains->sums);
+    image_learn(&learning, SERIES_RARE, chains, chains->rare_sums);
+    if (paths->light_samples > 0)
+        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, &combination->direct, NULL};
+    combination_rows_run(combination, row_learn, &learning);
 }
 
 /* ---- variances --------------------------------------------------------------------------------------------------- */
@@ -121,44 +177,84 @@ static double light_square(const Combination *combination, size_t pixel, const C
     return light * light + dark;
 }
 
-/* Sums the tiles' variances, each pixel's weighted by the squared luminance of its tile over its own. */
-static void tiles_sum(Combination *combination)
+static void row_light(void *context, size_t row)
 {
-    const double area = TILE_SIDE * TILE_SIDE;
-    double mean = 0.0;
-    memset(combination->known, 0, combination_tile_count(combination) * sizeof *combination->known);
-    for (size_t i = 0; i < combination->direct.pixels; ++i)
+    Combination *combination = context;
+    RowRange pixels = row_pixels(combination, row), tiles = row_tiles(combination, row);
+    memset(&combination->known[tiles.first], 0, (tiles.end - tiles.first) * sizeof *combination->known);
+    for (size_t i = pixels.first; i < pixels.end; ++i)
         combination->known[combination_tile_of(combination, i)].light += fabs((double)combination->direct.mean[i]);
-    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+    for (size_t i = tiles.first; i < tiles.end; ++i) {
         combination->known[i].indirect = light_bound_best(combination, i, 0.0);
         combination->known[i].light += combination->known[i].indirect;
-        mean += combination->known[i].light / (area * (double)combination_tile_count(combination));
     }
-    for (size_t i = 0; i < combination->direct.pixels; ++i) {
+}
+
+/* A combination, and DARK_PART of the squared mean luminance of a pixel and of a tile. */
+typedef struct TilesSum {
+    Combination *combination;
+    double dark, dark_tile;
+} TilesSum;
+
+static void row_spreads(const TilesSum *sum, RowRange pixels)
+{
+    const double area = TILE_SIDE * TILE_SIDE;
+    Combination *combination = sum->combination;
+    for (size_t i = pixels.first; i < pixels.end; ++i) {
         CombinationTile *tile = &combination->known[combination_tile_of(combination, i)];
-        double tile_mean = tile->light / area, dark = DARK_PART * mean * mean;
-        double weight = (tile_mean * tile_mean + dark) / light_square(combination, i, tile, dark);
+        double tile_mean = tile->light / area;
+        double weight = (tile_mean * tile_mean + sum->dark) / light_square(combination, i, tile, sum->dark);
         for (int s = 0; s < SERIES_COUNT; ++s)
             tile->spread[s] += weight * pixel_series_spread(&combination->pixels[s], i);
         tile->direct += weight * pixel_series_spread(&combination->direct, i);
     }
 }
 
+/* Relative variances of a row's tiles and of its pixels, for correlation_of. */
+static void row_correlate(const TilesSum *sum, RowRange pixels, RowRange tiles, CombinationRow *row)
+{
+    const Combination *combination = sum->combination;
+    for (size_t i = tiles.first; i < tiles.end; ++i) {
+        double light = combination->known[i].light, square = fmax(light * light + sum->dark_tile, SPREAD_MIN);
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            row->sums[s] += pixel_series_spread(&combination->sums[s], i) / square;
+    }
+    for (size_t i = pixels.first; i < pixels.end; ++i) {
+        double light = combination->known[combination_tile_of(combination, i)].light,
+               square = fmax(light * light + sum->dark_tile, SPREAD_MIN);
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            row->pixels[s] += pixel_series_spread(&combination->pixels[s], i) / square;
+    }
+}
+
+static void row_variances(void *context, size_t row)
+{
+    const TilesSum *sum = context;
+    RowRange pixels = row_pixels(sum->combination, row), tiles = row_tiles(sum->combination, row);
+    sum->combination->rows[row] = (CombinationRow){.full = 0};
+    row_spreads(sum, pixels);
+    row_correlate(sum, pixels, tiles, &sum->combination->rows[row]);
+}
+
+/* Sums the tiles' variances, each pixel's weighted by the squared luminance of its tile over its own. */
+static void tiles_sum(Combination *combination)
+{
+    combination_rows_run(combination, row_light, combination);
+    double tile = combination_mean_light(combination), pixel = tile / (TILE_SIDE * TILE_SIDE);
+    TilesSum sum = {combination, DARK_PART * pixel * pixel, DARK_PART * tile * tile};
+    combination_rows_run(combination, row_variances, &sum);
+}
+
 /* By how much the variance of a tile's sum exceeds the sum of its pixels' variances, relative to light and over all
  * tiles: 1 if pixels are independent, more for chains, whose steps visit several of them. */
 static double correlation_of(const Combination *combination, int s)
 {
-    const double area = TILE_SIDE * TILE_SIDE;
-    double sums = 0.0, pixels = 0.0, mean = combination_mean_light(combination), dark = DARK_PART * mean * mean;
-    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        double light = combination->known[i].light;
-        sums += pixel_series_spread(&combination->sums[s], i) / fmax(light * light + dark, SPREAD_MIN);
+    double sums = 0.0, pixels = 0.0;
+    for (int row = 0; row < combination->tiles[1]; ++row) {
+        sums += combination->rows[row].sums[s];
+        pixels += combination->rows[row].pixels[s];
     }
-    for (size_t i = 0; i < combination->direct.pixels; ++i) {
-        double light = combination->known[combination_tile_of(combination, i)].light;
-        pixels += pixel_series_spread(&combination->pixels[s], i) / fmax(light * light + dark, SPREAD_MIN);
-    }
-    return pixels > 0.0 ? fmin(fmax(sums / pixels, 1.0), area) : 1.0;
+    return pixels > 0.0 ? fmin(fmax(sums / pixels, 1.0), TILE_SIDE * TILE_SIDE) : 1.0;
 }
 
 /* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
@@ -219,17 +315,56 @@ static void spreads_share(Combination *combination, int s, double *ratios)
     }
 }
 
-/* Samples of path tracing are stratified across the generations of a replica (paths_estimator.h); `other` is the other one, if there are two. */
+/* Two replicas, whose path tracing is compared. */
+typedef struct Replicas {
+    Combination *combination;
+    const Combination *other;
+    double indirect, direct; /* mean luminances of a pixel */
+} Replicas;
+
+static void row_path_light(void *context, size_t row)
+{
+    const Replicas *replicas = context;
+    const Combination *a = replicas->combination, *b = replicas->other;
+    PixelWindow window = combination_row_window(a, row);
+    a->rows[row].indirect_sum = pixel_series_sum(&a->pixels[ESTIMATOR_PATHS], &b->pixels[ESTIMATOR_PATHS], window);
+    a->rows[row].direct_sum = pixel_series_sum(&a->direct, &b->direct, window);
+}
+
+static void row_path_variances(void *context, size_t row)
+{
+    const Replicas *replicas = context;
+    const Combination *a = replicas->combination, *b = replicas->other;
+    PixelWindow window = combination_row_window(a, row);
+    a->rows[row].indirect = pixel_series_compare(&a->pixels[ESTIMATOR_PATHS], &b->pixels[ESTIMATOR_PATHS], window,
+                                                 DARK_PART * replicas->indirect * replicas->indirect);
+    a->rows[row].direct =
+        pixel_series_compare(&a->direct, &b->direct, window, DARK_PART * replicas->direct * replicas->direct);
+}
+
+/* Samples of path tracing are stratified across the generations of a replica (paths_estimator.h). What is left of their
+ * stated variance shows in the difference to the other replica, if there is one: pixel_series_stratified of the image. */
 static void stratification_apply(Combination *combination, const Combination *other)
 {
-    const int s = ESTIMATOR_PATHS;
-    const PixelWindow all = {(size_t)combination->size[0], 0, 0, (size_t)combination->size[0],
-                             (size_t)combination->size[1]};
-    double indirect = pixel_series_stratified(&combination->pixels[s], &other->pixels[s], all, DARK_PART),
-           direct = pixel_series_stratified(&combination->direct, &other->direct, all, DARK_PART);
+    Replicas replicas = {combination, other, 0.0, 0.0};
+    PixelVariances indirect = {0.0, 0.0}, direct = {0.0, 0.0};
+    if (other == combination)
+        return;
+    combination_rows_run(combination, row_path_light, &replicas);
+    for (int row = 0; row < combination->tiles[1]; ++row) {
+        replicas.indirect += combination->rows[row].indirect_sum / (double)combination->direct.pixels;
+        replicas.direct += combination->rows[row].direct_sum / (double)combination->direct.pixels;
+    }
+    combination_rows_run(combination, row_path_variances, &replicas);
+    for (int row = 0; row < combination->tiles[1]; ++row) {
+        indirect.found += combination->rows[row].indirect.found;
+        indirect.stated += combination->rows[row].indirect.stated;
+        direct.found += combination->rows[row].direct.found;
+        direct.stated += combination->rows[row].direct.stated;
+    }
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        combination->known[i].spread[s] *= indirect;
-        combination->known[i].direct *= direct;
+        combination->known[i].spread[ESTIMATOR_PATHS] *= pixel_variances_left(indirect);
+        combination->known[i].direct *= pixel_variances_left(direct);
     }
 }
 

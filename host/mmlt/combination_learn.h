@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_MMLT_COMBINATION_LEARN_H
 #define TWINLIGHT_MMLT_COMBINATION_LEARN_H
 
+#include "base/parallel.h"
 #include "film/pixel_series.h"
 #include "mmlt/estimator.h"
 
@@ -24,11 +25,21 @@ typedef struct CombinationTile {
     double weight[ESTIMATOR_COUNT]; /* of the latest generation */
 } CombinationTile;
 
+/* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on threads. */
+typedef struct CombinationRow {
+    double sums[SERIES_COUNT], pixels[SERIES_COUNT]; /* variances of tiles' sums, and of pixels (correlation_of) */
+    double indirect_sum, direct_sum; /* of stratified path tracing (stratification_apply) ... */
+    PixelVariances indirect, direct; /* ... and its variances */
+    size_t full; /* saturated pixels */
+} CombinationRow;
+
 typedef struct Combination {
     int size[2], tiles[2];
     PixelSeries pixels[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances of pixels, and summed over tiles */
     PixelSeries direct; /* of pixels */
     CombinationTile *known; /* one per tile */
+    CombinationRow *rows; /* scratch */
+    int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation, mean over the tiles */
@@ -38,6 +49,12 @@ typedef struct Combination {
 /* Number of tiles, and the tile of a pixel (numbered row by row within the crop). */
 size_t combination_tile_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
+
+/* Calls part(context, row) for every row of tiles, several at a time in images large enough. */
+void combination_rows_run(const Combination *combination, ParallelPart *part, void *context);
+
+/* The pixels of a row of tiles, as a window of the image. */
+PixelWindow combination_row_window(const Combination *combination, size_t row);
 
 /* Mean light of a tile, in luminances summed over its pixels. */
 double combination_mean_light(const Combination *combination);

@@ -69,6 +69,7 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
         if (!combination_init(&mmlt->combinations[replica], run->film, error))
             return false;
         mmlt->combinations[replica].shown = mmlt->options.shown;
+        mmlt->combinations[replica].threads = statistics.threads;
     }
     mmlt->generation = generation_at(run, mmlt->scheme, 0);
     return true;

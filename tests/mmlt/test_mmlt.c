@@ -214,6 +214,27 @@ START_TEST(test_shared)
 }
 END_TEST
 
+/* Sums over images large enough for threads, with tiles that the image cuts. */
+START_TEST(test_threads)
+{
+    RenderedImage one, three;
+    RenderSetup setup = {.text = TWO_CAUSTICS,
+                         .width = 262,
+                         .height = 252,
+                         .samples = 6,
+                         .max_depth = 6,
+                         .threads = 1,
+                         .integrator = integrator_mmlt()};
+    fixture_render(&setup, &one);
+    setup.threads = 3;
+    fixture_render(&setup, &three);
+    ck_assert_uint_gt(one.result.chains.steps, 50000);
+    ck_assert_mem_eq(one.rgb, three.rgb, 3 * sizeof(float) * 262 * 252);
+    fixture_destroy(&one);
+    fixture_destroy(&three);
+}
+END_TEST
+
 /* ---- statistics -------------------------------------------------------------------------------------------------- */
 
 /* With `paper`, passes do not affect chains: runs of rejected proposals are equally long in short and in long
@@ -417,6 +438,7 @@ int main(void)
     tcase_add_loop_test(case_make(suite, "depths"), test_depths, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);
+    tcase_add_test(case_make(suite, "threads"), test_threads);
     TCase *counts = case_make(suite, "counts");
     tcase_add_test(counts, test_runs);
     tcase_add_test(counts, test_groups);
