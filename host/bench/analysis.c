@@ -203,7 +203,7 @@ static bool group_fill(Analysis *analysis, int series, int time, Error *error)
     size_t count = (size_t)analysis->reference.width * (size_t)analysis->reference.height;
     *group = (BenchGroup){0};
     bool good =
-        pixel_series_init(&pixels, count, 3, error) && group_measure(analysis, series, time, &pixels, group, error);
+        pixel_series_init(&pixels, count, 3, true, error) && group_measure(analysis, series, time, &pixels, group, error);
     pixel_series_destroy(&pixels);
     if (good && group->runs > 0)
         group_summarise(analysis, series, time, group);

@@ -4,18 +4,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error)
+bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, bool uniform, Error *error)
 {
-    size_t values = pixels * (size_t)channels;
-    *series = (PixelSeries){.pixels = pixels, .channels = channels};
+    size_t values = pixels * (size_t)channels, weights = uniform ? 1 : pixels;
+    *series = (PixelSeries){.pixels = pixels, .channels = channels, .uniform = uniform};
     series->mean = calloc(values, sizeof *series->mean);
     series->spread = calloc(values, sizeof *series->spread);
-    series->weight = calloc(pixels, sizeof *series->weight);
-    series->pictures = calloc(pixels, sizeof *series->pictures);
+    series->weight = calloc(weights, sizeof *series->weight);
+    series->pictures = calloc(weights, sizeof *series->pictures);
     if (series->mean && series->spread && series->weight && series->pictures)
         return true;
     pixel_series_destroy(series);
-    return error_memory(error, values * 2 * sizeof(float) + pixels * (sizeof(float) + sizeof(short)), "variances");
+    return error_memory(error, values * 2 * sizeof(float) + weights * (sizeof(float) + sizeof(short)), "variances");
 }
 
 void pixel_series_destroy(PixelSeries *series)
@@ -27,41 +27,64 @@ void pixel_series_destroy(PixelSeries *series)
     *series = (PixelSeries){0};
 }
 
-void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
+/* Adds to the sum of a pixel's weights, and counts the image. */
+static double weight_add(PixelSeries *series, size_t pixel, double weight)
 {
-    pixel_series_add_part(series, picture, weights, weight, 0, series->pixels);
+    double sum = (double)series->weight[pixel] + weight;
+    series->weight[pixel] = (float)sum;
+    if (series->pictures[pixel] < USHRT_MAX)
+        ++series->pictures[pixel];
+    return sum;
 }
 
-void pixel_series_add_part(PixelSeries *series, const float *picture, const uint32_t *weights, double weight,
-                           size_t first, size_t end)
+/* part: `own`, the weight of the pixel in this image, over the sum of its weights. */
+static void pixel_add(PixelSeries *series, const float *picture, size_t pixel, double own, double part)
 {
     size_t channels = (size_t)series->channels;
-    for (size_t i = first; i < end; ++i) {
+    for (size_t value = pixel * channels; value < (pixel + 1) * channels; ++value) {
+        double distance = (double)picture[value] - (double)series->mean[value];
+        double mean = (double)series->mean[value] + part * distance;
+        series->spread[value] += (float)(own * distance * ((double)picture[value] - mean));
+        series->mean[value] = (float)mean;
+    }
+}
+
+void pixel_series_begin(PixelSeries *series, double weight)
+{
+    series->latest = weight;
+    weight_add(series, 0, weight);
+}
+
+void pixel_series_add_part(PixelSeries *series, const float *picture, size_t first, size_t end)
+{
+    double part = series->latest / (double)series->weight[0];
+    for (size_t i = first; i < end; ++i)
+        pixel_add(series, picture, i, series->latest, part);
+}
+
+void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
+{
+    if (series->uniform) {
+        pixel_series_begin(series, weight);
+        pixel_series_add_part(series, picture, 0, series->pixels);
+        return;
+    }
+    for (size_t i = 0; i < series->pixels; ++i) {
         double own = weights ? weight * (double)weights[i] : weight;
-        if (!(own > 0.0))
-            continue;
-        double sum = (double)series->weight[i] + own, part = own / sum;
-        series->weight[i] = (float)sum;
-        if (series->pictures[i] < USHRT_MAX)
-            ++series->pictures[i];
-        for (size_t value = i * channels; value < (i + 1) * channels; ++value) {
-            double distance = (double)picture[value] - (double)series->mean[value];
-            double mean = (double)series->mean[value] + part * distance;
-            series->spread[value] += (float)(own * distance * ((double)picture[value] - mean));
-            series->mean[value] = (float)mean;
-        }
+        if (own > 0.0)
+            pixel_add(series, picture, i, own, own / weight_add(series, i, own));
     }
 }
 
 double pixel_series_spread(const PixelSeries *series, size_t value)
 {
-    unsigned pictures = series->pictures[value / (size_t)series->channels];
+    unsigned pictures = pixel_series_pictures(series, value / (size_t)series->channels);
     return pictures > 1 ? (double)series->spread[value] / (pictures - 1) : 0.0;
 }
 
 double pixel_series_variance(const PixelSeries *series, size_t value)
 {
-    double weight = (double)series->weight[value / (size_t)series->channels];
+    double weight = pixel_series_weight(series, value / (size_t)series->channels);
     return weight > 0.0 ? pixel_series_spread(series, value) / weight : 0.0;
 }
 
@@ -89,7 +112,7 @@ static void row_compare(const PixelSeries *a, const PixelSeries *b, size_t first
         size_t pixel = i / (size_t)a->channels;
         double distance = (double)a->mean[i] - (double)b->mean[i], middle = middle_of(a, b, i);
         double square = middle * middle + dark;
-        if (a->pictures[pixel] < 2 || b->pictures[pixel] < 2 || !(square > 0.0))
+        if (pixel_series_pictures(a, pixel) < 2 || pixel_series_pictures(b, pixel) < 2 || !(square > 0.0))
             continue;
         sums->found += distance * distance / square;
         sums->stated += (pixel_series_variance(a, i) + pixel_series_variance(b, i)) / square;

@@ -11,22 +11,36 @@
 typedef struct PixelSeries {
     size_t pixels;
     int channels; /* values per pixel, interleaved */
+    bool uniform; /* all pixels of an image have the same weight */
     float *mean; /* pixels x channels */
     float *spread; /* sum of weight x squared deviation from the mean, pixels x channels */
-    float *weight; /* sum of weights, per pixel */
-    unsigned short *pictures; /* number of images in which the pixel had a weight; saturates at 65535 */
+    float *weight; /* sum of weights, per pixel; one if uniform */
+    unsigned short *pictures; /* number of images in which the pixel had a weight; saturates at 65535; one if uniform */
+    double latest; /* weight of the latest image, if uniform */
 } PixelSeries;
 
 /* An empty series; fails when out of memory. */
-bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, Error *error);
+bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, bool uniform, Error *error);
 void pixel_series_destroy(PixelSeries *series);
 
-/* Adds an image. `weights`: per pixel, 0 where it was not sampled; NULL: all 1. They are multiplied by `weight` > 0. */
+/* Adds an image. `weights`: per pixel, 0 where it was not sampled; NULL: all 1, and only that if uniform. They are
+ * multiplied by `weight` > 0. */
 void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight);
 
-/* The same for the pixels first ... end - 1 alone. */
-void pixel_series_add_part(PixelSeries *series, const float *picture, const uint32_t *weights, double weight,
-                           size_t first, size_t end);
+/* The same in parts, for a uniform series: the weight of the image, then the pixels first ... end - 1 of each part. */
+void pixel_series_begin(PixelSeries *series, double weight);
+void pixel_series_add_part(PixelSeries *series, const float *picture, size_t first, size_t end);
+
+/* Sum of the weights of a pixel, and number of its images. */
+static inline double pixel_series_weight(const PixelSeries *series, size_t pixel)
+{
+    return (double)series->weight[series->uniform ? 0 : pixel];
+}
+
+static inline unsigned pixel_series_pictures(const PixelSeries *series, size_t pixel)
+{
+    return series->pictures[series->uniform ? 0 : pixel];
+}
 
 /* Estimate of sigma^2, the variance of a value of weight 1; 0 before the second image. value: pixel x channels +
  * channel. */

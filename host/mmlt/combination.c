@@ -21,10 +21,10 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     if (!combination->known || !combination->rows)
         return error_memory(error, tiles * sizeof *combination->known, "tiles");
     for (int s = 0; s < SERIES_COUNT; ++s)
-        if (!pixel_series_init(&combination->pixels[s], film_pixels(film), 1, error) ||
-            !pixel_series_init(&combination->sums[s], combination_tile_count(combination), 1, error))
+        if (!pixel_series_init(&combination->pixels[s], film_pixels(film), 1, true, error) ||
+            !pixel_series_init(&combination->sums[s], combination_tile_count(combination), 1, true, error))
             return false;
-    return pixel_series_init(&combination->direct, film_pixels(film), 1, error);
+    return pixel_series_init(&combination->direct, film_pixels(film), 1, true, error);
 }
 
 void combination_destroy(Combination *combination)
@@ -82,8 +82,8 @@ static double step_variance(double pool_per_step)
 /* Variance of a step under a plan, relative to its variance with the pools so far. */
 static double chains_factor(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
-    double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
-           steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
+    double pools = pixel_series_weight(&combination->sums[ESTIMATOR_POOL], 0),
+           steps = pixel_series_weight(&combination->sums[ESTIMATOR_CHAINS], 0);
     return step_variance(samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]) / step_variance(pools / steps);
 }
 

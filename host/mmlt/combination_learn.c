@@ -104,11 +104,10 @@ static void row_learn(void *context, size_t row)
     RowRange pixels = row_pixels(learning->combination, row), tiles = row_tiles(learning->combination, row);
     for (int i = 0; i < learning->count && !*learning->stop; ++i) {
         const LearnedImage *image = &learning->images[i];
-        double samples = (double)image->film->light_samples;
         row_image(learning, image, pixels, tiles);
-        pixel_series_add_part(image->pixels, learning->picture, NULL, samples, pixels.first, pixels.end);
+        pixel_series_add_part(image->pixels, learning->picture, pixels.first, pixels.end);
         if (image->tiles)
-            pixel_series_add_part(image->tiles, learning->tiles, NULL, samples, tiles.first, tiles.end);
+            pixel_series_add_part(image->tiles, learning->tiles, tiles.first, tiles.end);
     }
 }
 
@@ -130,6 +129,14 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
     image_learn(&learning, SERIES_RARE, chains, chains->rare_sums);
     if (paths->light_samples > 0)
         learning.images[learning.count++] = (LearnedImage){paths, paths->sums, &combination->direct, NULL};
+    if (*stop)
+        return;
+    for (int i = 0; i < learning.count; ++i) {
+        const LearnedImage *image = &learning.images[i];
+        pixel_series_begin(image->pixels, (double)image->film->light_samples);
+        if (image->tiles)
+            pixel_series_begin(image->tiles, (double)image->film->light_samples);
+    }
     combination_rows_run(combination, row_learn, &learning);
 }
 
@@ -138,7 +145,7 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
 /* Degrees of freedom of the series' variances: the number of its pictures less one. */
 static double freedom_of(const Combination *combination, int s)
 {
-    return combination->pixels[s].pictures[0] > 0 ? combination->pixels[s].pictures[0] - 1.0 : 0.0;
+    return fmax((double)pixel_series_pictures(&combination->pixels[s], 0) - 1.0, 0.0);
 }
 
 /* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
@@ -168,7 +175,8 @@ static double light_bound_best(const Combination *combination, size_t tile, doub
 static double light_square(const Combination *combination, size_t pixel, const CombinationTile *tile, double dark)
 {
     const double area = TILE_SIDE * TILE_SIDE;
-    double steps = (double)combination->pixels[ESTIMATOR_CHAINS].weight[pixel] / (double)combination->direct.pixels;
+    double steps =
+        pixel_series_weight(&combination->pixels[ESTIMATOR_CHAINS], pixel) / (double)combination->direct.pixels;
     double chains = (double)combination->pixels[ESTIMATOR_CHAINS].mean[pixel] +
                     (double)combination->pixels[SERIES_EXCESS].mean[pixel];
     double light = (double)combination->direct.mean[pixel] +
@@ -285,7 +293,7 @@ static double missing_spread(const Combination *combination, int s, size_t tile)
             own += (double)sums[SERIES_RARE].mean[tile];
     }
     double missing = fmax(other - own, 0.0);
-    return missing * missing * (double)sums[s].weight[tile];
+    return missing * missing * pixel_series_weight(&sums[s], tile);
 }
 
 /* An estimator's variance over light in the 3 x 3 tiles around. */

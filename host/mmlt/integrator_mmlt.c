@@ -21,7 +21,6 @@
 static bool generations_run(Mmlt *mmlt, Error *error)
 {
     RenderRun *run = mmlt->run;
-    const RenderOptions *options = run->options;
     Plan *plan = &mmlt->plan;
     while (plan->done < plan->total) {
         double begin = timing_now();
@@ -30,10 +29,13 @@ static bool generations_run(Mmlt *mmlt, Error *error)
             return false;
         double now = timing_now();
         render_run_report(run, plan->timed ? 0.0 : (double)plan->done / (double)plan->total);
-        if (*render_run_stop(run) || (options->seconds > 0.0 && now - run->start >= options->seconds))
+        if (*render_run_stop(run))
+            break;
+        plan_next(plan, mmlt->generation.index, now - begin, timing_now() - run->start);
+        if (run->options->seconds > 0.0 &&
+            !plan_fit(plan, now - begin, run->options->seconds - (timing_now() - run->start)))
             break;
         render_run_save_if_due(run);
-        plan_next(plan, mmlt->generation.index, now - begin, timing_now() - run->start);
     }
     return true;
 }
@@ -49,10 +51,22 @@ static unsigned mmlt_photons(const RenderOptions *options, uint64_t pixels)
     return (unsigned)fmax(count, MMLT_PHOTONS_MIN);
 }
 
+/* What depends on the backend; none of it changes the image of a number of samples. */
+static void backend_adopt(Mmlt *mmlt)
+{
+    BackendStatistics statistics;
+    mmlt->run->interface->statistics(mmlt->run->backend, &statistics);
+    mmlt->plan.width = statistics.width;
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        mmlt->combinations[replica].threads = statistics.threads;
+}
+
 static bool mmlt_render(RenderRun *run, Error *error)
 {
     Mmlt mmlt;
-    bool done = mmlt_init(&mmlt, run, error) && generations_run(&mmlt, error);
+    bool done = mmlt_init(&mmlt, run, error);
+    backend_adopt(&mmlt);
+    done = done && generations_run(&mmlt, error);
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         run->chains.weights[s] = mmlt.combinations[0].weight[s];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)

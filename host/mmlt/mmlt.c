@@ -56,20 +56,16 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
 
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
 {
-    BackendStatistics statistics;
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .scheme = mmlt_scheme(run->options->chains.paper)};
     options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
     plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
-    run->interface->statistics(run->backend, &statistics);
-    mmlt->plan.width = statistics.width;
     if (!estimators_init(mmlt, error))
         return false;
     for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica) {
         if (!combination_init(&mmlt->combinations[replica], run->film, error))
             return false;
         mmlt->combinations[replica].shown = mmlt->options.shown;
-        mmlt->combinations[replica].threads = statistics.threads;
     }
     mmlt->generation = generation_at(run, mmlt->scheme, 0);
     return true;

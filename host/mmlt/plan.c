@@ -100,6 +100,16 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
     plan->chains = left < next ? (uint)left : next;
 }
 
+bool plan_fit(Plan *plan, double seconds, double left)
+{
+    double expected = seconds * chain_work(plan) * plan->chains / (double)plan->last;
+    if (left <= 0.0 || (plan->scheme->grows && left < LAST_PART * expected))
+        return false;
+    if (plan->scheme->grows && left < expected)
+        plan->chains = (uint)fmax(plan->chains * (left / expected), 1.0);
+    return true;
+}
+
 uint plan_pool_samples(const Plan *plan, uint chains)
 {
     double pixels = (double)plan->pixels, steps = steps_of(plan, chains),

@@ -58,6 +58,9 @@
 /* ... or this much if that allows a path tracing sample of every pixel. */
 #define WHOLE_SAMPLE_PART 0.25
 
+/* The last generation is fitted into the time that is left, if that is more than this fraction of what it would take. */
+#define LAST_PART 0.25
+
 /* Most items in a pass of path tracing. */
 #define PATHS_MAX (1u << 24)
 

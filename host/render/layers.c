@@ -52,8 +52,8 @@ static bool variance_init(RenderLayers *layers, const Film *film, Error *error)
             return error_memory(error, tiles * sizeof *layers->stratified[i], "variances");
     }
     for (int i = 0; i < 2; ++i)
-        if (!pixel_series_init(&layers->own[i], film_pixels(film), 3, error) ||
-            !pixel_series_init(&layers->light[i], film_pixels(film), 3, error))
+        if (!pixel_series_init(&layers->own[i], film_pixels(film), 3, false, error) ||
+            !pixel_series_init(&layers->light[i], film_pixels(film), 3, true, error))
             return false;
     return true;
 }
@@ -128,7 +128,7 @@ static double variance_of(const PixelSeries halves[2], size_t value)
     size_t pixel = value / (size_t)halves->channels;
     double sum = 0.0, weight = 0.0;
     for (int i = 0; i < 2; ++i) {
-        double own = (double)halves[i].weight[pixel];
+        double own = pixel_series_weight(&halves[i], pixel);
         sum += own * own * pixel_series_variance(&halves[i], value);
         weight += own;
     }

@@ -87,6 +87,23 @@ START_TEST(test_width)
 }
 END_TEST
 
+/* The last generation takes the rest of the time, or is left out if that is little. */
+START_TEST(test_last)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    plan_count(&plan, work_of(&plan));
+    plan.chains = 10 * CHAINS_FIRST; /* ten times the work of the latest generation */
+    ck_assert(plan_fit(&plan, 0.1, 1.1));
+    ck_assert_uint_eq(plan.chains, 10 * CHAINS_FIRST);
+    ck_assert(!plan_fit(&plan, 0.1, 0.99 * LAST_PART));
+    ck_assert(plan_fit(&plan, 0.1, 0.5));
+    ck_assert_uint_ge(plan.chains, 5 * CHAINS_FIRST - 1);
+    ck_assert_uint_le(plan.chains, 5 * CHAINS_FIRST + 1);
+}
+END_TEST
+
 /* Pools have whole samples of all pixels if they have one at least; --mlt=pool is their size. */
 START_TEST(test_pools)
 {
@@ -123,6 +140,7 @@ int main(void)
 {
     Suite *suite = suite_create("plan");
     TCase *tcase = tcase_create("plan");
+    tcase_add_test(tcase, test_last);
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_clock);
     tcase_add_loop_test(tcase, test_width, 0, 2);

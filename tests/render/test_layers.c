@@ -17,7 +17,7 @@ START_TEST(test_series)
     const uint32_t weights[4][2] = {{1, 2}, {10, 0}, {3, 1}, {100, 5}};
     PixelSeries series;
     Error error = {0};
-    ck_assert(pixel_series_init(&series, 2, 1, &error));
+    ck_assert(pixel_series_init(&series, 2, 1, false, &error));
     for (int g = 0; g < 4; ++g)
         pixel_series_add(&series, values[g], weights[g], 0.5);
     for (size_t pixel = 0; pixel < 2; ++pixel) {
