@@ -202,8 +202,8 @@ static bool group_fill(Analysis *analysis, int series, int time, Error *error)
     PixelSeries pixels = {0};
     size_t count = (size_t)analysis->reference.width * (size_t)analysis->reference.height;
     *group = (BenchGroup){0};
-    bool good =
-        pixel_series_init(&pixels, count, 3, true, error) && group_measure(analysis, series, time, &pixels, group, error);
+    bool good = pixel_series_init(&pixels, count, 3, true, error) &&
+                group_measure(analysis, series, time, &pixels, group, error);
     pixel_series_destroy(&pixels);
     if (good && group->runs > 0)
         group_summarise(analysis, series, time, group);
