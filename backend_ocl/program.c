@@ -126,8 +126,6 @@ static bool build_from_source(const OclProgram *program, const char *source, cl_
     const char *device = program->device->info.name;
     bool driver_keeps = program->device->keeps_programs;
     uint64_t start = timeline_now();
-    if (!driver_keeps)
-        log_message(LOG_INFO, "building the kernels for %s; they are kept for later runs", device);
     *built = clCreateProgramWithSource(program->context, 1, &source, NULL, &status);
     if (status != CL_SUCCESS)
         return ocl_fail(error, device, "making a program", status);
@@ -194,6 +192,8 @@ static bool text_build(OclProgram *program, const char *text, cl_program *built,
         return build_from_source(program, text, built, error);
     if (build_from_cache(program, key, built))
         return true;
+    if (program->cached) /* the first that is built */
+        log_message(LOG_INFO, "building kernels for %s; they are kept for later runs", info->name);
     program->cached = false;
     if (!build_from_source(program, text, built, error))
         return false;

@@ -64,7 +64,7 @@ typedef struct RenderProgress {
 
 typedef struct RenderCallbacks {
     void (*progress)(void *context, const RenderProgress *progress); /* a few times a second; may be NULL */
-    /* Called every save_every seconds, also after failures; may be NULL. */
+    /* Called as soon as there is an image, then every save_every seconds, also after failures; may be NULL. */
     bool (*save)(void *context, const Film *film, Error *error);
     void *context;
 } RenderCallbacks;

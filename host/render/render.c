@@ -173,7 +173,8 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
     if (from_light && !film_light_reserve(film, error))
         return false;
-    run.start = run.last_save = timing_now();
+    run.start = timing_now();
+    run.last_save = run.start - options->save_every; /* the first image is due as soon as there is one */
     RenderLayers *layers = options->layers;
     bool done =
         (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&

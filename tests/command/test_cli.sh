@@ -462,7 +462,9 @@ long_render() {
 }
 
 for signal in INT TERM; do
-    long_render --save-every=0.2s --stats=$signal.json -o $signal.exr
+    every=0.2s
+    [ $signal = INT ] || every=10m # the first image is written at once
+    long_render --save-every=$every --stats=$signal.json -o $signal.exr
     wait_for $signal.exr # written by --save-every
     rm -f $signal.exr $signal.png
     kill -s $signal $process
