@@ -75,7 +75,8 @@ static float luminance_of(const int64_t *sums, double scale)
 typedef struct LearnedImage {
     const Film *film;
     const int64_t *sums;
-    PixelSeries *pixels, *tiles; /* tiles: NULL if their sums are not wanted */
+    PixelSeries *pixels, *tiles; /* luminances of pixels, and summed over tiles */
+    bool has_tiles;
 } LearnedImage;
 
 typedef struct FilmsLearning {
@@ -106,7 +107,7 @@ static void row_learn(void *context, size_t row)
         const LearnedImage *image = &learning->images[i];
         row_image(learning, image, pixels, tiles);
         pixel_series_add_part(image->pixels, learning->picture, pixels.first, pixels.end);
-        if (image->tiles)
+        if (image->has_tiles)
             pixel_series_add_part(image->tiles, learning->tiles, tiles.first, tiles.end);
     }
 }
@@ -114,7 +115,8 @@ static void row_learn(void *context, size_t row)
 static void image_learn(FilmsLearning *learning, int s, const Film *film, const int64_t *sums)
 {
     Combination *combination = learning->combination;
-    learning->images[learning->count++] = (LearnedImage){film, sums, &combination->pixels[s], &combination->sums[s]};
+    learning->images[learning->count++] =
+        (LearnedImage){film, sums, &combination->pixels[s], &combination->sums[s], true};
 }
 
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
@@ -128,13 +130,13 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
     image_learn(&learning, SERIES_EXCESS, chains, chains->sums);
     image_learn(&learning, SERIES_RARE, chains, chains->rare_sums);
     if (paths->light_samples > 0)
-        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, &combination->direct, NULL};
+        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, &combination->direct, NULL, false};
     if (*stop)
         return;
     for (int i = 0; i < learning.count; ++i) {
         const LearnedImage *image = &learning.images[i];
         pixel_series_begin(image->pixels, (double)image->film->light_samples);
-        if (image->tiles)
+        if (image->has_tiles)
             pixel_series_begin(image->tiles, (double)image->film->light_samples);
     }
     combination_rows_run(combination, row_learn, &learning);
