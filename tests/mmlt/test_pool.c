@@ -1,4 +1,5 @@
-/* Which pixels get pool samples with a light subpath, over many generations, on a fake backend that only records. */
+/* Which pixels get pool samples with a light subpath, and which samples path tracing takes, over many generations, on a fake
+ * backend that only records. */
 #include "support/test_util.h"
 
 #include "base/sample_statistics.h"
@@ -16,6 +17,8 @@ struct Backend {
     uint chunks, begun, whole; /* chunks; those with such samples; how many if these were contiguous */
     uint wrong; /* pools with more or fewer such samples than stated */
     bool pilot; /* the next pool is the pilot, before the first generation, which shows nothing */
+    uint paths[REPLICAS]; /* path tracing's samples of each pixel, in even and in odd generations */
+    uint repeated; /* passes of path tracing that do not continue with the next sample of their sequence */
     bool bright; /* path tracing finds light, so that pools adapt their visits */
 };
 
@@ -38,6 +41,15 @@ static void pool_record(Backend *backend, const FrameParams *frame, const Guide 
     }
     backend->whole += (frame->pool.lights + CHUNK - 1) / CHUNK;
     backend->wrong += walks != frame->pool.lights;
+}
+
+/* Even and odd generations have a sequence of samples each, far apart. */
+static void sequence_record(Backend *backend, const FrameParams *frame)
+{
+    uint half = frame->pass.sample_index >> 30, sample = frame->pass.sample_index & 0x3fffffffu;
+    ck_assert_uint_lt(half, REPLICAS);
+    backend->repeated += sample != backend->paths[half];
+    backend->paths[half] += frame->pass.item_count / (frame->film.width * frame->film.height);
 }
 
 /* A separate splat for each path-tracing sample; the lower half of the image is a thousand times darker. */
@@ -65,8 +77,10 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
         if (!backend->pilot)
             pool_record(backend, frame, list->guide);
         backend->pilot = false;
-    } else if (backend->bright) {
-        paths_record(frame, sink);
+    } else {
+        sequence_record(backend, frame);
+        if (backend->bright)
+            paths_record(frame, sink);
     }
     *items_done = frame->pass.item_count;
     return true;
@@ -134,6 +148,9 @@ START_TEST(test_even)
         none += backend.walks[i] == 0 && expected >= 3.0;
         sample_moments_add(&walks, backend.walks[i]);
     }
+    ck_assert_uint_eq(backend.repeated, 0);
+    ck_assert_uint_ge(backend.paths[0], 2);
+    ck_assert_uint_ge(backend.paths[1], 2);
     double deviation = sqrt(walks.squares / walks.count) / walks.mean;
     printf("%d x %d, pools of %.3f of the pixels%s: %.2f walks a pixel, relative deviation %.3f, %.3f times the "
            "variance of "
