@@ -201,16 +201,15 @@ static void row_join(void *context, size_t row)
 {
     const FilmsJoining *joining = context;
     const Combination *combination = joining->combination;
-    const size_t columns = (size_t)combination->tiles[0];
     Film *into = joining->films[ESTIMATOR_CHAINS];
     const Film *paths = joining->films[ESTIMATOR_PATHS];
-    PixelWindow window = combination_row_window(combination, row);
-    size_t first = window.y0 * window.width, end = window.y1 * window.width;
+    RowRange pixels = combination_row_pixels(combination, row), tiles = combination_row_tiles(combination, row);
+    size_t first = pixels.first, end = pixels.end;
     /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
     combination->rows[row].full = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         combination->rows[row].full += film_full_pixels_of(joining->films[s], first, end);
-    for (size_t tile = row * columns; tile < (row + 1) * columns; ++tile)
+    for (size_t tile = tiles.first; tile < tiles.end; ++tile)
         weights_set(combination, &combination->known[tile], joining->samples, joining->known);
     EstimatorSums sums = estimator_sums(joining->films);
     sums_join(combination, &sums, joining->samples, joining->worth, first, end);

@@ -44,18 +44,13 @@ PixelWindow combination_row_window(const Combination *combination, size_t row)
     return (PixelWindow){width, 0, row * TILE_SIDE, width, end < height ? end : height};
 }
 
-/* Numbers of things in a row: first ... end - 1. */
-typedef struct RowRange {
-    size_t first, end;
-} RowRange;
-
-static RowRange row_pixels(const Combination *combination, size_t row)
+RowRange combination_row_pixels(const Combination *combination, size_t row)
 {
     PixelWindow window = combination_row_window(combination, row);
     return (RowRange){window.y0 * window.width, window.y1 * window.width};
 }
 
-static RowRange row_tiles(const Combination *combination, size_t row)
+RowRange combination_row_tiles(const Combination *combination, size_t row)
 {
     size_t columns = (size_t)combination->tiles[0];
     return (RowRange){row * columns, (row + 1) * columns};
@@ -102,7 +97,8 @@ static void row_image(const FilmsLearning *learning, const LearnedImage *image, 
 static void row_learn(void *context, size_t row)
 {
     const FilmsLearning *learning = context;
-    RowRange pixels = row_pixels(learning->combination, row), tiles = row_tiles(learning->combination, row);
+    RowRange pixels = combination_row_pixels(learning->combination, row),
+             tiles = combination_row_tiles(learning->combination, row);
     for (int i = 0; i < learning->count && !*learning->stop; ++i) {
         const LearnedImage *image = &learning->images[i];
         row_image(learning, image, pixels, tiles);
@@ -190,7 +186,7 @@ static double light_square(const Combination *combination, size_t pixel, const C
 static void row_light(void *context, size_t row)
 {
     Combination *combination = context;
-    RowRange pixels = row_pixels(combination, row), tiles = row_tiles(combination, row);
+    RowRange pixels = combination_row_pixels(combination, row), tiles = combination_row_tiles(combination, row);
     memset(&combination->known[tiles.first], 0, (tiles.end - tiles.first) * sizeof *combination->known);
     for (size_t i = pixels.first; i < pixels.end; ++i)
         combination->known[combination_tile_of(combination, i)].light += fabs((double)combination->direct.mean[i]);
@@ -240,7 +236,8 @@ static void row_correlate(const TilesSum *sum, RowRange pixels, RowRange tiles, 
 static void row_variances(void *context, size_t row)
 {
     const TilesSum *sum = context;
-    RowRange pixels = row_pixels(sum->combination, row), tiles = row_tiles(sum->combination, row);
+    RowRange pixels = combination_row_pixels(sum->combination, row),
+             tiles = combination_row_tiles(sum->combination, row);
     sum->combination->rows[row] = (CombinationRow){.full = 0};
     row_spreads(sum, pixels);
     row_correlate(sum, pixels, tiles, &sum->combination->rows[row]);

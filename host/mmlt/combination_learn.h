@@ -56,6 +56,14 @@ void combination_rows_run(const Combination *combination, ParallelPart *part, vo
 /* The pixels of a row of tiles, as a window of the image. */
 PixelWindow combination_row_window(const Combination *combination, size_t row);
 
+/* The pixels and the tiles of a row: first ... end - 1. */
+typedef struct RowRange {
+    size_t first, end;
+} RowRange;
+
+RowRange combination_row_pixels(const Combination *combination, size_t row);
+RowRange combination_row_tiles(const Combination *combination, size_t row);
+
 /* Mean light of a tile, in luminances summed over its pixels. */
 double combination_mean_light(const Combination *combination);
 
