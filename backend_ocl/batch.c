@@ -259,7 +259,7 @@ static bool steps_enqueue(Launch *launch, bool *dropped)
     return done;
 }
 
-/* A GPU waits longer for the host than a few turns without a live ray take. */
+/* Turns from one check to the next on a GPU, which would wait for the host at each; not tuned (docs/TUNING.md). */
 #define GPU_CHECK_EVERY 4u
 
 /* The next batch starts to check for live rays one turn before this one ended, since batches differ by a turn or two.

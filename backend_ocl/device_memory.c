@@ -10,7 +10,7 @@
 #define BATCH_MAX (1u << 26)
 
 /* Most words of splats of a batch in flight, unless --batch asks for more: 256 MB in pinned host memory and as much on
- * the device. An H100 takes 64 steps of 258,000 chains through it at a time, more than keeps it busy. */
+ * the device: enough for 64 steps of 258,000 chains. */
 #define SPLAT_WORDS_MOST (1u << 26)
 
 #define STRIDE_STEP 64u

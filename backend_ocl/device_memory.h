@@ -58,7 +58,7 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
 
 /* Items per batch of a list for which memory is reserved. Fewer than `batch` if the list has so many splats per item, as
- * those of chains, that pinning host memory for them all would take seconds. */
+ * those of chains, that a full batch of them would take gigabytes of pinned host memory. */
 uint device_memory_batch(const DeviceMemory *memory, const StepList *list);
 
 /* Splats per item: one for every STEP_SPLAT and one for the end of the list. */
