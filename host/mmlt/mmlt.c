@@ -170,7 +170,7 @@ static bool films_combine(Mmlt *mmlt, Error *error)
     if (!combination_generation(own, &mmlt->combinations[generation->other], films, stop, error))
         return false;
     if (!*stop) /* the other replica is next, and learns from this one */
-        plan_learn(&mmlt->plan, own);
+        plan_learn(&mmlt->plan, generation->index, own);
     return true;
 }
 

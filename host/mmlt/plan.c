@@ -51,10 +51,10 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
     plan->chains = left < plan->chains ? (uint)left : plan->chains;
 }
 
-void plan_learn(Plan *plan, Combination *combination)
+void plan_learn(Plan *plan, uint index, Combination *combination)
 {
     StepRates rates = combination_rates(combination);
-    if (rates.paths > 0.0)
+    if (rates.paths > 0.0 && index % 2 == 1)
         plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
 }
 
@@ -96,7 +96,7 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
         next = next < whole ? whole : next;
     }
     next = next < most ? next : most;
-    uint64_t left = chains_left(plan);
+    uint64_t left = index % 2 == 0 ? (chains_left(plan) + 1) / 2 : chains_left(plan);
     plan->chains = left < next ? (uint)left : next;
 }
 

@@ -23,13 +23,15 @@ typedef struct Plan {
  * limit. options, scheme: must outlive the plan. */
 void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples);
 
-/* Adopts the best rates by what is known; no change until variances are. */
-void plan_learn(Plan *plan, Combination *combination);
+/* Adopts the best rates by what is known after generation `index`; no change until variances are known, nor between the two
+ * generations of a pair. */
+void plan_learn(Plan *plan, uint index, Combination *combination);
 
 /* Counts a generation's work. */
 void plan_count(Plan *plan, uint64_t work);
 
-/* Plans the size of generation `index`. Both of a pair, one for each replica, have the same. With a limit of work the
+/* Plans the size of generation `index`. Both of a pair, one for each replica, have the same, also the last
+ * one before a limit of work. With a limit of work the
  * sizes depend on that alone, so that the image does not depend on the clock. seconds: of the latest generation;
  * elapsed: in all. */
 void plan_next(Plan *plan, uint index, double seconds, double elapsed);
