@@ -46,13 +46,32 @@ typedef struct TileCombination {
     /* weight of path tracing plus rare, against chains and pool plus excess */
     double paths;
     double chains; /* weight of the chains against the pool; both share the excess */
+    double paths_rare; /* weight of path tracing's own rare light against the chains' */
     double variance;
 } TileCombination;
 
-/* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Excess
- * and rare come from the same chains, hence the covariance c. The weight w of the second minimises (1 - w)^2 a + w^2 b
- * + 2 w (1 - w) c. */
-static TileCombination tile_combination(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT])
+/* The weight of one estimate against another, in inverse proportion to their variances. */
+static double weight_against(double own, double other)
+{
+    return fmax(other, SPREAD_MIN) / (fmax(own, SPREAD_MIN) + fmax(other, SPREAD_MIN));
+}
+
+/* The largest weight that path tracing's own rare light may have in a tile, against the chains': that by the variances of
+ * all tiles together. A tile states too small a variance as long as it has not met one of the paths, which are
+ * fireflies. factor: of the chains' variance. */
+static double paths_rare_most(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
+{
+    return samples[ESTIMATOR_PATHS] > 0.0
+               ? weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
+                                factor * combination->rare_chains / samples[ESTIMATOR_CHAINS])
+               : 0.0;
+}
+
+/* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Rare light
+ * is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence the
+ * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c. */
+static TileCombination tile_combination(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
+                                        double rare_most)
 {
     const double *spread = tile->spread;
     double by_chains = samples[ESTIMATOR_CHAINS] / fmax(spread[ESTIMATOR_CHAINS], SPREAD_MIN);
@@ -61,8 +80,13 @@ static TileCombination tile_combination(const CombinationTile *tile, const doubl
     TileCombination best = {.chains = by_chains / (by_chains + by_pool), .variance = a};
     if (!(samples[ESTIMATOR_PATHS] > 0.0))
         return best;
-    double rare = spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS], c = best.chains * fmin(rare, a);
-    double b = fmax(spread[ESTIMATOR_PATHS], SPREAD_MIN) / samples[ESTIMATOR_PATHS] + rare, both = a + b - 2.0 * c;
+    double rare = spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
+           own = spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS], v = fmin(weight_against(own, rare), rare_most),
+           c = (1.0 - v) * best.chains * fmin(rare, a);
+    double b = fmax(spread[ESTIMATOR_PATHS], SPREAD_MIN) / samples[ESTIMATOR_PATHS] + (1.0 - v) * (1.0 - v) * rare +
+               v * v * own,
+           both = a + b - 2.0 * c;
+    best.paths_rare = v;
     best.paths = both > 0.0 ? fmin(fmax((a - c) / both, 0.0), 1.0) : 0.0;
     best.variance = (1.0 - best.paths) * (1.0 - best.paths) * a + best.paths * best.paths * b +
                     2.0 * best.paths * (1.0 - best.paths) * c;
@@ -92,14 +116,15 @@ static double chains_factor(const Combination *combination, const double samples
 static double error_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool with_direct,
                        size_t every)
 {
-    double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples);
+    double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples),
+           rare_most = paths_rare_most(combination, samples, factor);
     for (size_t i = 0; i < combination_tile_count(combination); i += every) {
         CombinationTile tile = combination->known[i];
         tile.spread[ESTIMATOR_CHAINS] *= factor;
         tile.spread[SERIES_EXCESS] *= factor;
         tile.spread[SERIES_RARE] *= factor;
         double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
-        sum += (tile_combination(&tile, samples).variance + direct) /
+        sum += (tile_combination(&tile, samples, rare_most).variance + direct) /
                fmax(tile.light * tile.light + DARK_PART * light * light, SPREAD_MIN);
     }
     return sum;
@@ -115,19 +140,24 @@ static bool combination_known(const Combination *combination, const double sampl
 }
 
 /* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
- * the weight of the pool they start from. So a large picture, of which the first pools visit few pixels, shows mostly
- * path tracing at first. */
+ * the weight of the pool they start from; rare light is the chains' alone. So a large picture, of which the first pools
+ * visit few pixels, shows mostly path tracing at first. */
 static void weights_set(const Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                         bool known)
 {
+    const int shown = combination->shown;
     memset(tile->weight, 0, sizeof tile->weight);
-    if (combination->shown > 0 && samples[combination->shown - 1] > 0.0) {
-        tile->weight[combination->shown - 1] = 1.0;
+    tile->paths_rare = 0.0;
+    if (shown == SHOWN_PATHS_ALONE && samples[ESTIMATOR_PATHS] > 0.0) {
+        tile->weight[ESTIMATOR_PATHS] = tile->paths_rare = 1.0;
+    } else if (shown > 0 && shown <= ESTIMATOR_COUNT && samples[shown - 1] > 0.0) {
+        tile->weight[shown - 1] = 1.0;
     } else if (known) {
-        TileCombination best = tile_combination(tile, samples);
+        TileCombination best = tile_combination(tile, samples, paths_rare_most(combination, samples, 1.0));
         tile->weight[ESTIMATOR_PATHS] = best.paths;
         tile->weight[ESTIMATOR_CHAINS] = (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
+        tile->paths_rare = best.paths_rare;
     } else {
         double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
@@ -140,11 +170,14 @@ static void weights_set(const Combination *combination, CombinationTile *tile, c
 typedef struct EstimatorSums {
     int64_t *light[ESTIMATOR_COUNT]; /* up to the clamping thresholds */
     const int64_t *excess, *rare; /* from chains: what pools and what path tracing leave out */
+    const int64_t *paths_rare; /* the latter from path tracing; in its `light` as well */
 } EstimatorSums;
 
 static EstimatorSums estimator_sums(Film *const films[])
 {
-    EstimatorSums sums = {.excess = films[ESTIMATOR_CHAINS]->sums, .rare = films[ESTIMATOR_CHAINS]->rare_sums};
+    EstimatorSums sums = {.excess = films[ESTIMATOR_CHAINS]->sums,
+                          .rare = films[ESTIMATOR_CHAINS]->rare_sums,
+                          .paths_rare = films[ESTIMATOR_PATHS]->rare_sums};
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         sums.light[s] = films[s]->light_sums;
     return sums;
@@ -154,7 +187,8 @@ static EstimatorSums estimator_sums(Film *const films[])
 static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
 {
     EstimatorSums sums = {.excess = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_OWN),
-                          .rare = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_RARE)};
+                          .rare = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_RARE),
+                          .paths_rare = film_depth_sums(films[ESTIMATOR_PATHS], segments, FILM_KIND_RARE)};
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         sums.light[s] = film_depth_sums(films[s], segments, FILM_KIND_LIGHT);
     return sums;
@@ -166,12 +200,15 @@ static void sums_join(const Combination *combination, const EstimatorSums *sums,
 {
     for (size_t i = 3 * first; i < 3 * end; ++i) {
         const CombinationTile *tile = &combination->known[combination_tile_of(combination, i / 3)];
-        double sum = ((1.0 - tile->weight[ESTIMATOR_PATHS]) * (double)film_sum_shown(sums->excess[i]) +
-                      tile->weight[ESTIMATOR_PATHS] * (double)film_sum_shown(sums->rare[i])) /
+        double paths = tile->weight[ESTIMATOR_PATHS], by_chains = paths * (1.0 - tile->paths_rare);
+        double sum = ((1.0 - paths) * (double)film_sum_shown(sums->excess[i]) +
+                      by_chains * (double)film_sum_shown(sums->rare[i])) /
                      samples[ESTIMATOR_CHAINS];
         for (int s = 0; s < ESTIMATOR_COUNT; ++s)
             if (samples[s] > 0.0)
                 sum += tile->weight[s] * (double)film_sum_shown(sums->light[s][i]) / samples[s];
+        if (paths > 0.0)
+            sum -= by_chains * (double)film_sum_shown(sums->paths_rare[i]) / samples[ESTIMATOR_PATHS];
         sums->light[ESTIMATOR_CHAINS][i] = film_sum_rounded(sum * worth);
     }
 }
@@ -221,6 +258,18 @@ static void row_join(void *context, size_t row)
     memcpy(into->counts + first, paths->counts + first, (end - first) * sizeof *into->counts);
 }
 
+static void weights_average(Combination *combination)
+{
+    const double part = 1.0 / (double)combination_tile_count(combination);
+    memset(combination->weight, 0, sizeof combination->weight);
+    combination->paths_rare = 0.0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            combination->weight[s] += combination->known[i].weight[s] * part;
+        combination->paths_rare += combination->known[i].paths_rare * part;
+    }
+}
+
 /* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's worth, by
  * which film_merge weights it. */
 static void films_join(Combination *combination, Film *const films[])
@@ -235,10 +284,7 @@ static void films_join(Combination *combination, Film *const films[])
     uint64_t full = 0;
     for (int row = 0; row < combination->tiles[1]; ++row)
         full += combination->rows[row].full;
-    memset(combination->weight, 0, sizeof combination->weight);
-    for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-            combination->weight[s] += combination->known[i].weight[s] / (double)combination_tile_count(combination);
+    weights_average(combination);
     into->light_samples = (uint64_t)joining.worth;
     for (int s = ESTIMATOR_CHAINS + 1; s < ESTIMATOR_COUNT; ++s) {
         into->saturated += films[s]->saturated;
@@ -272,12 +318,12 @@ bool combination_generation(Combination *combination, Combination *teacher, Film
 
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors)
 {
-    double light = combination_mean_light(combination);
+    double light = combination_mean_light(combination), rare_most = paths_rare_most(combination, samples, 1.0);
     bool known = combination_known(combination, samples) && light > 0.0;
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         const CombinationTile *tile = &combination->known[i];
         double square = tile->light * tile->light + DARK_PART * light * light;
-        errors[i] = known ? tile_combination(tile, samples).variance / square : 0.0;
+        errors[i] = known ? tile_combination(tile, samples, rare_most).variance / square : 0.0;
     }
 }
 

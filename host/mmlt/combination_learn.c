@@ -58,18 +58,18 @@ RowRange combination_row_tiles(const Combination *combination, size_t row)
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-static float luminance_of(const int64_t *sums, double scale)
+static float luminance_of(const int64_t *sums, const int64_t *less, double scale)
 {
     float rgb[3];
     for (int c = 0; c < 3; ++c)
-        rgb[c] = (float)(scale * (double)film_sum_shown(sums[c]));
+        rgb[c] = (float)(scale * (double)(film_sum_shown(sums[c]) - (less ? film_sum_shown(less[c]) : 0)));
     return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
 /* An image of a generation, and the series that it is added to. */
 typedef struct LearnedImage {
     const Film *film;
-    const int64_t *sums;
+    const int64_t *sums, *less; /* less: what is not part of the image; NULL: all is */
     PixelSeries *pixels, *tiles; /* luminances of pixels, and summed over tiles */
     bool has_tiles;
 } LearnedImage;
@@ -89,7 +89,7 @@ static void row_image(const FilmsLearning *learning, const LearnedImage *image, 
     double unit = ldexp((double)film_pixels(film) / (double)film->light_samples, film->quantum_exponent);
     memset(learning->tiles + tiles.first, 0, (tiles.end - tiles.first) * sizeof *learning->tiles);
     for (size_t i = pixels.first; i < pixels.end; ++i) {
-        learning->picture[i] = luminance_of(image->sums + 3 * i, unit);
+        learning->picture[i] = luminance_of(image->sums + 3 * i, image->less ? image->less + 3 * i : NULL, unit);
         learning->tiles[combination_tile_of(learning->combination, i)] += learning->picture[i];
     }
 }
@@ -108,11 +108,11 @@ static void row_learn(void *context, size_t row)
     }
 }
 
-static void image_learn(FilmsLearning *learning, int s, const Film *film, const int64_t *sums)
+static void image_learn(FilmsLearning *learning, int s, const Film *film, const int64_t *sums, const int64_t *less)
 {
     Combination *combination = learning->combination;
     learning->images[learning->count++] =
-        (LearnedImage){film, sums, &combination->pixels[s], &combination->sums[s], true};
+        (LearnedImage){film, sums, less, &combination->pixels[s], &combination->sums[s], true};
 }
 
 void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
@@ -122,11 +122,13 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
     FilmsLearning learning = {.combination = combination, .picture = picture, .tiles = tiles, .stop = stop};
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (films[s]->light_samples > 0)
-            image_learn(&learning, s, films[s], films[s]->light_sums);
-    image_learn(&learning, SERIES_EXCESS, chains, chains->sums);
-    image_learn(&learning, SERIES_RARE, chains, chains->rare_sums);
-    if (paths->light_samples > 0)
-        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, &combination->direct, NULL, false};
+            image_learn(&learning, s, films[s], films[s]->light_sums, s == ESTIMATOR_PATHS ? paths->rare_sums : NULL);
+    image_learn(&learning, SERIES_EXCESS, chains, chains->sums, NULL);
+    image_learn(&learning, SERIES_RARE, chains, chains->rare_sums, NULL);
+    if (paths->light_samples > 0) {
+        image_learn(&learning, SERIES_PATHS_RARE, paths, paths->rare_sums, NULL);
+        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, NULL, &combination->direct, NULL, false};
+    }
     if (*stop)
         return;
     for (int i = 0; i < learning.count; ++i) {
@@ -284,6 +286,8 @@ static double missing_spread(const Combination *combination, int s, size_t tile)
     double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
         other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
+    } else if (s == SERIES_PATHS_RARE) {
+        other = light_bound(combination, SERIES_RARE, tile, deviations);
     } else {
         other = light_bound_best(combination, tile, deviations);
         if (s == SERIES_EXCESS)
@@ -375,6 +379,17 @@ static void stratification_apply(Combination *combination, const Combination *ot
     }
 }
 
+/* A series' variance relative to light, of all tiles together. */
+static double relative_variance(const Combination *combination, int s)
+{
+    double sum = 0.0, light = combination_mean_light(combination);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        const CombinationTile *tile = &combination->known[i];
+        sum += tile->spread[s] / fmax(tile->light * tile->light + DARK_PART * light * light, SPREAD_MIN);
+    }
+    return sum;
+}
+
 void combination_variances_update(Combination *combination, const Combination *other, double *ratios)
 {
     tiles_sum(combination);
@@ -393,4 +408,6 @@ void combination_variances_update(Combination *combination, const Combination *o
                 (s == SERIES_RARE ? 0.0 : missing_spread(combination, s, i));
         }
     }
+    combination->rare_chains = relative_variance(combination, SERIES_RARE);
+    combination->rare_paths = relative_variance(combination, SERIES_PATHS_RARE);
 }

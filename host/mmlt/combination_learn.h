@@ -13,16 +13,22 @@
 /* Avoids division by zero in tiles without variance or light (black ones). */
 #define SPREAD_MIN 1e-30
 
-/* Two more series of pictures, from chains: light that pools leave out, and light that path tracing leaves out. */
+/* Three more series of pictures. From chains: light that pools leave out, and light that path tracing leaves out. From
+ * path tracing: the latter. */
 #define SERIES_EXCESS ESTIMATOR_COUNT
 #define SERIES_RARE (ESTIMATOR_COUNT + 1)
-#define SERIES_COUNT (ESTIMATOR_COUNT + 2)
+#define SERIES_PATHS_RARE (ESTIMATOR_COUNT + 2)
+#define SERIES_COUNT (ESTIMATOR_COUNT + 3)
+
+/* Combination.shown: path tracing with its own rare light. */
+#define SHOWN_PATHS_ALONE (ESTIMATOR_COUNT + 1)
 
 typedef struct CombinationTile {
     double spread[SERIES_COUNT]; /* variance of one sample, summed over the tile's pixels (tiles_sum) */
     double direct; /* the same of direct light */
     double light, indirect; /* luminances summed over the tile's pixels */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation */
+    double paths_rare; /* the part of rare light that is path tracing's own */
 } CombinationTile;
 
 /* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on threads. */
@@ -41,9 +47,11 @@ typedef struct Combination {
     CombinationRow *rows; /* scratch */
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
+    double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
-    double weight[ESTIMATOR_COUNT]; /* of the latest generation, mean over the tiles */
-    int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it; 0: best weights */
+    double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */
+    int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it, or
+                  SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;
 
 /* Number of tiles, and the tile of a pixel (numbered row by row within the crop). */

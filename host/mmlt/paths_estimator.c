@@ -17,7 +17,7 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool dire
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
-    if (!estimator_init(&paths->own, run, false, !direct_only, error))
+    if (!estimator_init(&paths->own, run, !direct_only, !direct_only, error))
         return false;
     estimator_film_params(&paths->own, &paths->frame.film);
     bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);

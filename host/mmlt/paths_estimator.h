@@ -6,7 +6,7 @@
 #include "mmlt/generation.h"
 
 typedef struct PathsEstimator {
-    Estimator own; /* film.sums: direct light, unless there is no other */
+    Estimator own; /* film.sums: direct light, unless there is no other; rare_sums: the rare part of light_sums */
     FrameParams frame;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
@@ -25,8 +25,7 @@ void paths_estimator_destroy(PathsEstimator *paths);
  * *whole: set to false if stopped before the end. */
 bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, double more, bool *whole, Error *error);
 
-/* Turns the film of a generation that was stopped into a picture by its own: finished samples count for their pixels.
- * Light above the clamping threshold, which chains would have shown, is missing. */
+/* Turns the film of a generation that was stopped into a picture by its own: finished samples count for their pixels. */
 void paths_estimator_alone(PathsEstimator *paths);
 
 #endif

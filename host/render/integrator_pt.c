@@ -41,6 +41,16 @@ static void vertex_record(Recorder *recorder, const PathSteps *steps)
     recorder_kernel(recorder, KERNEL_pt_extend_paths, !steps->caustics);
 }
 
+/* The light that paths have gathered since the last splat: its rare part first, if it is split off. */
+static void splat_record(Recorder *recorder, const PathSteps *steps)
+{
+    if (steps->split) {
+        recorder_kernel(recorder, KERNEL_pt_splat_rare, false);
+        recorder_step(recorder, STEP_SPLAT);
+    }
+    recorder_kernel(recorder, KERNEL_pt_splat, false);
+}
+
 /* What is splatted when a path has ended, or the caustics that belong to it. */
 static void end_record(Recorder *recorder, const PathSteps *steps)
 {
@@ -50,7 +60,7 @@ static void end_record(Recorder *recorder, const PathSteps *steps)
     } else if (steps->caustics) {
         recorder_kernel(recorder, KERNEL_pt_add_caustics, false);
     }
-    recorder_kernel(recorder, KERNEL_pt_splat, false);
+    splat_record(recorder, steps);
 }
 
 /* The second segment, with which direct light ends, is never skipped if that is split off. Splitting by depth disables
@@ -75,7 +85,7 @@ static void steps_record(Recorder *recorder, const PathSteps *steps)
         if (depth == steps->max_depth)
             break;
         if (steps->split_depths && depth > 2) {
-            recorder_kernel(recorder, KERNEL_pt_splat, false);
+            splat_record(recorder, steps);
             recorder_step(recorder, STEP_SPLAT);
         }
         vertex_record(recorder, steps);
@@ -123,6 +133,8 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_CAUSTIC_SEGMENTS, 1, false, "segments of the caustic path"),
     PATH_FIELD(PATH_CAUSTIC_LIGHT, 1, false, "light of its photon"),
     PATH_FIELD(PATH_CAUSTIC_BETA, 3, true, "throughput of the caustic path"),
+    PATH_FIELD(PATH_RARE, 3, true, "rare radiance"),
+    PATH_FIELD(PATH_LIGHT_SHOWN, 1, true, "shown part of the light sample"),
 };
 #undef PATH_FIELD
 
@@ -133,8 +145,8 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
                              .split = frame->partition.split_direct != 0,
                              .split_depths = frame->film.split_depths != 0,
                              .caustics = frame->photons.count > 0};
-    size_t per_segment = 9 + (steps.caustics ? 1 + 3 * (CAUSTIC_VERTICES + 1) : 0);
-    if (!recorder_init(&recorder, 8 + (size_t)frame->path.max_depth * per_segment, error))
+    size_t per_segment = 11 + (steps.caustics ? 1 + 3 * (CAUSTIC_VERTICES + 1) : 0);
+    if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
     steps_record(&recorder, &steps);
     *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);

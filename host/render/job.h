@@ -24,7 +24,9 @@ typedef struct ChainOptions {
     bool shiftless; /* no shifts (chain/shift.h) */
     bool unguided; /* no light guides (light/light_guide.h) */
     bool chains_only; /* show chains and direct light only; no combination (mmlt/combination.h) */
-    int shown; /* for tests: 1 + ESTIMATOR_*, to show that estimator and what it leaves to chains; 0: all */
+    /* For tests: 1 + ESTIMATOR_*, to show that estimator and what it leaves to chains, or SHOWN_PATHS_ALONE
+     * (mmlt/combination_learn.h); 0: all. */
+    int shown;
 } ChainOptions;
 
 /* As many photons as the integrator draws by if nothing else is said. */

@@ -72,6 +72,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store_float(paths, stride, PATH_LIMIT, item,
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
+        state_store_vec3(paths, stride, PATH_RARE, item, vec3_splat(0.0f));
     }
     if (frame->photons.count > 0u) {
         state_store(paths, stride, PATH_DELTA, item, 0u);
@@ -84,20 +85,25 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     }
 }
 
-/* Adds light of a path of `segments` segments. */
+/* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold (path_shown). */
 SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                       uint segments, Vec3 radiance)
+                                       uint segments, Vec3 radiance, float shown)
 {
     uint stride = frame->pass.stride;
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, PATH_GATHERED, item, segments);
     Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, item);
-    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_add(sum, radiance));
+    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_add(sum, vec3_scale(radiance, shown)));
+    if (shown < 1.0f) {
+        Vec3 rare = state_load_vec3(paths, stride, PATH_RARE, item);
+        state_store_vec3(paths, stride, PATH_RARE, item, vec3_add(rare, vec3_scale(radiance, 1.0f - shown)));
+    }
 }
 
 /* The part of its contribution that a path of `segments` segments shows. path_tracing: the luminance of f over the sum
  * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->partition.split_direct what is
- * below the clamping threshold is shown; chains show the rest (chain/mutation.h). */
+ * below the clamping threshold is shown; the rest is the rare light, which chains (chain/mutation.h) and pt_splat_rare
+ * show. */
 SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint item,
                                  uint segments, float path_tracing)
 {
@@ -126,8 +132,8 @@ SHARED_FUNCTION void path_add_met(const SceneView *scene, __global uint *restric
     if (frame->photons.count > 0u)
         light = vec3_scale(light, receiver_rest(scene, paths, PATH_RECEIVER, item,
                                                 state_load(paths, stride, PATH_DELTA, item), segments - 1u));
-    weight *= path_shown(frame, paths, item, segments, rgb_luminance(light) * balance * alpha);
-    path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight));
+    float shown = path_shown(frame, paths, item, segments, rgb_luminance(light) * balance * alpha);
+    path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight), shown);
 }
 
 /* The probability with which the vertex that the path has left chooses the light. */
@@ -253,11 +259,13 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
     float path_tracing = rgb_luminance(light_term) / (pdf + pdf_other);
     light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
-    light_term = vec3_scale(light_term, path_shown(frame, paths, item, depth + 1u, path_tracing));
     Ray shadow = light_shadow_ray(p, ng, &sample);
     if (!ray_traceable(shadow.o, shadow.d))
         return;
     state_store_vec3(paths, stride, PATH_LIGHT, item, light_term);
+    if (frame->partition.split_direct != 0u)
+        state_store_float(paths, stride, PATH_LIGHT_SHOWN, item,
+                          path_shown(frame, paths, item, depth + 1u, path_tracing));
     ray_store(shadows, stride, item, shadow);
 }
 
@@ -273,7 +281,9 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
     if (state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
         path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item) + 1u,
-                          state_load_vec3(paths, stride, PATH_LIGHT, item));
+                          state_load_vec3(paths, stride, PATH_LIGHT, item),
+                          frame->partition.split_direct != 0u ? state_load_float(paths, stride, PATH_LIGHT_SHOWN, item)
+                                                              : 1.0f);
 }
 
 /* The probability with which Russian roulette lets the path live: its throughput; 1 or more: certainly. */
@@ -403,6 +413,24 @@ __kernel void pt_add_caustics(__global const FrameParams *restrict frame, __glob
     uint item = (uint)get_global_id(0);
     if (item < frame->pass.item_count)
         path_move(frame, paths, item, PATH_CAUSTIC_RADIANCE, PATH_RADIANCE);
+}
+
+/* Only with frame->partition.split_direct. From: the finished path, or with frame->film.split_depths one under way. To: a
+ * splat of its rare light, if it has any. */
+__kernel void pt_splat_rare(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                            __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
+        return;
+    if (vec3_is_zero(state_load_vec3(paths, stride, PATH_RARE, item))) {
+        state_store(splats, stride, SPLAT_PIXEL, item, NONE);
+        return;
+    }
+    uint flags = SPLAT_LIGHT | SPLAT_RARE;
+    if (frame->film.split_depths != 0u)
+        flags |= splat_depth(frame->film.split_depths, state_load(paths, stride, PATH_GATHERED, item));
+    path_splat(frame, paths, splats, diagnostics, item, PATH_RARE, flags);
 }
 
 /* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's sample

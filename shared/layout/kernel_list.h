@@ -20,6 +20,7 @@
     X(pt_keep_direct, 2, BUFFER_FRAME, BUFFER_PATHS)                                                                   \
     X(pt_splat_caustics, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                             \
     X(pt_add_caustics, 2, BUFFER_FRAME, BUFFER_PATHS)                                                                  \
+    X(pt_splat_rare, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                 \
     X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
     X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
       BUFFER_HITS, BUFFER_SPLATS)

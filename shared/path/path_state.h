@@ -29,7 +29,10 @@
 #define PATH_CAUSTIC_SEGMENTS 57u /* of the caustic path under way, with its last ray */
 #define PATH_CAUSTIC_LIGHT 58u /* PHOTON_LIGHT of the photon that drew it */
 #define PATH_CAUSTIC_BETA 59u /* its throughput, 3 */
-#define PATH_WORDS 62u
+/* frame->partition.split_direct */
+#define PATH_RARE 62u /* gathered so far above the clamping threshold, 3 */
+#define PATH_LIGHT_SHOWN 65u /* the part of PATH_LIGHT that is below it */
+#define PATH_WORDS 66u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 

@@ -28,6 +28,7 @@ static void estimators_init(Estimators *estimators)
         ck_assert(film_light_reserve(&estimators->films[s], &error));
     }
     ck_assert(film_rare_reserve(&estimators->films[ESTIMATOR_CHAINS], &error));
+    ck_assert(film_rare_reserve(&estimators->films[ESTIMATOR_PATHS], &error));
     ck_assert(combination_init(&estimators->combination, &estimators->films[0], &error));
 }
 
@@ -318,6 +319,75 @@ START_TEST(test_excess)
 }
 END_TEST
 
+/* Rare light that chains and path tracing both find: each counts by its variance (_i 0), also where path tracing has not
+ * found it, whose variance is then that of finding it once (_i 1). */
+START_TEST(test_rare)
+{
+    Estimators estimators;
+    double mean = 0.0;
+    estimators_init(&estimators);
+    for (int g = 0; g < 60; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 3.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 3.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 0.1);
+        Film *chains = &estimators.films[ESTIMATOR_CHAINS], *paths = &estimators.films[ESTIMATOR_PATHS];
+        for (size_t i = 0; i < PIXELS; ++i) {
+            double found = 2.0 + noise(&estimators) / sqrt(4.0),
+                   own = _i == 1 ? 0.0 : 2.0 + sqrt(2.0) * noise(&estimators) / sqrt(2.0);
+            for (size_t c = 0; c < 3; ++c) {
+                chains->rare_sums[3 * i + c] = llrint(4.0 * found * 0x1p30);
+                paths->rare_sums[3 * i + c] = llrint(2.0 * own * 0x1p30);
+                paths->light_sums[3 * i + c] += paths->rare_sums[3 * i + c];
+            }
+        }
+        mean = generation(&estimators);
+    }
+    double rare = estimators.combination.paths_rare;
+    printf("rare light: weight of path tracing %.3f, its own part %.3f, mean %.3f\n",
+           estimators.combination.weight[ESTIMATOR_PATHS], rare, mean);
+    ck_assert_double_eq_tol(mean, 3.0, _i == 1 ? 0.1 : 0.05);
+    if (_i == 1)
+        ck_assert_double_lt(rare, 0.02);
+    else
+        ck_assert_double_eq_tol(rare, 0.25 / (0.25 + 1.0), 0.02);
+    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light, of the covariance with the chains' .8 times
+     * (1 - rare) / 4. */
+    double chains = 1.8, own = 0.005 + (_i == 1 ? 0.25 : 0.2), both = _i == 1 ? 0.2 : 0.16;
+    ck_assert_double_eq_tol(estimators.combination.weight[ESTIMATOR_PATHS],
+                            (chains - both) / (chains + own - 2.0 * both), 0.01);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
+/* Path tracing's own rare light has many fireflies in a few tiles and none elsewhere, where its stated variance is small:
+ * it has no weight there either. */
+START_TEST(test_fireflies)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 20; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 1.0);
+        Film *chains = &estimators.films[ESTIMATOR_CHAINS], *paths = &estimators.films[ESTIMATOR_PATHS];
+        for (size_t i = 0; i < PIXELS; ++i) {
+            double found = 0.1 + 0.1 * noise(&estimators), own = 0.1 + 0.01 * noise(&estimators);
+            if (i % SIDE < 4 && i / SIDE == (size_t)g % 4)
+                own += 100.0;
+            for (size_t c = 0; c < 3; ++c) {
+                chains->rare_sums[3 * i + c] = llrint(4.0 * found * 0x1p30);
+                paths->rare_sums[3 * i + c] = llrint(2.0 * own * 0x1p30);
+                paths->light_sums[3 * i + c] += paths->rare_sums[3 * i + c];
+            }
+        }
+        generation(&estimators);
+    }
+    printf("fireflies: weight of path tracing's rare light %.5f\n", estimators.combination.paths_rare);
+    ck_assert_double_lt(estimators.combination.paths_rare, 0.01);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
 /* The plan gives time to the estimator with low variance: only path tracing, or only chains. The error of chains also
  * falls with the size of pools, so these get 0.45 of the time of both; path tracing gets its minimum, one twentieth. */
 START_TEST(test_plan)
@@ -443,6 +513,8 @@ int main(void)
     tcase_add_test(tcase, test_beside);
     tcase_add_test(tcase, test_dot);
     tcase_add_test(tcase, test_excess);
+    tcase_add_loop_test(tcase, test_rare, 0, 2);
+    tcase_add_test(tcase, test_fireflies);
     tcase_add_loop_test(tcase, test_plan, 0, 2);
     tcase_add_test(tcase, test_importance);
     tcase_add_loop_test(tcase, test_visits, 0, 2);

@@ -6,6 +6,7 @@
 #include "camera/film_sum.h"
 #include "mmlt/combination_learn.h"
 #include "mmlt/importance.h"
+#include "mmlt/plan.h"
 #include "mmlt/tuning.h"
 
 /* Width and height differ, and half of the last row of tiles is outside the image. */
@@ -43,6 +44,8 @@ static void known_tell(Known *known, double range)
     }
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         known->combination.sums[s].weight[0] = (float)octaves(known, 3.0);
+    known->combination.rare_chains = octaves(known, range);
+    known->combination.rare_paths = octaves(known, range);
 }
 
 static void known_init(Known *known, unsigned seed)
@@ -66,41 +69,60 @@ static void known_destroy(Known *known)
 
 /* ---- weights ------------------------------------------------------------------------------------------------------ */
 
+/* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in the
+ * tile or, if that is less, in all tiles together. factor: of the chains' variance in `all`. */
+static double rare_weight(const Combination *all, const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
+                          double factor)
+{
+    double chains = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
+           all_chains = factor * all->rare_chains / samples[ESTIMATOR_CHAINS];
+    return fmin(chains / (chains + tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS]),
+                all_chains / (all_chains + all->rare_paths / samples[ESTIMATOR_PATHS]));
+}
+
 /* Variance of a tile in which path tracing has the weight w and the rest is split between chains (weight c) and pool.
  * The excess that pools clamp comes from chains and goes with chains and pool; the rare remainder of path tracing goes
  * with path tracing. Model of mmlt/combination.c: the rare remainder is correlated with the other estimate through the
  * chains' weight c in it. */
-static double combined_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double w, double c)
+static double combined_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, double w,
+                                double c)
 {
-    double rare = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS];
+    double by_chains = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
+           rare =
+               v * v * tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS] + (1.0 - v) * (1.0 - v) * by_chains;
     double others = c * c * tile->spread[ESTIMATOR_CHAINS] / samples[ESTIMATOR_CHAINS] +
                     (1.0 - c) * (1.0 - c) * tile->spread[ESTIMATOR_POOL] / samples[ESTIMATOR_POOL] +
                     tile->spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
     double paths = tile->spread[ESTIMATOR_PATHS] / samples[ESTIMATOR_PATHS] + rare;
     if (!(w > 0.0))
         return others; /* also if path tracing has no samples */
-    return (1.0 - w) * (1.0 - w) * others + w * w * paths + 2.0 * w * (1.0 - w) * c * fmin(rare, others);
+    return (1.0 - w) * (1.0 - w) * others + w * w * paths +
+           2.0 * w * (1.0 - w) * c * (1.0 - v) * fmin(by_chains, others);
 }
 
 /* Ternary search in [0, 1] for the weight with the least variance, which is convex in either: of path tracing
  * (of_paths), or of chains relative to the pool. */
-static double weight_search(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], bool of_paths, double c)
+static double weight_search(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, bool of_paths,
+                            double c)
 {
     double low = 0.0, high = 1.0;
     for (int step = 0; step < 100; ++step) {
         double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-        double at_a = of_paths ? combined_variance(tile, samples, a, c) : combined_variance(tile, samples, 0.0, a);
-        double at_b = of_paths ? combined_variance(tile, samples, b, c) : combined_variance(tile, samples, 0.0, b);
+        double at_a =
+            of_paths ? combined_variance(tile, samples, v, a, c) : combined_variance(tile, samples, v, 0.0, a);
+        double at_b =
+            of_paths ? combined_variance(tile, samples, v, b, c) : combined_variance(tile, samples, v, 0.0, b);
         *(at_a < at_b ? &high : &low) = at_a < at_b ? b : a;
     }
     return 0.5 * (low + high);
 }
 
-static double least_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double *w, double *c)
+static double least_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, double *w,
+                             double *c)
 {
-    *c = weight_search(tile, samples, false, 0.0);
-    *w = weight_search(tile, samples, true, *c);
-    return combined_variance(tile, samples, *w, *c);
+    *c = weight_search(tile, samples, v, false, 0.0);
+    *w = weight_search(tile, samples, v, true, *c);
+    return combined_variance(tile, samples, v, *w, *c);
 }
 
 /* The estimator's value in a channel of pixel i, in units of the film: different for all estimators, channels and
@@ -133,6 +155,9 @@ START_TEST(test_weights_known)
     for (size_t i = 0; i < 3 * PIXELS; ++i) {
         pupil.film.sums[i] = llrint(4.0 * estimator_value(SERIES_EXCESS, i / 3, i % 3));
         pupil.film.rare_sums[i] = llrint(4.0 * estimator_value(SERIES_RARE, i / 3, i % 3));
+        others[1].film.rare_sums[i] =
+            llrint(samples[ESTIMATOR_PATHS] / PIXELS * estimator_value(SERIES_PATHS_RARE, i / 3, i % 3));
+        others[1].film.light_sums[i] += others[1].film.rare_sums[i];
     }
     if (_i == 2)
         others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
@@ -141,14 +166,16 @@ START_TEST(test_weights_known)
     TEST_NEAR(work * PIXELS, FIRST_WORTH * estimators_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
         const CombinationTile *tile = &teacher.combination.known[combination_tile_of(&teacher.combination, i)];
-        double w = 0.0, c = weight_search(tile, samples, false, 0.0);
+        double w = 0.0, v = _i == 1 ? 0.0 : rare_weight(&teacher.combination, tile, samples, 1.0),
+               c = weight_search(tile, samples, v, false, 0.0);
         if (_i != 1)
-            least_variance(tile, samples, &w, &c);
+            least_variance(tile, samples, v, &w, &c);
         for (size_t k = 0; k < 3; ++k) {
             double expected =
                 (1.0 - w) * (c * estimator_value(ESTIMATOR_CHAINS, i, k) +
                              (1.0 - c) * estimator_value(ESTIMATOR_POOL, i, k) + estimator_value(SERIES_EXCESS, i, k)) +
-                w * (estimator_value(ESTIMATOR_PATHS, i, k) + estimator_value(SERIES_RARE, i, k));
+                w * (estimator_value(ESTIMATOR_PATHS, i, k) + v * estimator_value(SERIES_PATHS_RARE, i, k) +
+                     (1.0 - v) * estimator_value(SERIES_RARE, i, k));
             TEST_NEAR((double)pupil.film.light_sums[3 * i + k] / work / expected, 1.0, 1e-6);
         }
     }
@@ -181,8 +208,9 @@ START_TEST(test_errors_known)
     combination_errors(&known.combination, samples, errors);
     for (size_t i = 0; i < tiles; ++i) {
         const CombinationTile *tile = &known.combination.known[i];
+        double v = rare_weight(&known.combination, tile, samples, 1.0);
         double expected =
-            least_variance(tile, samples, &w, &c) / (tile->light * tile->light + dark_square(&known.combination));
+            least_variance(tile, samples, v, &w, &c) / (tile->light * tile->light + dark_square(&known.combination));
         TEST_NEAR(errors[i] / expected, 1.0, 1e-6);
     }
     known_destroy(&known);
@@ -213,7 +241,8 @@ static double picture_error(const Combination *combination, const double samples
         tile.spread[ESTIMATOR_CHAINS] *= factor;
         tile.spread[SERIES_EXCESS] *= factor;
         tile.spread[SERIES_RARE] *= factor;
-        sum += (least_variance(&tile, samples, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
+        double v = rare_weight(combination, &tile, samples, factor);
+        sum += (least_variance(&tile, samples, v, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
                (tile.light * tile.light + dark);
     }
     return sum;
@@ -288,9 +317,10 @@ START_TEST(test_worth_known)
                 tile.spread[ESTIMATOR_CHAINS] *= factor;
                 tile.spread[SERIES_EXCESS] *= factor;
                 tile.spread[SERIES_RARE] *= factor;
-                double least = of[ESTIMATOR_PATHS] > 0.0
-                                   ? least_variance(&tile, of, &w, &c)
-                                   : combined_variance(&tile, of, 0.0, weight_search(&tile, of, false, 0.0));
+                bool paths = of[ESTIMATOR_PATHS] > 0.0;
+                double v = paths ? rare_weight(&teacher.combination, &tile, of, factor) : 0.0;
+                double least = paths ? least_variance(&tile, of, v, &w, &c)
+                                     : combined_variance(&tile, of, v, 0.0, weight_search(&tile, of, v, false, 0.0));
                 errors[k] += least / (tile.light * tile.light + dark);
             }
         Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
@@ -304,6 +334,24 @@ START_TEST(test_worth_known)
     known_destroy(&pupil);
     known_destroy(&others[0]);
     known_destroy(&others[1]);
+}
+END_TEST
+
+/* The rates of the least error become the plan's after the second generation of a pair, so that both have the same. */
+START_TEST(test_rates_adopted)
+{
+    Known known;
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    Plan plan;
+    known_init(&known, 29);
+    StepRates best = combination_rates(&known.combination);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 16);
+    const StepRates first = plan.rates;
+    plan_learn(&plan, 2, &known.combination);
+    TEST_TRUE(plan.rates.paths == first.paths && plan.rates.pool == first.pool && first.paths != best.paths);
+    plan_learn(&plan, 3, &known.combination);
+    TEST_TRUE(plan.rates.paths == best.paths && plan.rates.pool == fmax(best.pool, POOL_PER_STEP));
+    known_destroy(&known);
 }
 END_TEST
 
@@ -406,6 +454,7 @@ TCase *combination_known_tests(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, test_weights_known, 0, 3);
     tcase_add_test(tcase, test_errors_known);
+    tcase_add_test(tcase, test_rates_adopted);
     tcase_add_test(tcase, test_plan_known);
     tcase_add_test(tcase, test_worth_known);
     tcase_add_test(tcase, test_importance_known);

@@ -9,6 +9,8 @@
 
 /* Most by which two parts of a path may miss one: rounding of f, and of 1 - u. */
 #define SUM_ERROR 2e-6
+/* The same of what path tracing has gathered. */
+#define OWN_ERROR 1e-6
 /* A chain keeps the part that path tracing shows in 16 bits. */
 #define KEY_ERROR (0.5 / 65535.0)
 
@@ -28,7 +30,7 @@ static const float THRESHOLDS[] = {1e-6f, 3e-3f, 0.03f, 0.2f, 1.0f, FLOAT_MAX};
 #define THRESHOLD_COUNT (sizeof THRESHOLDS / sizeof THRESHOLDS[0])
 
 typedef struct Tally {
-    unsigned paths, unfound, clamped;
+    unsigned paths, unfound, clamped, kept;
     unsigned by_s[3]; /* s = 0, 1, more */
     double pool_error, paths_error, same_error, back_error;
 } Tally;
@@ -53,6 +55,10 @@ static void parts_check(const char *name, uint s, uint t, const PathParts *parts
     ck_assert_msg(paths_error <= SUM_ERROR + KEY_ERROR + most * parts->paths,
                   "%s, (%u, %u): path tracing shows %.9g, leaves %.9g to chains", name, s, t, parts->paths,
                   parts->rare);
+    ck_assert_msg(isnan(parts->paths_rare) || fabs(parts->paths + parts->paths_rare - 1.0) <= OWN_ERROR,
+                  "%s, (%u, %u): path tracing shows %.9g and has %.9g as rare light", name, s, t, parts->paths,
+                  parts->paths_rare);
+    tally->kept += parts->paths_rare > 0.0 ? 1u : 0u;
     tally->pool_error = larger(tally->pool_error, pool_error);
     tally->paths_error = larger(tally->paths_error, paths_error);
     if (s < 2)
@@ -115,6 +121,7 @@ START_TEST(test_scenes)
                     BIDIRECTIONAL_FILTERS[(_i + 3 * k) % BIDIRECTIONAL_FILTER_COUNT], 3000, &tally);
     tally_print(scene->name, &tally);
     ck_assert_uint_gt(tally.clamped, 100);
+    ck_assert_uint_gt(tally.kept, 50);
     ck_assert_uint_lt(tally.unfound, tally.paths / 20);
 }
 END_TEST

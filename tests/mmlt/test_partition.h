@@ -24,6 +24,7 @@ typedef struct PathParts {
     double pool; /* part of the path that the pool shows */
     double excess; /* part of a chain's visits that is left by the pool, in the mean over their random numbers */
     double paths; /* part that path tracing shows */
+    double paths_rare; /* part that it keeps as its own rare light; NAN where it gathers nothing or several lights */
     double rare; /* part of a chain's visits that is left by path tracing */
     double pool_carried, chain_carried; /* f by pool and by chain */
     double paths_carried; /* what the path carries in path tracing, over the threshold there */

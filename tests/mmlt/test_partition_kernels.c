@@ -251,6 +251,7 @@ PathFound partition_path(Partition *p, uint s, uint t, uint light, PathParts *pa
     if (seen.count <= place)
         return PATH_UNFOUND;
     parts->paths = (double)seen.calls[place].part;
+    parts->paths_rare = seen.count == 1 ? p->paths_rare : (double)NAN;
     parts->paths_carried = (double)seen.calls[place].carried / (double)seen.calls[place].threshold;
     if (missed && lights > 1u) {
         if (light_visits(p, light, d) < 2.0 / SELECT_TRIES)

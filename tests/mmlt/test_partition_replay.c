@@ -161,26 +161,42 @@ static Hit replay_hit(const Partition *p, uint depth)
     return hit;
 }
 
+/* Forgets what the path has gathered so far. */
+static void gathered_clear(Item *item)
+{
+    state_store_vec3(item->paths, 1, PATH_RADIANCE, 0, vec3_splat(0.0f));
+    state_store_vec3(item->paths, 1, PATH_RARE, 0, vec3_splat(0.0f));
+}
+
 void paths_run(Partition *p, bool met)
 {
     Item *item = &p->paths;
     const FrameParams *frame = &p->paths_frame;
     uint d = p->s + p->t - 1u;
+    bool made = false;
     replayed = p;
     memset(item, 0, sizeof *item);
     pt_start_paths(frame, &p->guide, SCENE_OF(p), item->paths, item->rays, item->shadows, item->diagnostics);
-    for (uint depth = 1; item->paths[PATH_DEPTH] == depth; ++depth) {
+    for (uint depth = 1; !made && item->paths[PATH_DEPTH] == depth; ++depth) {
         hit_store(item->hits, 1, 0, replay_hit(p, depth));
         seen.count = 0;
+        gathered_clear(item);
         pt_shade_hits(frame, NULL, SCENE_OF(p), item->paths, item->rays, item->hits);
-        if (depth == d)
-            return;
-        seen.count = 0;
-        if (depth + 1u == d && !met) {
+        made = depth == d;
+        if (!made && depth + 1u == d && !met) {
+            seen.count = 0;
+            gathered_clear(item);
             pt_sample_lights(frame, SCENE_OF(p), item->paths, item->shadows);
-            return;
+            state_store(item->shadows, 1, SHADOW_OCCLUDED, 0, 0u);
+            pt_add_lights(frame, item->paths, item->shadows);
+            made = true;
         }
-        pt_extend_paths(frame, SCENE_OF(p), item->paths, item->rays, item->diagnostics);
+        if (!made)
+            pt_extend_paths(frame, SCENE_OF(p), item->paths, item->rays, item->diagnostics);
     }
-    seen.count = 0;
+    double shown = (double)rgb_luminance(state_load_vec3(item->paths, 1, PATH_RADIANCE, 0)),
+           rare = (double)rgb_luminance(state_load_vec3(item->paths, 1, PATH_RARE, 0));
+    p->paths_rare = rare / (shown + rare);
+    if (!made)
+        seen.count = 0;
 }

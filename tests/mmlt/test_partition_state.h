@@ -50,6 +50,7 @@ struct Partition {
     const uint *geometry, *tables, *texels;
     SceneView view;
     Item pool, chain, paths;
+    double paths_rare; /* the part of what path tracing has gathered last that is rare; NAN: nothing */
     Hit hits[2][PARTITION_DEPTH + 1]; /* by side: those of y_1 ..., of z_1 ... */
     Seen shown[PARTITION_DEPTH + 2][PARTITION_DEPTH + 2]; /* what the pool shows of (s, t); threshold 0: no path */
     uint sample;

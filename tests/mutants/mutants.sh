@@ -211,7 +211,7 @@ likely() {
     shared/chain/chain_numbers.h) echo test_chain test_partition test_emit ;;
     shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
-    host/mmlt/plan.c) echo test_plan ;;
+    host/mmlt/plan.c) echo test_plan test_combination:known ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;
     host/*) echo test_combination test_pool test_layers ;;
     esac
