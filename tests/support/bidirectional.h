@@ -80,6 +80,9 @@ double groups_p_value(const PictureGroups *a, const PictureGroups *b, int x0, in
  * total. */
 #define P_LIMIT 2.5e-7
 
+/* Variance of the mean of the groups, averaged over pixels. */
+double groups_mean_variance(const PictureGroups *picture);
+
 /* Mean square difference between one group's pixels and the mean of another image, minus that mean's variance. */
 double groups_square_error(const PictureGroups *picture, const PictureGroups *reference);
 

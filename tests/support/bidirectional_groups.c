@@ -128,21 +128,38 @@ void groups_block(const PictureGroups *picture, int x0, int y0, int x1, int y1, 
     *error = sqrt(variance / picture->groups);
 }
 
+/* Mean over the groups. */
+static double pixel_mean(const PictureGroups *picture, size_t pixel)
+{
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    double mean = 0.0;
+    for (int g = 0; g < picture->groups; ++g)
+        mean += picture->values[(size_t)g * pixels + pixel] / picture->groups;
+    return mean;
+}
+
+double groups_mean_variance(const PictureGroups *picture)
+{
+    size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    double squares = 0.0;
+    for (size_t i = 0; i < pixels; ++i) {
+        double mean = pixel_mean(picture, i);
+        for (int g = 0; g < picture->groups; ++g)
+            squares += pow(picture->values[(size_t)g * pixels + i] - mean, 2.0);
+    }
+    return squares / (picture->groups - 1) / picture->groups / (double)pixels;
+}
+
 double groups_square_error(const PictureGroups *picture, const PictureGroups *reference)
 {
     size_t pixels = (size_t)picture->width * (size_t)picture->height;
-    double sum = 0.0, uncertain = 0.0;
+    double sum = 0.0;
     for (size_t i = 0; i < pixels; ++i) {
-        double mean = 0.0, squares = 0.0;
-        for (int g = 0; g < reference->groups; ++g)
-            mean += reference->values[(size_t)g * pixels + i] / reference->groups;
-        for (int g = 0; g < reference->groups; ++g)
-            squares += pow(reference->values[(size_t)g * pixels + i] - mean, 2.0);
-        uncertain += squares / (reference->groups - 1) / reference->groups;
+        double mean = pixel_mean(reference, i);
         for (int g = 0; g < picture->groups; ++g)
             sum += pow(picture->values[(size_t)g * pixels + i] - mean, 2.0) / picture->groups;
     }
-    return (sum - uncertain) / (double)pixels;
+    return sum / (double)pixels - groups_mean_variance(reference);
 }
 
 /* Regularised incomplete beta function by its continued fraction (Abramowitz and Stegun 26.5.8), for x below the
