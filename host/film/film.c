@@ -138,6 +138,19 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
         film_splat_add(&view, splats, stride, item);
 }
 
+void film_add_splats_of(Film *films, uint number, const uint *splats, uint count, uint stride)
+{
+    const uint pixel = (1u << SPLAT_FILM_SHIFT) - 1u;
+    FilmView views[SPLAT_FILMS];
+    for (uint i = 0; i < number; ++i)
+        views[i] = film_view(&films[i]);
+    for (uint item = 0; item < count; ++item) {
+        uint name = state_load(splats, stride, SPLAT_PIXEL, item);
+        if (name != NONE && name >> SPLAT_FILM_SHIFT < number)
+            film_splat_add_as(&views[name >> SPLAT_FILM_SHIFT], name & pixel, splats, stride, item);
+    }
+}
+
 /* ---- adding films ------------------------------------------------------------------------------------------------ */
 
 /* Most sums of a short pass are zero, and testing is cheaper than adding. */

@@ -18,6 +18,8 @@ static bool wants(const RenderLayers *layers, Layer layer)
 static const Layer LAYER_OF_AOV[AOV_COUNT] = {AOV_LIST(LAYER_OF)};
 #undef LAYER_OF
 
+_Static_assert((int)AOV_COUNT <= (int)SPLAT_FILMS, "a splat has bits for the number of the variable");
+
 #define VALUES_OF(NAME, name, text, values, ...) [AOV_##NAME] = (values),
 static const uint AOV_VALUES[AOV_COUNT] = {AOV_LIST(VALUES_OF)};
 #undef VALUES_OF
@@ -155,26 +157,38 @@ void render_layers_variance(const RenderLayers *layers, float scale, size_t firs
 
 /* ---- variables --------------------------------------------------------------------------------------------------- */
 
-static bool aov_list(StepList *list, Error *error)
+/* A pass for `count` variables. */
+static bool aov_list(uint count, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 3, error))
+    if (!recorder_init(&recorder, 1 + 2 * (size_t)count, error))
         return false;
     recorder_kernel(&recorder, KERNEL_pt_start_paths, false);
     recorder_step(&recorder, STEP_TRACE_CLOSEST);
-    recorder_kernel(&recorder, KERNEL_aov_splat, false);
+    for (uint i = 0; i < count; ++i) {
+        if (i > 0)
+            recorder_step(&recorder, STEP_SPLAT);
+        recorder_kernel(&recorder, KERNEL_aov_splat, false);
+    }
     *list = recorder_list(&recorder, PATH_WORDS, NULL, 0);
     return true;
 }
 
-static bool aov_run(Film *film, RenderRun *run, uint aov, unsigned sample, const StepList *list, Error *error)
+static void aov_splats(void *context, const uint *splats, uint count, uint stride)
 {
+    RenderLayers *layers = context;
+    film_add_splats_of(layers->aovs, AOV_COUNT, splats, count, stride);
+}
+
+/* Makes a sample of every pixel of the variables in the bits `aovs`. */
+static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *error)
+{
+    RenderLayers *layers = run->options->layers;
     FrameParams frame = run->frame;
-    const SplatSink sink = render_run_sink(film);
-    frame.pass.aov = aov;
+    const SplatSink sink = {.splats = aov_splats, .context = layers};
+    frame.pass.aovs = aovs;
     frame.path.sobol = 1;
-    frame.film.exponent = film->quantum_exponent;
-    frame.pass.sample_index = run->options->first_sample + sample;
+    frame.pass.sample_index = run->options->first_sample + layers->aov_samples;
     frame.pass.first_item = 0;
     frame.pass.item_count = (uint)run->crop_pixels;
     return run->interface->run(run->backend, &frame, list, &sink, render_run_stop(run), NULL, error);
@@ -184,17 +198,21 @@ bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
 {
     RenderLayers *layers = run->options->layers;
     uint64_t wanted = samples / run->crop_pixels;
+    uint aovs = 0, count = 0;
     StepList list;
     wanted = wanted < AOV_SAMPLES ? wanted : AOV_SAMPLES;
     if (!layers || layers->aov_samples >= wanted || (layers->wanted & LAYERS_AOV) == 0)
         return true;
-    if (!aov_list(&list, error))
+    for (uint aov = 0; aov < AOV_COUNT; ++aov)
+        if (wants(layers, LAYER_OF_AOV[aov])) {
+            aovs |= 1u << aov;
+            ++count;
+        }
+    if (!aov_list(count, &list, error))
         return false;
     bool done = true;
     for (; done && layers->aov_samples < wanted; ++layers->aov_samples)
-        for (uint aov = 0; done && aov < AOV_COUNT; ++aov)
-            done = !wants(layers, LAYER_OF_AOV[aov]) ||
-                   aov_run(&layers->aovs[aov], run, aov, layers->aov_samples, &list, error);
+        done = aov_run(run, aovs, &list, error);
     step_list_destroy(&list);
     return done;
 }

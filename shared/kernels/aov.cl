@@ -1,5 +1,5 @@
 /* Auxiliary variables (AOVs) of a pixel, properties of the first visible surface (layout/aov_list.h). A pass:
- * pt_start_paths, (rays traced) aov_splat. */
+ * pt_start_paths, (rays traced), and for each of its variables aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 
@@ -86,7 +86,7 @@ SHARED_FUNCTION uint aov_values(uint aov)
 #undef VALUES_OF
 }
 
-SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit hit)
+SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint aov, uint pixel, uint sample, Ray ray, Hit hit)
 {
     AovHit found;
     found.surface = surface_from_hit(scene, &ray, hit);
@@ -96,34 +96,39 @@ SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint pixel, uint sample, 
     found.pixel = pixel;
     found.sample = sample;
 #define VALUE(NAME, name, text, values, red, green, blue)                                                              \
-    if (scene->frame->pass.aov == AOV_##NAME)                                                                          \
+    if (aov == AOV_##NAME)                                                                                             \
         return aov_##name(scene, &found);
     AOV_LIST(VALUE)
 #undef VALUE
     return vec3_splat(0.0f);
 }
 
-/* From: closest hits. To: one sample of the variable; of an AOV_DISTANCE none if the ray meets nothing. */
+/* From: closest hits. To: one sample of the next variable (PATH_AOV) of the pass, for the film of that number; of an
+ * AOV_DISTANCE none if the ray meets nothing. */
 __kernel void aov_splat(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
                         __global const uint *restrict tables, __global const uint *restrict texels,
-                        __global const uint *restrict paths, __global const uint *restrict rays,
+                        __global uint *restrict paths, __global const uint *restrict rays,
                         __global const uint *restrict hits, __global uint *restrict splats)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
         return;
     uint pixel = state_load(paths, stride, PATH_PIXEL, item), sample = state_load(paths, stride, PATH_SAMPLE, item);
+    uint aov = state_load(paths, stride, PATH_AOV, item);
+    while (aov < AOV_COUNT && (frame->pass.aovs >> aov & 1u) == 0u)
+        ++aov;
+    state_store(paths, stride, PATH_AOV, item, aov + 1u);
     Hit hit = hit_load(hits, stride, item);
     bool met = state_load(paths, stride, PATH_DEPTH, item) != 0u && hit.primitive != NONE;
     Vec3 value = vec3_splat(0.0f);
     if (met) {
         KERNEL_SCENE(frame, geometry, tables, texels);
-        value = aov_value(scene, pixel, sample, ray_load(rays, stride, item), hit);
+        value = aov_value(scene, aov, pixel, sample, ray_load(rays, stride, item), hit);
     }
-    bool distance = aov_values(frame->pass.aov) == AOV_DISTANCE;
+    bool distance = aov_values(aov) == AOV_DISTANCE;
     if (!distance)
         value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
-    state_store(splats, stride, SPLAT_PIXEL, item, met || !distance ? pixel : NONE);
+    state_store(splats, stride, SPLAT_PIXEL, item, met || !distance ? pixel | aov << SPLAT_FILM_SHIFT : NONE);
     state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
 }
 

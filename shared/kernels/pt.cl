@@ -68,6 +68,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store_float(paths, stride, PATH_ETA_SCALE, item, 1.0f);
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, PATH_GATHERED, item, 0u);
+    if (frame->pass.aovs != 0u)
+        state_store(paths, stride, PATH_AOV, item, 0u);
     if (frame->partition.split_direct != 0u) {
         state_store_float(paths, stride, PATH_LIMIT, item,
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));

@@ -1,5 +1,5 @@
 /* The list of auxiliary variables of a pixel (AOVs), besides light: what denoisers and compositors want. Made from it
- * are their numbers (AOV_*, FrameParams.pass.aov), the dispatch of kernels/aov.cl, and the layers of an image that hold them
+ * are their numbers (AOV_*, FrameParams.pass.aovs), the dispatch of kernels/aov.cl, and the layers of an image that hold them
  * (host/render/layers.h), with their names and channels. */
 #ifndef TWINLIGHT_LAYOUT_AOV_LIST_H
 #define TWINLIGHT_LAYOUT_AOV_LIST_H
@@ -17,7 +17,7 @@
     X(DEPTH, depth, "depth", AOV_DISTANCE, "Z", "", "")
 
 #define AOV_ENUMERATE(NAME, name, text, values, red, green, blue) AOV_##NAME,
-enum { AOV_LIST(AOV_ENUMERATE) AOV_COUNT };
+enum { AOV_LIST(AOV_ENUMERATE) AOV_COUNT }; /* at most SPLAT_FILMS (layout/state.h) */
 #undef AOV_ENUMERATE
 
 #endif

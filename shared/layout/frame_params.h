@@ -90,7 +90,7 @@ typedef struct ChainParams {
 
 typedef struct PassParams {
     uint seed_low, seed_high;
-    uint aov; /* AOV_*: the variable that a pass of kernels/aov.cl is for */
+    uint aovs; /* bits 1 << AOV_*: the variables that a pass of kernels/aov.cl is for */
     uint sample_index; /* item k of the pass is sample sample_index + k / (crop pixels) ... */
     uint pixel_stride; /* ... of crop pixel (k * pixel_stride) mod (crop pixels); 1 except for pilots and pools */
     uint pixel_first; /* added to k in both; 0 except for pools */

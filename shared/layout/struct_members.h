@@ -213,7 +213,7 @@
     STRUCT(PassParams)                                                                                                 \
     MEMBER(PassParams, seed_low)                                                                                       \
     MEMBER(PassParams, seed_high)                                                                                      \
-    MEMBER(PassParams, aov)                                                                                            \
+    MEMBER(PassParams, aovs)                                                                                           \
     MEMBER(PassParams, sample_index)                                                                                   \
     MEMBER(PassParams, pixel_stride)                                                                                   \
     MEMBER(PassParams, pixel_first)                                                                                    \
