@@ -43,6 +43,7 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
                    .total = samples > 0 ? pixels * samples : UINT64_MAX / 2,
                    .timed = samples == 0,
                    .chains = options->chains};
+    plan->planned = chain_work(plan);
     uint64_t left = chains_left(plan);
     if (scheme->grows) {
         left = (left + 1) / 2;
@@ -86,15 +87,24 @@ static uint chains_grown(const Plan *plan, double seconds, double elapsed)
     return next;
 }
 
+/* Fewer than `next` chains if the rates have changed so that these would do more work than before, and more than a path
+ * tracing sample of every pixel may. */
+static uint chains_limited(const Plan *plan, uint next)
+{
+    double most = fmax(plan->planned * (double)next, WHOLE_SAMPLE_PART * (double)plan->done);
+    return (uint)fmax(fmin((double)next, most / chain_work(plan)), 1.0);
+}
+
 void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 {
     uint most = plan->options->chains, whole = chains_of_sample(plan), next = plan->chains;
     if (!plan->scheme->grows || plan->done >= plan->total)
         return;
     if (index % 2 == 0) {
-        next = chains_grown(plan, seconds, elapsed);
+        next = chains_limited(plan, chains_grown(plan, seconds, elapsed));
         next = next < whole ? whole : next;
     }
+    plan->planned = chain_work(plan);
     next = next < most ? next : most;
     uint64_t left = index % 2 == 0 ? (chains_left(plan) + 1) / 2 : chains_left(plan);
     plan->chains = left < next ? (uint)left : next;

@@ -17,6 +17,7 @@ typedef struct Plan {
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
     uint width; /* of the backend (BackendStatistics.width); 0 until set */
     uint chains; /* in the next generation */
+    double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */
 } Plan;
 
 /* Plans the first generation: few chains, for an early image, and at most half of the work. samples: per pixel; 0: no

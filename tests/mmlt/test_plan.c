@@ -52,6 +52,31 @@ START_TEST(test_sizes)
 }
 END_TEST
 
+/* If rates change so that a chain has ten times the work, a generation has as much as before, or a part of the work so
+ * far. */
+START_TEST(test_rates)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    for (uint index = 0; index < 6; ++index) {
+        plan_count(&plan, work_of(&plan));
+        plan_next(&plan, index + 1, 1e9, 1.0); /* a clock by which no generation would grow */
+    }
+    uint64_t before = work_of(&plan), most = (uint64_t)(WHOLE_SAMPLE_PART * (double)plan.done);
+    plan_count(&plan, before);
+    plan_next(&plan, 7, 1e9, 1.0);
+    plan.rates.paths *= 20.0;
+    plan_count(&plan, before);
+    plan_next(&plan, 8, 1e9, 1.0);
+    uint64_t after = work_of(&plan);
+    printf("work of a generation: %llu, then %llu, the part %llu\n", (unsigned long long)before,
+           (unsigned long long)after, (unsigned long long)most);
+    ck_assert_double_le((double)after, 1.1 * fmax((double)before, WHOLE_SAMPLE_PART * (double)plan.done));
+    ck_assert_double_ge((double)after, 0.5 * (double)before);
+}
+END_TEST
+
 /* With a limit of time alone generations double in pairs while one takes less than a part of the time so far. */
 START_TEST(test_clock)
 {
@@ -144,6 +169,7 @@ int main(void)
     TCase *tcase = tcase_create("plan");
     tcase_add_test(tcase, test_last);
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
+    tcase_add_test(tcase, test_rates);
     tcase_add_test(tcase, test_clock);
     tcase_add_loop_test(tcase, test_width, 0, 2);
     tcase_add_test(tcase, test_pools);
