@@ -293,7 +293,7 @@ END_TEST
 /* ---- long tests -------------------------------------------------------------------------------------------------- */
 
 /* Samples of the reference's groups. */
-#define SLOPE_REFERENCE 24000
+#define SLOPE_REFERENCE 6000
 
 /* The mean square error against a reference by bidirectional path tracing falls as 1 / work, without a floor. For chains alone over two
  * decades; combined, it falls faster as long as weights and the pools' visits are learnt (glass, from 3000 samples to
