@@ -417,6 +417,14 @@ __kernel void pt_add_caustics(__global const FrameParams *restrict frame, __glob
         path_move(frame, paths, item, PATH_CAUSTIC_RADIANCE, PATH_RADIANCE);
 }
 
+/* The bits of a splat for the depth of what the path has gathered; 0 without frame->film.split_depths. */
+SHARED_FUNCTION uint path_splat_depth(__global const FrameParams *frame, __global const uint *restrict paths, uint item)
+{
+    if (frame->film.split_depths == 0u)
+        return 0u;
+    return splat_depth(frame->film.split_depths, state_load(paths, frame->pass.stride, PATH_GATHERED, item));
+}
+
 /* Only with frame->partition.split_direct. From: the finished path, or with frame->film.split_depths one under way. To: a
  * splat of its rare light, if it has any. */
 __kernel void pt_splat_rare(__global const FrameParams *restrict frame, __global uint *restrict paths,
@@ -429,10 +437,8 @@ __kernel void pt_splat_rare(__global const FrameParams *restrict frame, __global
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);
         return;
     }
-    uint flags = SPLAT_LIGHT | SPLAT_RARE;
-    if (frame->film.split_depths != 0u)
-        flags |= splat_depth(frame->film.split_depths, state_load(paths, stride, PATH_GATHERED, item));
-    path_splat(frame, paths, splats, diagnostics, item, PATH_RARE, flags);
+    path_splat(frame, paths, splats, diagnostics, item, PATH_RARE,
+               SPLAT_LIGHT | SPLAT_RARE | path_splat_depth(frame, paths, item));
 }
 
 /* From: the finished path. To: its splat; with SPLAT_LIGHT if its direct light has been splatted as the pixel's sample
@@ -444,9 +450,7 @@ __kernel void pt_splat(__global const FrameParams *restrict frame, __global uint
     uint item = (uint)get_global_id(0), flags = frame->partition.split_direct != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
     if (item >= frame->pass.item_count)
         return;
-    if (frame->film.split_depths != 0u)
-        flags |= splat_depth(frame->film.split_depths, state_load(paths, frame->pass.stride, PATH_GATHERED, item));
-    path_splat(frame, paths, splats, diagnostics, item, PATH_RADIANCE, flags);
+    path_splat(frame, paths, splats, diagnostics, item, PATH_RADIANCE, flags | path_splat_depth(frame, paths, item));
 }
 
 #endif

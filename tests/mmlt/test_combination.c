@@ -59,6 +59,18 @@ static void estimator_set(Estimators *estimators, int s, double samples, double 
     }
 }
 
+/* Sets the rare light of a pixel, at 4 steps and 2 samples of path tracing per pixel: as chains and as path tracing find
+ * it. */
+static void rare_set(Estimators *estimators, size_t pixel, double by_chains, double by_paths)
+{
+    Film *chains = &estimators->films[ESTIMATOR_CHAINS], *paths = &estimators->films[ESTIMATOR_PATHS];
+    for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
+        chains->rare_sums[i] = llrint(4.0 * by_chains * 0x1p30);
+        paths->rare_sums[i] = llrint(2.0 * by_paths * 0x1p30);
+        paths->light_sums[i] += paths->rare_sums[i];
+    }
+}
+
 static double generation_until(Estimators *estimators, const atomic_int *stop)
 {
     Film *const films[ESTIMATOR_COUNT] = {&estimators->films[0], &estimators->films[1], &estimators->films[2]};
@@ -330,15 +342,10 @@ START_TEST(test_rare)
         estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 3.0, 3.0);
         estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 3.0, 3.0);
         estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 0.1);
-        Film *chains = &estimators.films[ESTIMATOR_CHAINS], *paths = &estimators.films[ESTIMATOR_PATHS];
         for (size_t i = 0; i < PIXELS; ++i) {
             double found = 2.0 + noise(&estimators) / sqrt(4.0),
                    own = _i == 1 ? 0.0 : 2.0 + sqrt(2.0) * noise(&estimators) / sqrt(2.0);
-            for (size_t c = 0; c < 3; ++c) {
-                chains->rare_sums[3 * i + c] = llrint(4.0 * found * 0x1p30);
-                paths->rare_sums[3 * i + c] = llrint(2.0 * own * 0x1p30);
-                paths->light_sums[3 * i + c] += paths->rare_sums[3 * i + c];
-            }
+            rare_set(&estimators, i, found, own);
         }
         mean = generation(&estimators);
     }
@@ -369,16 +376,11 @@ START_TEST(test_fireflies)
         estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
         estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 1.0);
         estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 1.0);
-        Film *chains = &estimators.films[ESTIMATOR_CHAINS], *paths = &estimators.films[ESTIMATOR_PATHS];
         for (size_t i = 0; i < PIXELS; ++i) {
             double found = 0.1 + 0.1 * noise(&estimators), own = 0.1 + 0.01 * noise(&estimators);
             if (i % SIDE < 4 && i / SIDE == (size_t)g % 4)
                 own += 100.0;
-            for (size_t c = 0; c < 3; ++c) {
-                chains->rare_sums[3 * i + c] = llrint(4.0 * found * 0x1p30);
-                paths->rare_sums[3 * i + c] = llrint(2.0 * own * 0x1p30);
-                paths->light_sums[3 * i + c] += paths->rare_sums[3 * i + c];
-            }
+            rare_set(&estimators, i, found, own);
         }
         generation(&estimators);
     }
