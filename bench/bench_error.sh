@@ -42,9 +42,11 @@ images() {
     last=${BUDGETS##* }
     out=$folder/$2.exr
     rm -f "$out"
+    every=1s # writing takes time, too
+    [ "$BUDGETS" != "$last" ] || every=24h
     begin=$(date +%s.%N)
     "$twinlight" render --quiet --integrator="$1" --max-depth="$DEPTH" --resolution="$RESOLUTION" --time="${last}s" \
-        --save-every=1s --seed="$2" --no-png -o "$out" --stats="$folder/$2.json" "$3" 2>"$folder/err" &
+        --save-every=$every --seed="$2" --no-png -o "$out" --stats="$folder/$2.json" "$3" 2>"$folder/err" &
     process=$!
     for budget in $BUDGETS; do
         if [ "$budget" = "$last" ]; then

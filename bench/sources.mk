@@ -9,6 +9,8 @@
 #   bench_double.sh  differences between pictures of both
 # By hand, with a compiler's cache in PATH, for an hour:
 #   bench_ablation.sh  error without each constant and mechanism of MMLT that ablation.txt lists
+# By hand, 80 minutes a scene:
+#   bench_real.sh    as bench_error.sh, at the sizes of real pictures; MMLT against the best of the others
 # Each explains its columns at its top. RUNS, SECONDS_EACH and DEPTH shorten the scripts, DEVICE selects a device.
 BENCH_SCENES = $(srcdir)/scenes/cornell.pbrt $(srcdir)/scenes/showcase.pbrt
 
@@ -26,7 +28,7 @@ EXTRA_PROGRAMS += bench/block_difference
 bench_block_difference_SOURCES = bench/block_difference.c
 bench_block_difference_LDADD = libtwinlight_host.la -lm
 CLEANFILES += bench/block_difference$(EXEEXT) bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/ablation.txt bench/ablation_summary.awk bench/bench_ablation.sh bench/bench.sh bench/bench_util.h bench/bench_double.sh bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_render.sh
+EXTRA_DIST += bench/ablation.txt bench/ablation_summary.awk bench/bench_ablation.sh bench/bench.sh bench/bench_util.h bench/bench_double.sh bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_real.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)
