@@ -214,11 +214,13 @@ static bool film_render(RenderJob *job, Error *error)
                              .backend = job->backend,
                              .options = &options,
                              .callbacks = &callbacks};
+    BackendStatistics statistics;
+    job->backend.interface->statistics(job->backend.backend, &statistics);
     progress_init(&job->progress, stderr, command->quiet);
     job->output.writing = job_writing;
     job->output.writing_context = job;
     bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
-                    render_output_reserve(&job->output, settings->crop, error) &&
+                    render_output_reserve(&job->output, settings->crop, statistics.threads, error) &&
                     render_film(&task, &job->film, &job->result, error);
     progress_end(&job->progress);
     return rendered;

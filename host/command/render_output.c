@@ -35,10 +35,10 @@ bool render_output_name(RenderOutput *output, const char *image, bool want_png, 
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error)
+bool render_output_reserve(RenderOutput *output, const int crop[4], int threads, Error *error)
 {
     return picture_memory_init(&output->memory, &output->picture, crop[2] - crop[0], crop[3] - crop[1],
-                               (uint)output->max_depth, error);
+                               (uint)output->max_depth, threads, error);
 }
 
 void render_output_release(RenderOutput *output)
@@ -46,10 +46,11 @@ void render_output_release(RenderOutput *output)
     picture_memory_destroy(&output->memory);
 }
 
-/* A picture while it is written to a file. */
+/* A picture while it is written to a file, by one of several threads. */
 typedef struct Writing {
     const RenderOutput *output;
     const char *path;
+    bool reports; /* progress, for all threads */
     Picture picture;
 } Writing;
 
@@ -57,7 +58,7 @@ typedef struct Writing {
 static void writing_report(const Writing *writing, int y)
 {
     const RenderOutput *output = writing->output;
-    if (output->writing)
+    if (output->writing && writing->reports)
         output->writing(output->writing_context, writing->path, (double)y / writing->picture.height);
 }
 
@@ -75,9 +76,9 @@ static const float *writing_row(void *context, int y)
     return picture_row(&writing->picture, y);
 }
 
-static bool exr_output_write(Writing *writing, const Film *film, double samples_per_pixel, Error *error)
+static bool exr_output_write(const RenderOutput *output, const ExrLane *lanes, const Film *film, size_t channel_count,
+                             double samples_per_pixel, Error *error)
 {
-    const RenderOutput *output = writing->output;
     const RenderLayers *layers = output->picture.layers;
     /* No time, machine or thread count: equal pictures make equal files. */
     const ExrAttribute attributes[] = {
@@ -93,17 +94,16 @@ static bool exr_output_write(Writing *writing, const Film *film, double samples_
     };
     /* The last attribute only goes with the layer "depth". */
     bool depth = layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
-    ExrPicture picture = {.channels = writing->picture.channels,
-                          .channel_count = writing->picture.channel_count,
+    ExrPicture picture = {.channels = lanes->channels,
+                          .channel_count = channel_count,
                           .width = film->width,
                           .height = film->height,
                           .attributes = attributes,
                           .attribute_count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1),
                           .band = writing_band,
-                          .context = writing,
-                          .plane = output->memory.plane};
+                          .lanes = lanes,
+                          .lane_count = output->memory.lane_count};
     memcpy(picture.crop, film->crop, sizeof picture.crop);
-    writing->path = output->exr;
     return exr_write_picture(output->exr, &picture, error);
 }
 
@@ -117,11 +117,17 @@ static bool png_output_write(Writing *writing, Error *error)
 
 bool render_output_write(RenderOutput *output, const Film *film, double samples_per_pixel, Error *error)
 {
-    Writing writing = {.output = output};
-    picture_init(&writing.picture, &output->picture, film, &output->memory);
+    Writing writings[PICTURE_LANES_MAX];
+    ExrLane lanes[PICTURE_LANES_MAX];
+    int i = 0;
+    do { /* at least one */
+        writings[i] = (Writing){.output = output, .path = output->exr, .reports = i == 0};
+        picture_init(&writings[i].picture, &output->picture, film, &output->memory, i);
+        lanes[i] = (ExrLane){writings[i].picture.channels, &writings[i], output->memory.lanes[i].plane};
+    } while (++i < output->memory.lane_count);
     picture_memory_lend(&output->memory);
-    bool written = exr_output_write(&writing, film, samples_per_pixel, error) &&
-                   (!output->png[0] || png_output_write(&writing, error));
+    bool written = exr_output_write(output, lanes, film, writings[0].picture.channel_count, samples_per_pixel, error) &&
+                   (!output->png[0] || png_output_write(&writings[0], error));
     picture_memory_take_back(&output->memory);
     return written;
 }

@@ -30,8 +30,8 @@ typedef struct RenderOutput {
 bool render_output_name(RenderOutput *output, const char *image, bool want_png, const char *png, Error *error);
 
 /* Reserves the memory for writing pictures of this crop. Call it before the first sample: what is rendered can then be
- * written even if no memory is left. */
-bool render_output_reserve(RenderOutput *output, const int crop[4], Error *error);
+ * written even if no memory is left. threads: that may write. */
+bool render_output_reserve(RenderOutput *output, const int crop[4], int threads, Error *error);
 void render_output_release(RenderOutput *output);
 
 /* Writes both files from the current film. `samples_per_pixel` goes to the EXR header. After render_output_reserve. */

@@ -138,19 +138,6 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
         film_splat_add(&view, splats, stride, item);
 }
 
-void film_add_splats_of(Film *films, uint number, const uint *splats, uint count, uint stride)
-{
-    const uint pixel = (1u << SPLAT_FILM_SHIFT) - 1u;
-    FilmView views[SPLAT_FILMS];
-    for (uint i = 0; i < number; ++i)
-        views[i] = film_view(&films[i]);
-    for (uint item = 0; item < count; ++item) {
-        uint name = state_load(splats, stride, SPLAT_PIXEL, item);
-        if (name != NONE && name >> SPLAT_FILM_SHIFT < number)
-            film_splat_add_as(&views[name >> SPLAT_FILM_SHIFT], name & pixel, splats, stride, item);
-    }
-}
-
 /* ---- adding films ------------------------------------------------------------------------------------------------ */
 
 /* Most sums of a short pass are zero, and testing is cheaper than adding. */
@@ -238,6 +225,16 @@ bool film_merge(Film *film, const Film *from, Error *error)
     view_add(&view, &from_view, film_pixels(film));
     film->light_samples += from->light_samples;
     return true;
+}
+
+void film_swap_own(Film *a, Film *b)
+{
+    int64_t *sums = a->sums;
+    uint32_t *counts = a->counts;
+    a->sums = b->sums;
+    a->counts = b->counts;
+    b->sums = sums;
+    b->counts = counts;
 }
 
 void film_clear(Film *film)

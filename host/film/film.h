@@ -65,9 +65,6 @@ void film_quantum_set(Film *film, double mean);
  * are skipped. Thread-safe. */
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
 
-/* The same for splats of which each is a sample for one of `number` films (SPLAT_FILM_SHIFT). */
-void film_add_splats_of(Film *films, uint number, const uint *splats, uint count, uint stride);
-
 /* Number of 64-bit words in a device's copy of this film (BUFFER_FILM, camera/film_sum.h), and adding such a copy to
  * the film. */
 size_t film_sum_words(const Film *film);
@@ -76,6 +73,9 @@ void film_add_sums(Film *film, ulong *words);
 /* Adds the sums and counts of `from`. Fails, naming the difference, unless size, crop, quantum and the presence of
  * light sums agree. */
 bool film_merge(Film *film, const Film *from, Error *error);
+
+/* Exchanges `sums` and counts of two films of the same size. */
+void film_swap_own(Film *a, Film *b);
 
 /* Resets all sums and counters to zero; size and quantum stay. */
 void film_clear(Film *film);

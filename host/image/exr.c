@@ -1,11 +1,13 @@
 #include "image/exr.h"
 
 #include "base/output_file.h"
+#include "base/parallel.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <openexr.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +19,10 @@
 typedef struct ExrWriter {
     OutputFile file;
     const ExrPicture *picture;
-    const ExrChannel **channels; /* sorted by name */
+    size_t *channels; /* their numbers, sorted by name */
     int width, height; /* of the data window */
     int write_errno; /* errno of the first failed write; 0: none */
+    pthread_mutex_t mutex; /* of the message */
     char message[256]; /* the library's last error message */
 } ExrWriter;
 
@@ -28,8 +31,10 @@ static void exr_message(exr_const_context_t context, exr_result_t code, const ch
     void *user = NULL;
     if (exr_get_user_data(context, &user) == EXR_ERR_SUCCESS && user) {
         ExrWriter *writer = user;
+        pthread_mutex_lock(&writer->mutex);
         snprintf(writer->message, sizeof writer->message, "%s",
                  message ? message : exr_get_default_error_message(code));
+        pthread_mutex_unlock(&writer->mutex);
     }
 }
 
@@ -55,9 +60,16 @@ static int64_t exr_write_bytes(exr_const_context_t context, void *user, const vo
     return (int64_t)done;
 }
 
-static int channel_compare(const void *a, const void *b)
+/* Insertion sort; names are few. */
+static void channels_sort(const ExrWriter *writer)
 {
-    return strcmp((*(const ExrChannel *const *)a)->name, (*(const ExrChannel *const *)b)->name);
+    const ExrPicture *picture = writer->picture;
+    for (size_t i = 0; i < picture->channel_count; ++i) {
+        size_t at = i;
+        for (; at > 0 && strcmp(picture->channels[writer->channels[at - 1]].name, picture->channels[i].name) > 0; --at)
+            writer->channels[at] = writer->channels[at - 1];
+        writer->channels[at] = i;
+    }
 }
 
 /* x0 <= x < x1, y0 <= y < y1 as an EXR box, which includes its maximum. */
@@ -142,8 +154,8 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
     if (result == EXR_ERR_SUCCESS)
         result = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
     for (size_t i = 0; i < picture->channel_count && result == EXR_ERR_SUCCESS; ++i)
-        result = exr_add_channel(context, part, writer->channels[i]->name,
-                                 writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+        result = exr_add_channel(context, part, picture->channels[writer->channels[i]].name,
+                                 picture->channels[writer->channels[i]].half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     for (size_t i = 0; i < picture->attribute_count && result == EXR_ERR_SUCCESS; ++i)
         result = attribute_set(context, part, &picture->attributes[i]);
@@ -159,18 +171,43 @@ static float half_range(float x)
     return x > HALF_MAX ? HALF_MAX : x < -HALF_MAX ? -HALF_MAX : x;
 }
 
-/* Gathers the lines from y on of every channel into `plane` and points the encoder at them: the library's packing
+/* ---- chunks ------------------------------------------------------------------------------------------------------ */
+
+/* Chunks on their way to the file: lanes take the next one, compress it, and write in order. */
+typedef struct ExrChunks {
+    exr_context_t context;
+    const ExrWriter *writer;
+    const ExrLane *lanes;
+    int rows; /* of a chunk */
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    int next; /* first row that no lane has taken */
+    int written; /* first row that is not in the file */
+    exr_result_t result; /* of the first failure */
+} ExrChunks;
+
+typedef exr_result_t (*CompressFunction)(exr_encode_pipeline_t *encoder);
+
+/* The chunk that a lane has taken. */
+typedef struct ExrTask {
+    ExrChunks *chunks;
+    CompressFunction library; /* compresses */
+    bool begun; /* the encoder is initialised */
+    int row;
+} ExrTask;
+
+/* Gathers the lines from y on of every channel into the lane's plane and points the encoder at them: the library's packing
  * routine only takes contiguous planes. */
-static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder, float *plane, int y, int lines)
+static void chunk_gather(const ExrWriter *writer, const ExrLane *lane, exr_encode_pipeline_t *encoder, int y, int lines)
 {
     const ExrPicture *picture = writer->picture;
     size_t width = (size_t)writer->width, count = (size_t)lines * width, first = picture->band ? 0 : (size_t)y * width;
     if (picture->band)
-        picture->band(picture->context, y, lines);
+        picture->band(lane->context, y, lines);
     for (size_t c = 0; c < picture->channel_count; ++c) {
-        const ExrChannel *channel = writer->channels[c];
+        const ExrChannel *channel = &lane->channels[writer->channels[c]];
         const float *from = channel->data + first * channel->stride;
-        float *to = plane + c * count;
+        float *to = lane->plane + c * count;
         for (size_t i = 0; i < count; ++i)
             to[i] = channel->half ? half_range(from[i * channel->stride]) : from[i * channel->stride];
         exr_coding_channel_info_t *info = &encoder->channels[c];
@@ -183,61 +220,118 @@ static void chunk_gather(const ExrWriter *writer, exr_encode_pipeline_t *encoder
     }
 }
 
-typedef exr_result_t (*CompressFunction)(exr_encode_pipeline_t *encoder);
-
 /* A chunk that compression does not shrink must be stored uncompressed, which readers recognise by its size. OpenEXR
  * before 3.4.8 stores the compressed bytes if both sizes are equal, and readers then misread them as pixels
  * (AcademySoftwareFoundation/openexr issue 2306). */
 static exr_result_t chunk_compress(exr_encode_pipeline_t *encoder)
 {
-    const CompressFunction *library = encoder->encoding_user_data;
-    exr_result_t result = (*library)(encoder);
+    const ExrTask *task = encoder->encoding_user_data;
+    exr_result_t result = task->library(encoder);
     if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
         memcpy(encoder->compressed_buffer, encoder->packed_buffer, encoder->packed_bytes);
     return result;
 }
 
-static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, float *plane)
+/* Waits until all chunks before this one are in the file. */
+static exr_result_t chunk_wait(exr_encode_pipeline_t *encoder)
 {
-    int first_line = writer->picture->crop[1];
-    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
-    CompressFunction library = NULL;
-    int32_t step = 1;
-    bool begun = false;
-    exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &step);
-    assert(step <= EXR_BAND_ROWS);
-    for (int y = 0; y < writer->height && result == EXR_ERR_SUCCESS; y += step) {
-        exr_chunk_info_t chunk;
-        result = exr_write_scanline_chunk_info(context, 0, first_line + y, &chunk);
-        if (result == EXR_ERR_SUCCESS)
-            result = begun ? exr_encoding_update(context, 0, &chunk, &encoder)
-                           : exr_encoding_initialize(context, 0, &chunk, &encoder);
-        if (result != EXR_ERR_SUCCESS)
-            break;
-        chunk_gather(writer, &encoder, plane, y, chunk.height);
-        if (!begun) {
-            result = exr_encoding_choose_default_routines(context, 0, &encoder);
-            library = encoder.compress_fn;
-            encoder.compress_fn = library ? chunk_compress : NULL;
-            encoder.encoding_user_data = &library;
-        }
-        begun = true;
-        if (result == EXR_ERR_SUCCESS)
-            result = exr_encoding_run(context, 0, &encoder);
-    }
-    exr_encoding_destroy(context, &encoder);
+    const ExrTask *task = encoder->encoding_user_data;
+    ExrChunks *chunks = task->chunks;
+    pthread_mutex_lock(&chunks->mutex);
+    while (chunks->result == EXR_ERR_SUCCESS && chunks->written < task->row)
+        pthread_cond_wait(&chunks->changed, &chunks->mutex);
+    exr_result_t result = chunks->result;
+    pthread_mutex_unlock(&chunks->mutex);
     return result;
 }
+
+/* The next row to write; false if there is none. */
+static bool chunk_take(ExrChunks *chunks, int *row)
+{
+    pthread_mutex_lock(&chunks->mutex);
+    bool more = chunks->result == EXR_ERR_SUCCESS && chunks->next < chunks->writer->height;
+    *row = chunks->next;
+    chunks->next += more ? chunks->rows : 0;
+    pthread_mutex_unlock(&chunks->mutex);
+    return more;
+}
+
+static void chunk_finish(ExrChunks *chunks, int row, exr_result_t result)
+{
+    pthread_mutex_lock(&chunks->mutex);
+    if (result == EXR_ERR_SUCCESS)
+        chunks->written = row + chunks->rows;
+    else if (chunks->result == EXR_ERR_SUCCESS)
+        chunks->result = result;
+    pthread_cond_broadcast(&chunks->changed);
+    pthread_mutex_unlock(&chunks->mutex);
+}
+
+static exr_result_t chunk_write(ExrTask *task, const ExrLane *lane, exr_encode_pipeline_t *encoder)
+{
+    exr_context_t context = task->chunks->context;
+    const ExrWriter *writer = task->chunks->writer;
+    exr_chunk_info_t chunk;
+    bool first = !task->begun;
+    exr_result_t result = exr_write_scanline_chunk_info(context, 0, writer->picture->crop[1] + task->row, &chunk);
+    if (result == EXR_ERR_SUCCESS)
+        result = first ? exr_encoding_initialize(context, 0, &chunk, encoder)
+                       : exr_encoding_update(context, 0, &chunk, encoder);
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    task->begun = true;
+    chunk_gather(writer, lane, encoder, task->row, chunk.height);
+    if (first) {
+        result = exr_encoding_choose_default_routines(context, 0, encoder);
+        task->library = encoder->compress_fn;
+        encoder->compress_fn = task->library ? chunk_compress : NULL;
+        encoder->yield_until_ready_fn = chunk_wait;
+        encoder->encoding_user_data = task;
+    }
+    return result == EXR_ERR_SUCCESS ? exr_encoding_run(context, 0, encoder) : result;
+}
+
+static void lane_run(void *context, size_t lane)
+{
+    ExrChunks *chunks = context;
+    ExrTask task = {.chunks = chunks};
+    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    while (chunk_take(chunks, &task.row))
+        chunk_finish(chunks, task.row, chunk_write(&task, &chunks->lanes[lane], &encoder));
+    if (task.begun)
+        exr_encoding_destroy(chunks->context, &encoder);
+}
+
+static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer, const ExrLane *lanes, int lane_count)
+{
+    ExrChunks chunks = {.context = context, .writer = writer, .lanes = lanes};
+    int32_t rows = 1;
+    exr_result_t result = exr_get_scanlines_per_chunk(context, 0, &rows);
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    assert(rows <= EXR_BAND_ROWS);
+    chunks.rows = rows;
+    pthread_mutex_init(&chunks.mutex, NULL);
+    pthread_cond_init(&chunks.changed, NULL);
+    parallel_run((size_t)lane_count, lane_count, lane_run, &chunks);
+    pthread_cond_destroy(&chunks.changed);
+    pthread_mutex_destroy(&chunks.mutex);
+    return chunks.result;
+}
+
+/* ---- the file ---------------------------------------------------------------------------------------------------- */
 
 static bool channels_check(const ExrWriter *writer, const char *path, Error *error)
 {
     for (size_t i = 1; i < writer->picture->channel_count; ++i)
-        if (strcmp(writer->channels[i - 1]->name, writer->channels[i]->name) == 0)
-            return error_set(error, "cannot write %s: two channels are named \"%s\"", path, writer->channels[i]->name);
+        if (strcmp(writer->picture->channels[writer->channels[i - 1]].name,
+                   writer->picture->channels[writer->channels[i]].name) == 0)
+            return error_set(error, "cannot write %s: two channels are named \"%s\"", path,
+                             writer->picture->channels[writer->channels[i]].name);
     return true;
 }
 
-static bool exr_write_open(ExrWriter *writer, const char *path, float *plane, Error *error)
+static bool exr_write_open(ExrWriter *writer, const char *path, const ExrLane *lanes, int lane_count, Error *error)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = exr_message;
@@ -248,7 +342,7 @@ static bool exr_write_open(ExrWriter *writer, const char *path, float *plane, Er
     if (result == EXR_ERR_SUCCESS)
         result = header_write(context, writer);
     if (result == EXR_ERR_SUCCESS)
-        result = chunks_write(context, writer, plane);
+        result = chunks_write(context, writer, lanes, lane_count);
     exr_result_t finished = context ? exr_finish(&context) : EXR_ERR_SUCCESS;
     if (result == EXR_ERR_SUCCESS)
         result = finished;
@@ -261,14 +355,11 @@ static bool exr_write_open(ExrWriter *writer, const char *path, float *plane, Er
     return error_fix_errno(error, writer->write_errno);
 }
 
-static bool picture_write(ExrWriter *writer, const char *path, float *plane, Error *error)
+static bool picture_write(ExrWriter *writer, const char *path, const ExrLane *lanes, int lane_count, Error *error)
 {
-    const ExrPicture *picture = writer->picture;
-    for (size_t i = 0; i < picture->channel_count; ++i)
-        writer->channels[i] = &picture->channels[i];
-    qsort(writer->channels, picture->channel_count, sizeof *writer->channels, channel_compare);
+    channels_sort(writer);
     bool good = channels_check(writer, path, error) && output_file_begin(&writer->file, path, error) &&
-                exr_write_open(writer, path, plane, error) && output_file_commit(&writer->file, error);
+                exr_write_open(writer, path, lanes, lane_count, error) && output_file_commit(&writer->file, error);
     output_file_cancel(&writer->file);
     return good;
 }
@@ -278,14 +369,20 @@ bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error
     const int *crop = picture->crop;
     ExrWriter writer = {
         .file = {.descriptor = -1}, .picture = picture, .width = crop[2] - crop[0], .height = crop[3] - crop[1]};
-    size_t bytes = picture->channel_count * EXR_BAND_ROWS * (size_t)writer.width * sizeof *picture->plane;
+    size_t bytes = picture->channel_count * EXR_BAND_ROWS * (size_t)writer.width * sizeof(float);
     assert(picture->channel_count > 0 && writer.width > 0 && writer.height > 0);
-    float *own = picture->plane ? NULL : malloc(bytes), *plane = picture->plane ? picture->plane : own;
+    ExrLane own = {.channels = picture->channels, .context = picture->context};
+    if (!picture->lanes)
+        own.plane = malloc(bytes);
     writer.channels = calloc(picture->channel_count, sizeof *writer.channels);
-    bool good = writer.channels && plane ? picture_write(&writer, path, plane, error)
-                                         : error_memory(error, bytes, "rows of an EXR file");
+    pthread_mutex_init(&writer.mutex, NULL);
+    bool good = writer.channels && (picture->lanes || own.plane)
+                    ? picture_write(&writer, path, picture->lanes ? picture->lanes : &own,
+                                    picture->lanes ? picture->lane_count : 1, error)
+                    : error_memory(error, bytes, "rows of an EXR file");
+    pthread_mutex_destroy(&writer.mutex);
     free(writer.channels);
-    free(own);
+    free(own.plane);
     return good;
 }
 

@@ -42,6 +42,13 @@ ExrAttribute exr_real(const char *name, double real);
  * vectors. */
 ExrAttribute exr_matrix(const char *name, const float matrix[16]);
 
+/* What one thread writes bands from. */
+typedef struct ExrLane {
+    const ExrChannel *channels; /* names and types as those of the picture, data of its own */
+    void *context; /* for ExrPicture.band */
+    float *plane; /* scratch of channel_count x EXR_BAND_ROWS rows of the data window */
+} ExrLane;
+
 typedef struct ExrPicture {
     const ExrChannel *channels;
     size_t channel_count;
@@ -53,7 +60,9 @@ typedef struct ExrPicture {
      * data. NULL: the channels' data hold all rows. */
     void (*band)(void *context, int first, int count);
     void *context;
-    float *plane; /* scratch of channel_count x EXR_BAND_ROWS rows of the data window; NULL: allocated */
+    /* Threads that write bands at the same time, each from its lane; NULL: one, from `channels` and `context`. */
+    const ExrLane *lanes;
+    int lane_count;
 } ExrPicture;
 
 /* Writes the pixels crop[0] <= x < crop[2], crop[1] <= y < crop[3] of a width x height image: scanlines, ZIP

@@ -1,5 +1,6 @@
 #include "mmlt/chains_estimator.h"
 
+#include "backend/step_recorder.h"
 #include "chain/chain.h"
 #include "mmlt/bad_chains.h"
 #include "mmlt/chain_list.h"
@@ -7,15 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool chains_estimator_init(ChainsEstimator *chains, const RenderRun *run, bool chains_only, Error *error)
+void chains_estimator_init(ChainsEstimator *chains, Film *film)
 {
-    *chains = (ChainsEstimator){0};
-    return estimator_init(&chains->own, run, !chains_only, true, error);
+    *chains = (ChainsEstimator){.own = {.film = film}};
 }
 
 void chains_estimator_destroy(ChainsEstimator *chains)
 {
-    estimator_destroy(&chains->own);
+    step_list_destroy(&chains->own.list);
     for (int replica = 0; replica < REPLICAS; ++replica)
         chain_population_destroy(&chains->populations[replica]);
     free(chains->begun);

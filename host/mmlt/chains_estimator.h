@@ -9,7 +9,7 @@
 #include "mmlt/pool_estimator.h"
 
 typedef struct ChainsEstimator {
-    Estimator own; /* film.sums: the excess, film.rare_sums: the rare part */
+    Estimator own;
     ChainPopulation populations[REPLICAS];
     uint steps; /* of a chain in a pass */
     uint *begun; /* the chains' words before the pass; only with --dump-bad */
@@ -17,9 +17,8 @@ typedef struct ChainsEstimator {
     uint groups_each; /* of a replica's chains in `groups` */
 } ChainsEstimator;
 
-/* Makes the film. chains_only: nothing is left to the chains of others. Call chains_estimator_destroy even on
- * failure. */
-bool chains_estimator_init(ChainsEstimator *chains, const RenderRun *run, bool chains_only, Error *error);
+/* film: the generation's. */
+void chains_estimator_init(ChainsEstimator *chains, Film *film);
 void chains_estimator_destroy(ChainsEstimator *chains);
 
 /* Makes the list, for paths of run->frame and passes of `steps`. guide: for passes. groups: MmltScheme.groups. */

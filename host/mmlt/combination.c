@@ -12,30 +12,38 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     *combination = (Combination){0};
     for (int i = 0; i < 2; ++i) {
         combination->size[i] = film->crop[i + 2] - film->crop[i];
+        combination->patches[i] = (combination->size[i] + PATCH_SIDE - 1) / PATCH_SIDE;
         combination->tiles[i] = (combination->size[i] + TILE_SIDE - 1) / TILE_SIDE;
     }
     size_t tiles = combination_tile_count(combination);
     combination->threads = 1;
     combination->known = calloc(tiles, sizeof *combination->known);
     combination->rows = calloc((size_t)combination->tiles[1], sizeof *combination->rows);
-    if (!combination->known || !combination->rows)
+    combination->ratios = malloc(tiles * sizeof *combination->ratios);
+    combination->tile_sums = malloc(tiles * sizeof *combination->tile_sums);
+    combination->patch_sums = malloc(combination_patch_count(combination) * sizeof *combination->patch_sums);
+    if (!combination->known || !combination->rows || !combination->ratios || !combination->tile_sums ||
+        !combination->patch_sums)
         return error_memory(error, tiles * sizeof *combination->known, "tiles");
     for (int s = 0; s < SERIES_COUNT; ++s)
-        if (!pixel_series_init(&combination->pixels[s], film_pixels(film), 1, true, error) ||
+        if (!pixel_series_init(&combination->light[s], combination_patch_count(combination), 1, true, error) ||
             !pixel_series_init(&combination->sums[s], combination_tile_count(combination), 1, true, error))
             return false;
-    return pixel_series_init(&combination->direct, film_pixels(film), 1, true, error);
+    return pixel_series_init(&combination->direct, combination_patch_count(combination), 1, true, error);
 }
 
 void combination_destroy(Combination *combination)
 {
     for (int s = 0; s < SERIES_COUNT; ++s) {
-        pixel_series_destroy(&combination->pixels[s]);
+        pixel_series_destroy(&combination->light[s]);
         pixel_series_destroy(&combination->sums[s]);
     }
     pixel_series_destroy(&combination->direct);
     free(combination->known);
     free(combination->rows);
+    free(combination->ratios);
+    free(combination->tile_sums);
+    free(combination->patch_sums);
     *combination = (Combination){0};
 }
 
@@ -143,7 +151,7 @@ static bool combination_known(const Combination *combination, const double sampl
  * the weight of the pool they start from; rare light is the chains' alone. So a large picture, of which the first pools
  * visit few pixels, shows mostly path tracing at first. */
 static void weights_set(const Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
-                        bool known)
+                        bool known, double rare_most)
 {
     const int shown = combination->shown;
     memset(tile->weight, 0, sizeof tile->weight);
@@ -153,7 +161,7 @@ static void weights_set(const Combination *combination, CombinationTile *tile, c
     } else if (shown > 0 && shown <= ESTIMATOR_COUNT && samples[shown - 1] > 0.0) {
         tile->weight[shown - 1] = 1.0;
     } else if (known) {
-        TileCombination best = tile_combination(tile, samples, paths_rare_most(combination, samples, 1.0));
+        TileCombination best = tile_combination(tile, samples, rare_most);
         tile->weight[ESTIMATOR_PATHS] = best.paths;
         tile->weight[ESTIMATOR_CHAINS] = (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
@@ -163,53 +171,6 @@ static void weights_set(const Combination *combination, CombinationTile *tile, c
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
         tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / (2.0 * pool + paths);
         tile->weight[ESTIMATOR_PATHS] = paths / (2.0 * pool + paths);
-    }
-}
-
-/* Film sums of the same paths in all estimators, 3 values a pixel. */
-typedef struct EstimatorSums {
-    int64_t *light[ESTIMATOR_COUNT]; /* up to the clamping thresholds */
-    const int64_t *excess, *rare; /* from chains: what pools and what path tracing leave out */
-    const int64_t *paths_rare; /* the latter from path tracing; in its `light` as well */
-} EstimatorSums;
-
-static EstimatorSums estimator_sums(Film *const films[])
-{
-    EstimatorSums sums = {.excess = films[ESTIMATOR_CHAINS]->sums,
-                          .rare = films[ESTIMATOR_CHAINS]->rare_sums,
-                          .paths_rare = films[ESTIMATOR_PATHS]->rare_sums};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        sums.light[s] = films[s]->light_sums;
-    return sums;
-}
-
-/* The same for paths of `segments` segments. */
-static EstimatorSums estimator_depth_sums(Film *const films[], uint segments)
-{
-    EstimatorSums sums = {.excess = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_OWN),
-                          .rare = film_depth_sums(films[ESTIMATOR_CHAINS], segments, FILM_KIND_RARE),
-                          .paths_rare = film_depth_sums(films[ESTIMATOR_PATHS], segments, FILM_KIND_RARE)};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        sums.light[s] = film_depth_sums(films[s], segments, FILM_KIND_LIGHT);
-    return sums;
-}
-
-/* Replaces the chains' light sums of the pixels first ... end - 1 by the combination, scaled to `worth` samples. */
-static void sums_join(const Combination *combination, const EstimatorSums *sums, const double samples[ESTIMATOR_COUNT],
-                      double worth, size_t first, size_t end)
-{
-    for (size_t i = 3 * first; i < 3 * end; ++i) {
-        const CombinationTile *tile = &combination->known[combination_tile_of(combination, i / 3)];
-        double paths = tile->weight[ESTIMATOR_PATHS], by_chains = paths * (1.0 - tile->paths_rare);
-        double sum = ((1.0 - paths) * (double)film_sum_shown(sums->excess[i]) +
-                      by_chains * (double)film_sum_shown(sums->rare[i])) /
-                     samples[ESTIMATOR_CHAINS];
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-            if (samples[s] > 0.0)
-                sum += tile->weight[s] * (double)film_sum_shown(sums->light[s][i]) / samples[s];
-        if (paths > 0.0)
-            sum -= by_chains * (double)film_sum_shown(sums->paths_rare[i]) / samples[ESTIMATOR_PATHS];
-        sums->light[ESTIMATOR_CHAINS][i] = film_sum_rounded(sum * worth);
     }
 }
 
@@ -227,37 +188,6 @@ static double generation_worth(const Combination *combination, const double samp
     return own > 0.0 ? work * fmin(error_of(combination, best, false, 1) / own, WORTH_MOST) : work;
 }
 
-typedef struct FilmsJoining {
-    const Combination *combination;
-    Film *const *films;
-    double samples[ESTIMATOR_COUNT], worth;
-    bool known; /* the variances are */
-} FilmsJoining;
-
-static void row_join(void *context, size_t row)
-{
-    const FilmsJoining *joining = context;
-    const Combination *combination = joining->combination;
-    Film *into = joining->films[ESTIMATOR_CHAINS];
-    const Film *paths = joining->films[ESTIMATOR_PATHS];
-    RowRange pixels = combination_row_pixels(combination, row), tiles = combination_row_tiles(combination, row);
-    size_t first = pixels.first, end = pixels.end;
-    /* Count saturated pixels first: a sum that is full in an estimator need not be so in the combination. */
-    combination->rows[row].full = 0;
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        combination->rows[row].full += film_full_pixels_of(joining->films[s], first, end);
-    for (size_t tile = tiles.first; tile < tiles.end; ++tile)
-        weights_set(combination, &combination->known[tile], joining->samples, joining->known);
-    EstimatorSums sums = estimator_sums(joining->films);
-    sums_join(combination, &sums, joining->samples, joining->worth, first, end);
-    for (uint segments = SPLAT_DEPTH_MIN; into->depth_sums && segments <= into->depth_last; ++segments) {
-        sums = estimator_depth_sums(joining->films, segments);
-        sums_join(combination, &sums, joining->samples, joining->worth, first, end);
-    }
-    memcpy(into->sums + 3 * first, paths->sums + 3 * first, 3 * (end - first) * sizeof *into->sums);
-    memcpy(into->counts + first, paths->counts + first, (end - first) * sizeof *into->counts);
-}
-
 static void weights_average(Combination *combination)
 {
     const double part = 1.0 / (double)combination_tile_count(combination);
@@ -270,48 +200,14 @@ static void weights_average(Combination *combination)
     }
 }
 
-/* Turns the chains' film into the combination plus direct light. Its number of samples becomes the generation's worth, by
- * which film_merge weights it. */
-static void films_join(Combination *combination, Film *const films[])
+uint64_t combination_weights_set(Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
-    Film *into = films[ESTIMATOR_CHAINS];
-    FilmsJoining joining = {.combination = combination, .films = films};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        joining.samples[s] = (double)films[s]->light_samples;
-    joining.known = combination_known(combination, joining.samples);
-    joining.worth = fmax(1.0, rint(generation_worth(combination, joining.samples, joining.known)));
-    combination_rows_run(combination, row_join, &joining);
-    uint64_t full = 0;
-    for (int row = 0; row < combination->tiles[1]; ++row)
-        full += combination->rows[row].full;
+    bool known = combination_known(combination, samples);
+    double rare_most = known ? paths_rare_most(combination, samples, 1.0) : 0.0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        weights_set(combination, &combination->known[i], samples, known, rare_most);
     weights_average(combination);
-    into->light_samples = (uint64_t)joining.worth;
-    for (int s = ESTIMATOR_CHAINS + 1; s < ESTIMATOR_COUNT; ++s) {
-        into->saturated += films[s]->saturated;
-        into->vanished += films[s]->vanished;
-        into->not_finite += films[s]->not_finite;
-    }
-    into->saturated += full;
-}
-
-bool combination_generation(Combination *combination, Combination *teacher, Film *const films[ESTIMATOR_COUNT],
-                            const atomic_int *stop, Error *error)
-{
-    size_t pixels = film_pixels(films[ESTIMATOR_CHAINS]), values = pixels + combination_tile_count(combination);
-    double *ratios = malloc(combination_tile_count(combination) * sizeof *ratios);
-    float *picture = malloc(values * sizeof *picture);
-    if (ratios && picture) {
-        combination_films_learn(combination, films, picture, picture + pixels, stop);
-        films_join(teacher, films);
-        if (!*stop)
-            combination_variances_update(combination, teacher, ratios);
-    } else {
-        error_memory(error, values * sizeof *picture, "a generation's pictures");
-    }
-    bool done = ratios && picture;
-    free(ratios);
-    free(picture);
-    return done;
+    return (uint64_t)fmax(1.0, rint(generation_worth(combination, samples, known)));
 }
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */

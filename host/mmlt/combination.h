@@ -18,15 +18,10 @@
 bool combination_init(Combination *combination, const Film *film, Error *error);
 void combination_destroy(Combination *combination);
 
-/* Combines one generation, then learns from it.
- *
- * films: of each estimator; light_sums hold light_samples paths (0: no samples in this generation). The path tracing
- * film has direct light in `sums`; the chains' film has the excess in `sums` and rare light in `rare_sums`. On return
- * the chains' film is the combination, direct light included, by weights that `teacher` has learned, and `combination`
- * has learned this generation's variances. `teacher` may be `combination` itself if generations are independent. Once
- * *stop is 1 nothing more is learned, since no generation follows. Fails only when out of memory. */
-bool combination_generation(Combination *combination, Combination *teacher, Film *const films[ESTIMATOR_COUNT],
-                            const atomic_int *stop, Error *error);
+/* Sets the weights of a generation of `samples` of each estimator, from what is known: CombinationTile.weight and
+ * paths_rare of every tile, and their means. Returns the weight of the generation's picture in that of all, at least 1:
+ * its worth, in samples of path tracing. */
+uint64_t combination_weights_set(Combination *combination, const double samples[ESTIMATOR_COUNT]);
 
 /* errors[tile]: the predicted relative square error from `samples` of each estimator, without direct light and up to a
  * constant factor; all 0 until variances are known. */

@@ -19,6 +19,25 @@ size_t combination_tile_of(const Combination *combination, size_t pixel)
     return y / TILE_SIDE * (size_t)combination->tiles[0] + x / TILE_SIDE;
 }
 
+size_t combination_patch_count(const Combination *combination)
+{
+    return (size_t)combination->patches[0] * (size_t)combination->patches[1];
+}
+
+/* The patch of a pixel, and the tile of a patch. */
+static size_t patch_of(const Combination *combination, size_t pixel)
+{
+    size_t width = (size_t)combination->size[0], x = pixel % width, y = pixel / width;
+    return y / PATCH_SIDE * (size_t)combination->patches[0] + x / PATCH_SIDE;
+}
+
+static size_t tile_of_patch(const Combination *combination, size_t patch)
+{
+    const size_t side = TILE_SIDE / PATCH_SIDE;
+    size_t width = (size_t)combination->patches[0], x = patch % width, y = patch / width;
+    return y / side * (size_t)combination->tiles[0] + x / side;
+}
+
 double combination_mean_light(const Combination *combination)
 {
     double light = 0.0;
@@ -40,11 +59,18 @@ void combination_rows_run(const Combination *combination, ParallelPart *part, vo
 
 PixelWindow combination_row_window(const Combination *combination, size_t row)
 {
-    size_t width = (size_t)combination->size[0], height = (size_t)combination->size[1], end = (row + 1) * TILE_SIDE;
-    return (PixelWindow){width, 0, row * TILE_SIDE, width, end < height ? end : height};
+    const size_t side = TILE_SIDE / PATCH_SIDE;
+    size_t width = (size_t)combination->patches[0], height = (size_t)combination->patches[1], end = (row + 1) * side;
+    return (PixelWindow){width, 0, row * side, width, end < height ? end : height};
 }
 
 RowRange combination_row_pixels(const Combination *combination, size_t row)
+{
+    size_t width = (size_t)combination->size[0], height = (size_t)combination->size[1], end = (row + 1) * TILE_SIDE;
+    return (RowRange){row * TILE_SIDE * width, (end < height ? end : height) * width};
+}
+
+RowRange combination_row_patches(const Combination *combination, size_t row)
 {
     PixelWindow window = combination_row_window(combination, row);
     return (RowRange){window.y0 * window.width, window.y1 * window.width};
@@ -66,78 +92,66 @@ static float luminance_of(const int64_t *sums, const int64_t *less, double scale
     return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
-/* An image of a generation, and the series that it is added to. */
-typedef struct LearnedImage {
-    const Film *film;
-    const int64_t *sums, *less; /* less: what is not part of the image; NULL: all is */
-    PixelSeries *pixels, *tiles; /* luminances of pixels, and summed over tiles */
-    bool has_tiles;
-} LearnedImage;
-
-typedef struct FilmsLearning {
-    Combination *combination;
-    LearnedImage images[SERIES_COUNT + 1];
-    int count;
-    float *picture, *tiles; /* scratch: luminances of pixels, and their sums */
-    const atomic_int *stop;
-} FilmsLearning;
-
-/* The luminances of an image in a row of tiles. */
-static void row_image(const FilmsLearning *learning, const LearnedImage *image, RowRange pixels, RowRange tiles)
+static void image_learn(FilmLearning *learning, PixelSeries *patches, PixelSeries *tiles, const int64_t *sums,
+                        const int64_t *less)
 {
-    const Film *film = image->film;
-    double unit = ldexp((double)film_pixels(film) / (double)film->light_samples, film->quantum_exponent);
-    memset(learning->tiles + tiles.first, 0, (tiles.end - tiles.first) * sizeof *learning->tiles);
-    for (size_t i = pixels.first; i < pixels.end; ++i) {
-        learning->picture[i] = luminance_of(image->sums + 3 * i, image->less ? image->less + 3 * i : NULL, unit);
-        learning->tiles[combination_tile_of(learning->combination, i)] += learning->picture[i];
-    }
+    int image = learning->count++;
+    learning->images[image].sums = sums;
+    learning->images[image].less = less;
+    learning->images[image].patches = patches;
+    learning->images[image].tiles = tiles;
+    pixel_series_begin(patches, (double)learning->samples);
+    if (tiles)
+        pixel_series_begin(tiles, (double)learning->samples);
 }
 
-static void row_learn(void *context, size_t row)
-{
-    const FilmsLearning *learning = context;
-    RowRange pixels = combination_row_pixels(learning->combination, row),
-             tiles = combination_row_tiles(learning->combination, row);
-    for (int i = 0; i < learning->count && !*learning->stop; ++i) {
-        const LearnedImage *image = &learning->images[i];
-        row_image(learning, image, pixels, tiles);
-        pixel_series_add_part(image->pixels, learning->picture, pixels.first, pixels.end);
-        if (image->has_tiles)
-            pixel_series_add_part(image->tiles, learning->tiles, tiles.first, tiles.end);
-    }
-}
-
-static void image_learn(FilmsLearning *learning, int s, const Film *film, const int64_t *sums, const int64_t *less)
+static void series_learn(FilmLearning *learning, int s, const int64_t *sums, const int64_t *less)
 {
     Combination *combination = learning->combination;
-    learning->images[learning->count++] =
-        (LearnedImage){film, sums, less, &combination->pixels[s], &combination->sums[s], true};
+    image_learn(learning, &combination->light[s], &combination->sums[s], sums, less);
 }
 
-void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
-                             const atomic_int *stop)
+void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
+                                uint64_t samples)
 {
-    const Film *chains = films[ESTIMATOR_CHAINS], *paths = films[ESTIMATOR_PATHS];
-    FilmsLearning learning = {.combination = combination, .picture = picture, .tiles = tiles, .stop = stop};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        if (films[s]->light_samples > 0)
-            image_learn(&learning, s, films[s], films[s]->light_sums, s == ESTIMATOR_PATHS ? paths->rare_sums : NULL);
-    image_learn(&learning, SERIES_EXCESS, chains, chains->sums, NULL);
-    image_learn(&learning, SERIES_RARE, chains, chains->rare_sums, NULL);
-    if (paths->light_samples > 0) {
-        image_learn(&learning, SERIES_PATHS_RARE, paths, paths->rare_sums, NULL);
-        learning.images[learning.count++] = (LearnedImage){paths, paths->sums, NULL, &combination->direct, NULL, false};
+    *learning = (FilmLearning){.combination = combination, .film = film, .samples = samples};
+    series_learn(learning, (int)kind, film->light_sums, kind == ESTIMATOR_PATHS ? film->rare_sums : NULL);
+    if (kind == ESTIMATOR_CHAINS) {
+        series_learn(learning, SERIES_EXCESS, film->sums, NULL);
+        series_learn(learning, SERIES_RARE, film->rare_sums, NULL);
+    } else if (kind == ESTIMATOR_PATHS) {
+        series_learn(learning, SERIES_PATHS_RARE, film->rare_sums, NULL);
+        image_learn(learning, &combination->direct, NULL, film->sums, NULL);
     }
-    if (*stop)
-        return;
-    for (int i = 0; i < learning.count; ++i) {
-        const LearnedImage *image = &learning.images[i];
-        pixel_series_begin(image->pixels, (double)image->film->light_samples);
-        if (image->has_tiles)
-            pixel_series_begin(image->tiles, (double)image->film->light_samples);
+}
+
+/* The luminances of an image in a row of tiles, summed over patches and tiles. */
+static void row_sum(const FilmLearning *learning, const int64_t *sums, const int64_t *less, size_t row)
+{
+    const Combination *combination = learning->combination;
+    const Film *film = learning->film;
+    RowRange pixels = combination_row_pixels(combination, row), patches = combination_row_patches(combination, row),
+             tiles = combination_row_tiles(combination, row);
+    double unit = ldexp((double)film_pixels(film) / (double)learning->samples, film->quantum_exponent);
+    memset(combination->patch_sums + patches.first, 0, (patches.end - patches.first) * sizeof(float));
+    memset(combination->tile_sums + tiles.first, 0, (tiles.end - tiles.first) * sizeof(float));
+    for (size_t i = pixels.first; i < pixels.end; ++i)
+        combination->patch_sums[patch_of(combination, i)] +=
+            luminance_of(sums + 3 * i, less ? less + 3 * i : NULL, unit);
+    for (size_t i = patches.first; i < patches.end; ++i)
+        combination->tile_sums[tile_of_patch(combination, i)] += combination->patch_sums[i];
+}
+
+void combination_row_learn(const FilmLearning *learning, size_t row)
+{
+    const Combination *combination = learning->combination;
+    RowRange patches = combination_row_patches(combination, row), tiles = combination_row_tiles(combination, row);
+    for (int i = 0; i < learning->count; ++i) {
+        row_sum(learning, learning->images[i].sums, learning->images[i].less, row);
+        pixel_series_add_part(learning->images[i].patches, combination->patch_sums, patches.first, patches.end);
+        if (learning->images[i].tiles)
+            pixel_series_add_part(learning->images[i].tiles, combination->tile_sums, tiles.first, tiles.end);
     }
-    combination_rows_run(combination, row_learn, &learning);
 }
 
 /* ---- variances --------------------------------------------------------------------------------------------------- */
@@ -145,7 +159,7 @@ void combination_films_learn(Combination *combination, Film *const films[], floa
 /* Degrees of freedom of the series' variances: the number of its pictures less one. */
 static double freedom_of(const Combination *combination, int s)
 {
-    return fmax((double)pixel_series_pictures(&combination->pixels[s], 0) - 1.0, 0.0);
+    return fmax((double)pixel_series_pictures(&combination->light[s], 0) - 1.0, 0.0);
 }
 
 /* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
@@ -169,101 +183,65 @@ static double light_bound_best(const Combination *combination, size_t tile, doub
                 fmax(chains, pool) + light_bound(combination, SERIES_EXCESS, tile, deviations));
 }
 
-/* Squared luminance of a pixel, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
+/* The part of a tile's pixels that a patch has. */
+#define PATCH_PART ((double)(PATCH_SIDE * PATCH_SIDE) / (TILE_SIDE * TILE_SIDE))
+
+/* Squared luminance of a patch, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
  * few steps per pixel, their mean of a pixel is pulled toward that of its tile: otherwise the few pixels they have
  * visited would count as bright, and the chains' relative variance as small. */
-static double light_square(const Combination *combination, size_t pixel, const CombinationTile *tile, double dark)
+static double light_square(const Combination *combination, size_t patch, const CombinationTile *tile, double dark)
 {
-    const double area = TILE_SIDE * TILE_SIDE;
-    double steps =
-        pixel_series_weight(&combination->pixels[ESTIMATOR_CHAINS], pixel) / (double)combination->direct.pixels;
-    double chains = (double)combination->pixels[ESTIMATOR_CHAINS].mean[pixel] +
-                    (double)combination->pixels[SERIES_EXCESS].mean[pixel];
-    double light = (double)combination->direct.mean[pixel] +
-                   (steps * chains + LIGHT_STEPS * tile->indirect / area) / (steps + LIGHT_STEPS);
-    light = fmin(fabs(light), LIGHT_OVER_TILE * tile->light / area);
+    double steps = pixel_series_weight(&combination->light[ESTIMATOR_CHAINS], patch) /
+                   ((double)combination->size[0] * (double)combination->size[1]);
+    double chains = (double)combination->light[ESTIMATOR_CHAINS].mean[patch] +
+                    (double)combination->light[SERIES_EXCESS].mean[patch];
+    double light = (double)combination->direct.mean[patch] +
+                   (steps * chains + LIGHT_STEPS * tile->indirect * PATCH_PART) / (steps + LIGHT_STEPS);
+    light = fmin(fabs(light), LIGHT_OVER_TILE * tile->light * PATCH_PART);
     return light * light + dark;
 }
 
 static void row_light(void *context, size_t row)
 {
     Combination *combination = context;
-    RowRange pixels = combination_row_pixels(combination, row), tiles = combination_row_tiles(combination, row);
+    RowRange patches = combination_row_patches(combination, row), tiles = combination_row_tiles(combination, row);
     memset(&combination->known[tiles.first], 0, (tiles.end - tiles.first) * sizeof *combination->known);
-    for (size_t i = pixels.first; i < pixels.end; ++i)
-        combination->known[combination_tile_of(combination, i)].light += fabs((double)combination->direct.mean[i]);
+    for (size_t i = patches.first; i < patches.end; ++i)
+        combination->known[tile_of_patch(combination, i)].light += fabs((double)combination->direct.mean[i]);
     for (size_t i = tiles.first; i < tiles.end; ++i) {
         combination->known[i].indirect = light_bound_best(combination, i, 0.0);
         combination->known[i].light += combination->known[i].indirect;
     }
 }
 
-/* A combination, and DARK_PART of the squared mean luminance of a pixel and of a tile. */
+/* A combination, and DARK_PART of the squared mean luminance of a patch. */
 typedef struct TilesSum {
     Combination *combination;
-    double dark, dark_tile;
+    double dark;
 } TilesSum;
 
-static void row_spreads(const TilesSum *sum, RowRange pixels)
+static void row_spreads(void *context, size_t row)
 {
-    const double area = TILE_SIDE * TILE_SIDE;
+    const TilesSum *sum = context;
     Combination *combination = sum->combination;
-    for (size_t i = pixels.first; i < pixels.end; ++i) {
-        CombinationTile *tile = &combination->known[combination_tile_of(combination, i)];
-        double tile_mean = tile->light / area;
+    RowRange patches = combination_row_patches(combination, row);
+    for (size_t i = patches.first; i < patches.end; ++i) {
+        CombinationTile *tile = &combination->known[tile_of_patch(combination, i)];
+        double tile_mean = tile->light * PATCH_PART;
         double weight = (tile_mean * tile_mean + sum->dark) / light_square(combination, i, tile, sum->dark);
         for (int s = 0; s < SERIES_COUNT; ++s)
-            tile->spread[s] += weight * pixel_series_spread(&combination->pixels[s], i);
+            tile->spread[s] += weight * pixel_series_spread(&combination->light[s], i);
         tile->direct += weight * pixel_series_spread(&combination->direct, i);
     }
 }
 
-/* Relative variances of a row's tiles and of its pixels, for correlation_of. */
-static void row_correlate(const TilesSum *sum, RowRange pixels, RowRange tiles, CombinationRow *row)
-{
-    const Combination *combination = sum->combination;
-    for (size_t i = tiles.first; i < tiles.end; ++i) {
-        double light = combination->known[i].light, square = fmax(light * light + sum->dark_tile, SPREAD_MIN);
-        for (int s = 0; s < SERIES_COUNT; ++s)
-            row->sums[s] += pixel_series_spread(&combination->sums[s], i) / square;
-    }
-    for (size_t i = pixels.first; i < pixels.end; ++i) {
-        double light = combination->known[combination_tile_of(combination, i)].light,
-               square = fmax(light * light + sum->dark_tile, SPREAD_MIN);
-        for (int s = 0; s < SERIES_COUNT; ++s)
-            row->pixels[s] += pixel_series_spread(&combination->pixels[s], i) / square;
-    }
-}
-
-static void row_variances(void *context, size_t row)
-{
-    const TilesSum *sum = context;
-    RowRange pixels = combination_row_pixels(sum->combination, row),
-             tiles = combination_row_tiles(sum->combination, row);
-    sum->combination->rows[row] = (CombinationRow){.full = 0};
-    row_spreads(sum, pixels);
-    row_correlate(sum, pixels, tiles, &sum->combination->rows[row]);
-}
-
-/* Sums the tiles' variances, each pixel's weighted by the squared luminance of its tile over its own. */
+/* Sums the tiles' variances, each patch's weighted by the squared luminance of its tile over its own. */
 static void tiles_sum(Combination *combination)
 {
     combination_rows_run(combination, row_light, combination);
-    double tile = combination_mean_light(combination), pixel = tile / (TILE_SIDE * TILE_SIDE);
-    TilesSum sum = {combination, DARK_PART * pixel * pixel, DARK_PART * tile * tile};
-    combination_rows_run(combination, row_variances, &sum);
-}
-
-/* By how much the variance of a tile's sum exceeds the sum of its pixels' variances, relative to light and over all
- * tiles: 1 if pixels are independent, more for chains, whose steps visit several of them. */
-static double correlation_of(const Combination *combination, int s)
-{
-    double sums = 0.0, pixels = 0.0;
-    for (int row = 0; row < combination->tiles[1]; ++row) {
-        sums += combination->rows[row].sums[s];
-        pixels += combination->rows[row].pixels[s];
-    }
-    return pixels > 0.0 ? fmin(fmax(sums / pixels, 1.0), TILE_SIDE * TILE_SIDE) : 1.0;
+    double patch = combination_mean_light(combination) * PATCH_PART;
+    TilesSum sum = {combination, DARK_PART * patch * patch};
+    combination_rows_run(combination, row_spreads, &sum);
 }
 
 /* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
@@ -330,7 +308,7 @@ static void spreads_share(Combination *combination, int s, double *ratios)
 typedef struct Replicas {
     Combination *combination;
     const Combination *other;
-    double indirect, direct; /* mean luminances of a pixel */
+    double indirect, direct; /* mean luminances of a patch */
 } Replicas;
 
 static void row_path_light(void *context, size_t row)
@@ -338,7 +316,7 @@ static void row_path_light(void *context, size_t row)
     const Replicas *replicas = context;
     const Combination *a = replicas->combination, *b = replicas->other;
     PixelWindow window = combination_row_window(a, row);
-    a->rows[row].indirect_sum = pixel_series_sum(&a->pixels[ESTIMATOR_PATHS], &b->pixels[ESTIMATOR_PATHS], window);
+    a->rows[row].indirect_sum = pixel_series_sum(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], window);
     a->rows[row].direct_sum = pixel_series_sum(&a->direct, &b->direct, window);
 }
 
@@ -347,7 +325,7 @@ static void row_path_variances(void *context, size_t row)
     const Replicas *replicas = context;
     const Combination *a = replicas->combination, *b = replicas->other;
     PixelWindow window = combination_row_window(a, row);
-    a->rows[row].indirect = pixel_series_compare(&a->pixels[ESTIMATOR_PATHS], &b->pixels[ESTIMATOR_PATHS], window,
+    a->rows[row].indirect = pixel_series_compare(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], window,
                                                  DARK_PART * replicas->indirect * replicas->indirect);
     a->rows[row].direct =
         pixel_series_compare(&a->direct, &b->direct, window, DARK_PART * replicas->direct * replicas->direct);
@@ -390,14 +368,12 @@ static double relative_variance(const Combination *combination, int s)
     return sum;
 }
 
-void combination_variances_update(Combination *combination, const Combination *other, double *ratios)
+void combination_variances_update(Combination *combination, const Combination *other)
 {
+    double *ratios = combination->ratios;
     tiles_sum(combination);
     stratification_apply(combination, other);
     for (int s = 0; s < SERIES_COUNT; ++s) {
-        double factor = 1.0 + CORRELATION_PART * (correlation_of(combination, s) - 1.0);
-        for (size_t i = 0; i < combination_tile_count(combination); ++i)
-            combination->known[i].spread[s] *= factor;
         spreads_share(combination, s, ratios);
         double usual = ratio_median(combination, s, ratios), known = freedom_of(combination, s);
         combination->ready[s] = known >= 1.0;

@@ -10,6 +10,10 @@
 
 #define TILE_SIDE 8 /* pixels a side */
 
+/* Pixels a side of a patch. Variances are learnt of the light of patches, not of pixels, since the errors of chains are
+ * alike in neighbouring pixels, and an eye or a denoiser sees those that are; docs/TUNING.md. */
+#define PATCH_SIDE 4
+
 /* Avoids division by zero in tiles without variance or light (black ones). */
 #define SPREAD_MIN 1e-30
 
@@ -19,6 +23,9 @@
 #define SERIES_RARE (ESTIMATOR_COUNT + 1)
 #define SERIES_PATHS_RARE (ESTIMATOR_COUNT + 2)
 #define SERIES_COUNT (ESTIMATOR_COUNT + 3)
+
+/* Most images of an estimator that have series. */
+#define ESTIMATOR_IMAGES 3
 
 /* Combination.shown: path tracing with its own rare light. */
 #define SHOWN_PATHS_ALONE (ESTIMATOR_COUNT + 1)
@@ -33,18 +40,19 @@ typedef struct CombinationTile {
 
 /* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on threads. */
 typedef struct CombinationRow {
-    double sums[SERIES_COUNT], pixels[SERIES_COUNT]; /* variances of tiles' sums, and of pixels (correlation_of) */
     double indirect_sum, direct_sum; /* of stratified path tracing (stratification_apply) ... */
     PixelVariances indirect, direct; /* ... and its variances */
     size_t full; /* saturated pixels */
 } CombinationRow;
 
 typedef struct Combination {
-    int size[2], tiles[2];
-    PixelSeries pixels[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances of pixels, and summed over tiles */
-    PixelSeries direct; /* of pixels */
+    int size[2], patches[2], tiles[2];
+    PixelSeries light[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances summed over patches, and over tiles */
+    PixelSeries direct; /* over patches */
     CombinationTile *known; /* one per tile */
     CombinationRow *rows; /* scratch */
+    double *ratios; /* scratch, one per tile */
+    float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
@@ -54,34 +62,49 @@ typedef struct Combination {
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;
 
-/* Number of tiles, and the tile of a pixel (numbered row by row within the crop). */
+/* Numbers of tiles and of patches, and the tile of a pixel (all numbered row by row within the crop). */
 size_t combination_tile_count(const Combination *combination);
+size_t combination_patch_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
 
 /* Calls part(context, row) for every row of tiles, several at a time in images large enough. */
 void combination_rows_run(const Combination *combination, ParallelPart *part, void *context);
 
-/* The pixels of a row of tiles, as a window of the image. */
+/* The patches of a row of tiles, as a window of their image. */
 PixelWindow combination_row_window(const Combination *combination, size_t row);
 
-/* The pixels and the tiles of a row: first ... end - 1. */
+/* The pixels, patches and tiles of a row of tiles: first ... end - 1. */
 typedef struct RowRange {
     size_t first, end;
 } RowRange;
 
 RowRange combination_row_pixels(const Combination *combination, size_t row);
+RowRange combination_row_patches(const Combination *combination, size_t row);
 RowRange combination_row_tiles(const Combination *combination, size_t row);
 
 /* Mean light of a tile, in luminances summed over its pixels. */
 double combination_mean_light(const Combination *combination);
 
-/* Adds a generation's pictures to the series, until *stop becomes 1. picture, tiles: scratch, a value per pixel and per
- * tile. */
-void combination_films_learn(Combination *combination, Film *const films[], float *picture, float *tiles,
-                             const atomic_int *stop);
+/* Images of an estimator in a generation, and where their luminances are summed: those that are learnt from its film. */
+typedef struct FilmLearning {
+    Combination *combination;
+    const Film *film;
+    uint64_t samples; /* of the estimator */
+    struct {
+        const int64_t *sums, *less; /* less: what is not part of the image; NULL: all is */
+        PixelSeries *patches, *tiles; /* tiles: may be NULL */
+    } images[ESTIMATOR_IMAGES];
+    int count;
+} FilmLearning;
 
-/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none.
- * ratios: scratch, a value per tile. */
-void combination_variances_update(Combination *combination, const Combination *other, double *ratios);
+/* Begins with the images that a film of `samples` > 0 samples of an estimator holds: layers as in mmlt/combined_image.h. */
+void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
+                                uint64_t samples);
+
+/* Adds a row of tiles of the images to the series. */
+void combination_row_learn(const FilmLearning *learning, size_t row);
+
+/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none. */
+void combination_variances_update(Combination *combination, const Combination *other);
 
 #endif

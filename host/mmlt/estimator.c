@@ -1,6 +1,5 @@
 #include "mmlt/estimator.h"
 
-#include "backend/step_recorder.h"
 #include "mmlt/tuning.h"
 
 static const double COSTS[ESTIMATOR_COUNT] = {
@@ -19,31 +18,26 @@ double estimators_work(const double samples[ESTIMATOR_COUNT])
     return work;
 }
 
-bool estimator_init(Estimator *estimator, const RenderRun *run, bool rare, bool depths, Error *error)
-{
-    *estimator = (Estimator){0};
-    return film_init_like(&estimator->film, run->film, error) &&
-           (!rare || film_rare_reserve(&estimator->film, error)) &&
-           (!depths || run->film->depth_kinds == 0 ||
-            film_depths_reserve(&estimator->film, run->frame.path.max_depth, error));
-}
-
-void estimator_destroy(Estimator *estimator)
-{
-    step_list_destroy(&estimator->list);
-    film_destroy(&estimator->film);
-}
-
 void estimator_film_params(const Estimator *estimator, FilmParams *params)
 {
-    params->exponent = estimator->film.quantum_exponent;
-    params->split_depths = estimator->film.depth_kinds;
+    params->exponent = estimator->film->quantum_exponent;
+    params->split_depths = estimator->film->depth_kinds;
+}
+
+static void splats_drop(void *context, const uint *splats, uint count, uint stride)
+{
+    (void)context;
+    (void)splats;
+    (void)count;
+    (void)stride;
 }
 
 bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *frame, bool parts, uint64_t *delivered,
                     Error *error)
 {
-    SplatSink sink = render_run_sink(&estimator->film);
+    SplatSink sink = {.splats = splats_drop};
+    if (!estimator->hidden)
+        sink = render_run_sink(estimator->film);
     sink.whole = !parts;
     *delivered = 0;
     return run->interface->run(run->backend, frame, &estimator->list, &sink, render_run_stop(run), delivered, error);

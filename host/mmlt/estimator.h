@@ -1,6 +1,7 @@
 /* What the three estimators that share MMLT's image have in common: the Markov chains (mmlt/chains_estimator.h), the
  * bootstrap pool that they start from (mmlt/pool_estimator.h) and path tracing (mmlt/paths_estimator.h). Each runs
- * passes of its own list into a film of its own; a combination (mmlt/combination.h) makes one image of the films. */
+ * passes of its own list, one after the other into the same film; what they leave there is combined to one image
+ * (mmlt/combined_image.h). */
 #ifndef TWINLIGHT_MMLT_ESTIMATOR_H
 #define TWINLIGHT_MMLT_ESTIMATOR_H
 
@@ -12,18 +13,12 @@ typedef enum EstimatorKind { ESTIMATOR_CHAINS, ESTIMATOR_POOL, ESTIMATOR_PATHS, 
 
 typedef struct Estimator {
     StepList list;
-    /* What it shows of the generation under way. light_samples: its samples of paths that estimators share: steps of
-     * chains, pool samples, camera paths. */
-    Film film;
+    Film *film; /* the generation's */
+    bool hidden; /* its splats are not shown */
+    uint64_t samples; /* in the generation under way: steps of chains, pool samples, camera paths */
 } Estimator;
 
-/* Makes the film, like that of the image, which must have its quantum; with sums of splats with SPLAT_RARE if `rare`,
- * and by depth if the image has those and `depths`. The list is left to the caller. Call estimator_destroy even on
- * failure. */
-bool estimator_init(Estimator *estimator, const RenderRun *run, bool rare, bool depths, Error *error);
-void estimator_destroy(Estimator *estimator);
-
-/* Sets what passes whose splats go to the estimator's film know of it. */
+/* Sets what passes whose splats go to the film know of it. */
 void estimator_film_params(const Estimator *estimator, FilmParams *params);
 
 /* Runs such a pass. parts: a stopped pass leaves the splats of the items that were finished. *delivered: receives their

@@ -6,6 +6,7 @@
 #include "render/layers.h"
 
 #include <float.h>
+#include <math.h>
 
 static void options_complete(ChainOptions *options, const MmltScheme *scheme, uint max_depth)
 {
@@ -35,23 +36,43 @@ static bool chains_needed(const Mmlt *mmlt)
     return mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN;
 }
 
-static bool estimators_init(Mmlt *mmlt, Error *error)
+/* Makes the film, like that of the image; unless chains are alone, with what estimators leave to each other. */
+static bool generation_film_init(Mmlt *mmlt, Error *error)
 {
     RenderRun *run = mmlt->run;
     const RenderLayers *layers = run->options->layers;
+    uint last = run->frame.path.max_depth;
+    bool by_depth = layers && (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0;
+    return (!by_depth || film_depths_reserve(run->film, last, error)) &&
+           film_init_like(&mmlt->film, run->film, error) &&
+           (mmlt->options.chains_only || film_rare_reserve(&mmlt->film, error)) &&
+           (!by_depth || film_depths_reserve(&mmlt->film, last, error));
+}
+
+static bool estimators_init(Mmlt *mmlt, Error *error)
+{
+    RenderRun *run = mmlt->run;
     bool alone = mmlt->options.chains_only;
     const Guide *guide = &mmlt->guide.shown;
-    if (layers && (layers->wanted & LAYER_BIT(LAYER_BY_DEPTH)) != 0 &&
-        !film_depths_reserve(run->film, run->frame.path.max_depth, error))
-        return false;
-    if (!paths_estimator_init(&mmlt->paths, run, alone, guide, error))
+    Film *film = &mmlt->film;
+    if (!paths_estimator_init(&mmlt->paths, run, film, alone, guide, error))
         return false;
     frame_complete(mmlt, &run->frame);
-    return pool_estimator_init(&mmlt->pool, run, alone, guide, error) &&
-           chains_estimator_init(&mmlt->chains, run, alone, error) &&
-           (!chains_needed(mmlt) ||
-            (pool_estimator_list(&mmlt->pool, run, error) &&
-             chains_estimator_list(&mmlt->chains, run, mmlt->options.steps, guide, mmlt->scheme->groups, error)));
+    pool_estimator_init(&mmlt->pool, run, film, alone, guide);
+    chains_estimator_init(&mmlt->chains, film);
+    return !chains_needed(mmlt) ||
+           (pool_estimator_list(&mmlt->pool, run, error) &&
+            chains_estimator_list(&mmlt->chains, run, mmlt->options.steps, guide, mmlt->scheme->groups, error));
+}
+
+static bool combinations_init(Mmlt *mmlt, Error *error)
+{
+    for (int replica = 0; replica < REPLICAS; ++replica) {
+        if (!combination_init(&mmlt->combinations[replica], &mmlt->film, error))
+            return false;
+        mmlt->combinations[replica].shown = mmlt->options.shown;
+    }
+    return combined_image_init(&mmlt->combined, &mmlt->film, error);
 }
 
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
@@ -60,13 +81,9 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
     plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
-    if (!estimators_init(mmlt, error))
+    if (!generation_film_init(mmlt, error) || !estimators_init(mmlt, error) ||
+        (!mmlt->options.chains_only && !combinations_init(mmlt, error)))
         return false;
-    for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica) {
-        if (!combination_init(&mmlt->combinations[replica], run->film, error))
-            return false;
-        mmlt->combinations[replica].shown = mmlt->options.shown;
-    }
     mmlt->generation = generation_at(run, mmlt->scheme, 0);
     return true;
 }
@@ -78,6 +95,8 @@ void mmlt_destroy(Mmlt *mmlt)
     paths_estimator_destroy(&mmlt->paths);
     for (int replica = 0; replica < REPLICAS; ++replica)
         combination_destroy(&mmlt->combinations[replica]);
+    combined_image_destroy(&mmlt->combined);
+    film_destroy(&mmlt->film);
 }
 
 /* ---- passes ------------------------------------------------------------------------------------------------------ */
@@ -121,6 +140,16 @@ static bool pool_due(const Mmlt *mmlt)
     return mmlt->scheme->renews || mmlt->generation.index == 0;
 }
 
+/* Takes what an estimator has left in the film, which is then empty, into the generation's image. Without a combination all
+ * estimators stay in the film. */
+static void estimator_take(Mmlt *mmlt, EstimatorKind kind)
+{
+    if (mmlt->options.chains_only)
+        return;
+    combined_image_add(&mmlt->combined, kind, &mmlt->film);
+    film_clear(&mmlt->film);
+}
+
 static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     ChainStatistics *statistics = &mmlt->run->chains;
@@ -128,72 +157,110 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
     if (pool_due(mmlt) && !mmlt_seeds_run(mmlt, count, whole, error))
         return false;
     double seeded = timing_now();
+    if (*whole && pool_due(mmlt))
+        estimator_take(mmlt, ESTIMATOR_POOL);
+    double begun = timing_now();
     if (*whole && !chains_estimator_run(&mmlt->chains, &mmlt->generation, &mmlt->pool, count, !mmlt->scheme->renews,
                                         whole, error))
         return false;
     statistics->pool_seconds += seeded - begin;
-    statistics->chain_seconds += timing_now() - seeded;
+    statistics->chain_seconds += timing_now() - begun;
+    if (*whole)
+        estimator_take(mmlt, ESTIMATOR_CHAINS);
     return true;
 }
 
-/* Runs all passes of a generation. The first generation starts with path tracing, after the pilot that gives its
- * clamping threshold, so that a stop soon has something to show. Later ones end with path tracing, which needs the
- * target importance that is renewed before the pool. */
+/* The first generation begins with path tracing, after the pilot that gives its clamping threshold, so that there is soon
+ * something to save, or to show after a stop: path tracing alone is in the image until the generation ends. */
+static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
+{
+    Film *film = &mmlt->film, *image = mmlt->run->film;
+    if ((chains_needed(mmlt) && !mmlt_pilot_run(mmlt, count, whole, error)) ||
+        (*whole && !paths_estimator_run(&mmlt->paths, &mmlt->generation, whole, error)))
+        return false;
+    mmlt->run->done = mmlt->paths.delivered;
+    if (!*whole)
+        paths_estimator_alone(&mmlt->paths);
+    film->light_samples = *whole && !mmlt->options.chains_only ? mmlt->paths.own.samples : 0;
+    if (!film_merge(image, film, error))
+        return false;
+    if (!*whole)
+        return true;
+    estimator_take(mmlt, ESTIMATOR_PATHS);
+    if (!render_layers_sample(mmlt->run, mmlt->paths.own.samples, error))
+        return false;
+    render_run_report(mmlt->run, mmlt->plan.timed ? 0.0 : (double)mmlt->run->done / (double)mmlt->plan.total);
+    render_run_save_if_due(mmlt->run);
+    return true;
+}
+
+/* Runs all passes of a generation. Later generations end with path tracing, which needs the target importance that is renewed
+ * before the pool. */
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
-    const double paths = plan_paths_samples(&mmlt->plan, count);
-    bool chains = chains_needed(mmlt), first = mmlt->generation.index == 0;
-    if (first && ((chains && !mmlt_pilot_run(mmlt, count, whole, error)) ||
-                  (*whole && !paths_estimator_run(&mmlt->paths, &mmlt->generation, paths, whole, error))))
+    bool first = mmlt->generation.index == 0;
+    if (first && !first_paths_run(mmlt, count, whole, error))
         return false;
-    if (chains && *whole && !chains_follow(mmlt, count, whole, error))
+    if (chains_needed(mmlt) && *whole && !chains_follow(mmlt, count, whole, error))
         return false;
-    return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, paths, whole, error);
+    return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, whole, error);
 }
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
-/* Joins the estimators' films in that of the chains. */
-static bool films_combine(Mmlt *mmlt, Error *error)
+/* The samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its path
+ * tracing. */
+static void generation_samples(Mmlt *mmlt, uint count, double samples[ESTIMATOR_COUNT])
+{
+    bool chains = chains_needed(mmlt);
+    paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
+    mmlt->chains.own.samples = chains ? (uint64_t)count * mmlt->options.steps : 0;
+    samples[ESTIMATOR_CHAINS] = (double)mmlt->chains.own.samples;
+    samples[ESTIMATOR_POOL] = chains && pool_due(mmlt) ? (double)plan_pool_samples(&mmlt->plan, count) : 0.0;
+    samples[ESTIMATOR_PATHS] = (double)mmlt->paths.own.samples;
+}
+
+static void generation_begin(Mmlt *mmlt, const double samples[ESTIMATOR_COUNT])
 {
     const Generation *generation = &mmlt->generation;
-    const atomic_int *stop = render_run_stop(mmlt->run);
+    mmlt_guide_show(&mmlt->guide, generation->replica);
+    clamp_threshold_set(mmlt);
+    film_clear(&mmlt->film);
+    if (!mmlt->options.chains_only)
+        combined_image_begin(&mmlt->combined, &mmlt->combinations[generation->replica],
+                             &mmlt->combinations[generation->other], samples);
+}
+
+/* Makes one film of the estimators: mmlt->film. */
+static void films_combine(Mmlt *mmlt)
+{
+    const Generation *generation = &mmlt->generation;
     Combination *own = &mmlt->combinations[generation->replica];
-    Film *const films[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = &mmlt->chains.own.film,
-                                          [ESTIMATOR_POOL] = &mmlt->pool.own.film,
-                                          [ESTIMATOR_PATHS] = &mmlt->paths.own.film};
-    if (mmlt->options.chains_only) {
-        mmlt->paths.own.film.light_samples = 0; /* it has direct light only, in `sums` */
-        return film_merge(&mmlt->chains.own.film, &mmlt->paths.own.film, error);
-    }
-    mmlt_guide_count(&mmlt->guide, generation->replica, own, (double)mmlt->pool.own.film.light_samples);
-    if (!combination_generation(own, &mmlt->combinations[generation->other], films, stop, error))
-        return false;
-    if (!*stop) /* the other replica is next, and learns from this one */
-        plan_learn(&mmlt->plan, generation->index, own);
-    return true;
+    if (generation->index == 0) /* its direct light has been in the image until now */
+        film_swap_own(&mmlt->film, mmlt->run->film);
+    else
+        combined_image_add(&mmlt->combined, ESTIMATOR_PATHS, &mmlt->film);
+    combined_image_finish(&mmlt->combined, &mmlt->film);
+    mmlt_guide_count(&mmlt->guide, generation->replica, own, (double)mmlt->pool.own.samples);
+    if (*render_run_stop(mmlt->run)) /* no generation follows */
+        return;
+    combination_variances_update(own, &mmlt->combinations[generation->other]);
+    plan_learn(&mmlt->plan, generation->index, own); /* the other replica is next, and learns from this one */
 }
 
 /* Adds the generation to the picture and its layers. */
 static bool generation_take(Mmlt *mmlt, Error *error)
 {
     RenderLayers *layers = mmlt->run->options->layers;
-    Film *film = &mmlt->chains.own.film;
-    return films_combine(mmlt, error) && film_merge(mmlt->run->film, film, error) &&
+    Film *film = &mmlt->film;
+    if (mmlt->options.chains_only)
+        film->light_samples = mmlt->chains.own.samples;
+    else
+        films_combine(mmlt);
+    if (mmlt->generation.index == 0)
+        film_clear(mmlt->run->film);
+    return film_merge(mmlt->run->film, film, error) &&
            (!layers || render_layers_add(layers, film, mmlt->generation.index % 2, error));
-}
-
-/* The work of the generation that has run: its steps, its pool (if it had its own) and its path tracing. */
-static uint64_t generation_work(const Mmlt *mmlt)
-{
-    double steps = (double)mmlt->chains.own.film.light_samples;
-    bool chains = chains_needed(mmlt);
-    const double samples[ESTIMATOR_COUNT] = {
-        [ESTIMATOR_CHAINS] = chains ? steps : 0.0,
-        [ESTIMATOR_POOL] = chains && steps > 0.0 && pool_due(mmlt) ? (double)mmlt->pool.own.film.light_samples : 0.0,
-        [ESTIMATOR_PATHS] = (double)mmlt->paths.own.film.light_samples};
-    double work = estimators_work(samples);
-    return work > 1.0 ? (uint64_t)work : 1;
 }
 
 static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
@@ -206,31 +273,26 @@ static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
     mmlt->run->done = mmlt->plan.done;
 }
 
-/* A first generation that was stopped: its finished path tracing samples go to the image. */
-static bool stopped_take(Mmlt *mmlt, Error *error)
-{
-    paths_estimator_alone(&mmlt->paths);
-    mmlt->run->done = mmlt->paths.delivered;
-    return film_merge(mmlt->run->film, &mmlt->paths.own.film, error);
-}
-
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
 {
     bool whole = true;
-    mmlt_guide_show(&mmlt->guide, mmlt->generation.replica);
-    clamp_threshold_set(mmlt);
-    film_clear(&mmlt->chains.own.film);
+    double samples[ESTIMATOR_COUNT];
+    generation_samples(mmlt, count, samples);
+    generation_begin(mmlt, samples);
     if (!generation_passes(mmlt, count, &whole, error))
         return false;
     if (whole) {
-        mmlt->chains.own.film.light_samples = (uint64_t)count * mmlt->options.steps;
-        uint64_t work = generation_work(mmlt);
+        double work = fmax(estimators_work(samples), 1.0);
         if (!generation_take(mmlt, error))
             return false;
-        generation_count(mmlt, count, work);
-    } else if (mmlt->generation.index == 0 && !stopped_take(mmlt, error)) {
-        return false;
+        generation_count(mmlt, count, (uint64_t)work);
     }
     mmlt->generation = generation_at(mmlt->run, mmlt->scheme, mmlt->generation.index + 1);
     return true;
+}
+
+double mmlt_least_work(const Mmlt *mmlt)
+{
+    double paths = (double)(paths_estimator_due(&mmlt->paths, &mmlt->generation, 0.0) * mmlt->run->crop_pixels);
+    return estimators_work((const double[ESTIMATOR_COUNT]){[ESTIMATOR_PATHS] = paths});
 }

@@ -4,6 +4,7 @@
 #define TWINLIGHT_MMLT_MMLT_H
 
 #include "mmlt/chains_estimator.h"
+#include "mmlt/combined_image.h"
 #include "mmlt/guide.h"
 #include "mmlt/paths_estimator.h"
 #include "mmlt/plan.h"
@@ -16,7 +17,9 @@ typedef struct Mmlt {
     ChainsEstimator chains;
     PoolEstimator pool;
     PathsEstimator paths;
+    Film film; /* of the estimator that runs; at the end, of the generation */
     Combination combinations[REPLICAS];
+    CombinedImage combined;
     MmltGuide guide;
     Plan plan;
     Generation generation; /* under way */
@@ -38,5 +41,8 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
  * nothing: a generation that is stopped is discarded, except that of the first the finished path tracing samples are
  * kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
+
+/* The work that the next generation has with any number of chains: path tracing in the first ones. */
+double mmlt_least_work(const Mmlt *mmlt);
 
 #endif

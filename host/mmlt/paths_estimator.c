@@ -1,5 +1,6 @@
 #include "mmlt/paths_estimator.h"
 
+#include "backend/step_recorder.h"
 #include "base/timing.h"
 #include "camera/film_sum.h"
 #include "chain/chain.h"
@@ -9,16 +10,14 @@
 /* The number of the first sample in odd generations, beyond all that even ones can make. */
 #define HALF_SAMPLES 0x40000000u
 
-bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool direct_only, const Guide *guide,
+bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
                           Error *error)
 {
-    *paths = (PathsEstimator){.frame = run->frame};
+    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame};
     paths->frame.path.strategies = integrator_pt()->strategies;
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
-    if (!estimator_init(&paths->own, run, !direct_only, !direct_only, error))
-        return false;
     estimator_film_params(&paths->own, &paths->frame.film);
     bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);
     paths->own.list.guide = guide;
@@ -28,22 +27,32 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, bool dire
 
 void paths_estimator_destroy(PathsEstimator *paths)
 {
-    estimator_destroy(&paths->own);
+    step_list_destroy(&paths->own.list);
 }
 
-bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, double more, bool *whole, Error *error)
+uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more)
+{
+    uint64_t target = (uint64_t)(paths->wanted + more), first = (uint64_t)generation->index + 1;
+    if (generation->index < 2 * REPLICAS && target < first)
+        target = first;
+    return target > paths->done ? target - paths->done : 0;
+}
+
+void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, double more)
+{
+    paths->fresh = paths_estimator_due(paths, generation, more);
+    paths->wanted += more;
+    paths->own.samples = paths->fresh * generation->run->crop_pixels;
+}
+
+bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error)
 {
     RenderRun *run = generation->run;
     FrameParams *frame = &paths->frame;
     double begin = timing_now();
-    paths->wanted += more;
-    uint64_t target = (uint64_t)paths->wanted, first = (uint64_t)generation->index + 1;
-    if (generation->index < 2 * REPLICAS && target < first)
-        target = first;
-    film_clear(&paths->own.film);
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
-    uint64_t fresh = target > paths->done ? target - paths->done : 0, items = fresh * run->crop_pixels;
+    uint64_t items = paths->own.samples;
     uint half = generation->index % REPLICAS;
     uint sequence = run->options->first_sample + half * HALF_SAMPLES;
     frame->path.sobol = run->options->independent ? 0 : 1 + sequence;
@@ -57,16 +66,15 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, do
         paths->delivered += delivered;
         *whole = delivered == frame->pass.item_count;
     }
-    paths->done += fresh;
-    paths->of_half[half] += fresh;
-    paths->own.film.light_samples = items;
+    paths->done += paths->fresh;
+    paths->of_half[half] += paths->fresh;
     run->chains.direct_seconds += timing_now() - begin;
     return true;
 }
 
-void paths_estimator_alone(PathsEstimator *paths)
+void paths_estimator_alone(const PathsEstimator *paths)
 {
-    Film *film = &paths->own.film;
+    Film *film = paths->own.film;
     for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
         film->sums[i] =
             film_sum_rounded((double)film_sum_shown(film->sums[i]) + (double)film_sum_shown(film->light_sums[i]));

@@ -1,5 +1,6 @@
 #include "mmlt/pool_estimator.h"
 
+#include "backend/step_recorder.h"
 #include "chain/chain.h"
 #include "film/pixel_order.h"
 #include "math/rng.h"
@@ -9,15 +10,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool pool_estimator_init(PoolEstimator *pool, const RenderRun *run, bool chains_only, const Guide *guide, Error *error)
+void pool_estimator_init(PoolEstimator *pool, const RenderRun *run, Film *film, bool chains_only, const Guide *guide)
 {
-    *pool = (PoolEstimator){.guide = guide, .lights_all = chains_only, .next_sample = run->options->first_sample};
-    return estimator_init(&pool->own, run, false, !chains_only, error);
+    *pool = (PoolEstimator){.own = {.film = film, .hidden = chains_only},
+                            .guide = guide,
+                            .lights_all = chains_only,
+                            .next_sample = run->options->first_sample};
 }
 
 void pool_estimator_destroy(PoolEstimator *pool)
 {
-    estimator_destroy(&pool->own);
+    step_list_destroy(&pool->own.list);
     free(pool->words);
 }
 
@@ -128,10 +131,9 @@ static bool pool_run(PoolEstimator *pool, const Generation *generation, uint cou
     pool->own.list.pass_words = pool->words;
     pool->own.list.pass_fields = POOL_WORDS;
     pool->own.list.pass_stride = count;
-    film_clear(&pool->own.film);
     bool done = estimator_pass(&pool->own, generation->run, &frame, false, &delivered, error);
     *whole = delivered == count;
-    pool->own.film.light_samples = *whole ? count : 0;
+    pool->own.samples = *whole ? count : 0;
     generation->run->chains.pool_samples += done ? count : 0;
     return done;
 }
@@ -154,6 +156,7 @@ bool pool_estimator_pilot(PoolEstimator *pool, const Generation *generation, uin
         return false;
     if (*whole)
         pool->pilot_brightness = pool_brightness(pool);
+    film_clear(pool->own.film);
     return true;
 }
 

@@ -27,9 +27,8 @@ typedef struct PoolEstimator {
     double brightness_sum[REPLICAS]; /* summed over the replica's pools */
 } PoolEstimator;
 
-/* Makes the film. chains_only: the pool is not shown, and every sample has a light subpath. Call pool_estimator_destroy
- * even on failure. */
-bool pool_estimator_init(PoolEstimator *pool, const RenderRun *run, bool chains_only, const Guide *guide, Error *error);
+/* film: the generation's. chains_only: the pool is not shown, and every sample has a light subpath. */
+void pool_estimator_init(PoolEstimator *pool, const RenderRun *run, Film *film, bool chains_only, const Guide *guide);
 void pool_estimator_destroy(PoolEstimator *pool);
 
 /* Makes the list, for paths of run->frame. */
@@ -37,7 +36,7 @@ bool pool_estimator_list(PoolEstimator *pool, const RenderRun *run, Error *error
 
 /* Runs a small pilot pool of up to `most` samples before the first generation and keeps only its brightness, so that
  * the first generation has a clamping threshold as later ones do and its variances compare with theirs. *whole: set to
- * false if stopped before the end. */
+ * false if stopped before the end. The film is empty again. */
 bool pool_estimator_pilot(PoolEstimator *pool, const Generation *generation, uint most, bool *whole, Error *error);
 
 /* Runs a pool. *whole: set to false if stopped before the end. */

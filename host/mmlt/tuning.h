@@ -61,6 +61,9 @@
 /* The last generation is fitted into the time that is left, if that is more than this fraction of what it would take. */
 #define LAST_PART 0.25
 
+/* A generation that cannot be made shorter may end later than the limit of time by this fraction of it. */
+#define LATE_PART 0.05
+
 /* Most items in a pass of path tracing. */
 #define PATHS_MAX (1u << 24)
 
@@ -99,9 +102,6 @@
 
 /* Errors are relative to light^2 plus this fraction of the squared mean light. */
 #define DARK_PART 0.1
-
-/* How much the error of a tile's mean counts, against that of its pixels: chains' errors are alike in neighbouring pixels. */
-#define CORRELATION_PART 0.5
 
 /* ---- weights and plans ------------------------------------------------------------------------------------------ */
 

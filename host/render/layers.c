@@ -20,9 +20,11 @@ static const Layer LAYER_OF_AOV[AOV_COUNT] = {AOV_LIST(LAYER_OF)};
 
 _Static_assert((int)AOV_COUNT <= (int)SPLAT_FILMS, "a splat has bits for the number of the variable");
 
-#define VALUES_OF(NAME, name, text, values, ...) [AOV_##NAME] = (values),
-static const uint AOV_VALUES[AOV_COUNT] = {AOV_LIST(VALUES_OF)};
-#undef VALUES_OF
+_Static_assert(AOV_SAMPLES <= AOV_SAMPLES_MAX, "samples are counted in bytes");
+
+#define CHANNELS_OF(NAME, name, text, values, red, green, blue) [AOV_##NAME] = sizeof(green) > 1 ? 3 : 1,
+static const size_t AOV_CHANNELS[AOV_COUNT] = {AOV_LIST(CHANNELS_OF)};
+#undef CHANNELS_OF
 
 static bool halves_init(RenderLayers *layers, const Film *film, Error *error)
 {
@@ -60,24 +62,19 @@ static bool variance_init(RenderLayers *layers, const Film *film, Error *error)
     return true;
 }
 
-static bool aovs_init(RenderLayers *layers, const Film *film, double radius, Error *error)
+static bool aovs_init(RenderLayers *layers, const Film *film, Error *error)
 {
-    for (uint aov = 0; aov < AOV_COUNT; ++aov) {
-        if (!wants(layers, LAYER_OF_AOV[aov]))
-            continue;
-        if (!film_init(&layers->aovs[aov], film->width, film->height, film->crop, error))
+    for (uint aov = 0; aov < AOV_COUNT; ++aov)
+        if (wants(layers, LAYER_OF_AOV[aov]) && !aov_image_init(&layers->aovs[aov], film, AOV_CHANNELS[aov], error))
             return false;
-        film_quantum_set(&layers->aovs[aov], AOV_VALUES[aov] == AOV_DISTANCE ? radius : 1.0);
-    }
     return true;
 }
 
-bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, double radius, Error *error)
+bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error)
 {
     *layers = (RenderLayers){.wanted = wanted};
     return (!wants(layers, LAYER_HALVES) || halves_init(layers, film, error)) &&
-           (!wants(layers, LAYER_VARIANCE) || variance_init(layers, film, error)) &&
-           aovs_init(layers, film, radius, error);
+           (!wants(layers, LAYER_VARIANCE) || variance_init(layers, film, error)) && aovs_init(layers, film, error);
 }
 
 void render_layers_destroy(RenderLayers *layers)
@@ -89,7 +86,7 @@ void render_layers_destroy(RenderLayers *layers)
         free(layers->stratified[i]);
     }
     for (uint aov = 0; aov < AOV_COUNT; ++aov)
-        film_destroy(&layers->aovs[aov]);
+        aov_image_destroy(&layers->aovs[aov]);
     *layers = (RenderLayers){0};
 }
 
@@ -161,10 +158,11 @@ void render_layers_variance(const RenderLayers *layers, float scale, size_t firs
 static bool aov_list(uint count, StepList *list, Error *error)
 {
     Recorder recorder;
-    if (!recorder_init(&recorder, 1 + 2 * (size_t)count, error))
+    if (!recorder_init(&recorder, 2 + 2 * (size_t)count, error))
         return false;
     recorder_kernel(&recorder, KERNEL_pt_start_paths, false);
     recorder_step(&recorder, STEP_TRACE_CLOSEST);
+    recorder_kernel(&recorder, KERNEL_aov_shade_hits, false);
     for (uint i = 0; i < count; ++i) {
         if (i > 0)
             recorder_step(&recorder, STEP_SPLAT);
@@ -177,7 +175,7 @@ static bool aov_list(uint count, StepList *list, Error *error)
 static void aov_splats(void *context, const uint *splats, uint count, uint stride)
 {
     RenderLayers *layers = context;
-    film_add_splats_of(layers->aovs, AOV_COUNT, splats, count, stride);
+    aov_images_add(layers->aovs, AOV_COUNT, splats, count, stride);
 }
 
 /* Makes a sample of every pixel of the variables in the bits `aovs`. */

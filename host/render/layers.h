@@ -6,6 +6,7 @@
 #include "film/pixel_series.h"
 #include "layout/aov_list.h"
 #include "layout/frame_params.h"
+#include "render/aov_image.h"
 #include "render/run.h"
 
 /* X(NAME, name, text, groups): LAYER_NAME, a part of the picture's light; name_add (picture.c); its name in --layers;
@@ -40,13 +41,12 @@ typedef struct RenderLayers {
     PixelSeries own[2], light[2]; /* for the variance of FILM_OWN and of FILM_LIGHT: of both halves */
     size_t size[2]; /* of the crop */
     float *stratified[2]; /* what is left of these two, per tile (pixel_series_stratified) */
-    Film aovs[AOV_COUNT];
+    AovImage aovs[AOV_COUNT];
     unsigned aov_samples; /* samples per pixel so far */
 } RenderLayers;
 
-/* Allocates the layers in `wanted` for a film like `film`. radius: of the scene's bounding sphere, which sets the
- * quantum of AOV_DISTANCE. Call render_layers_destroy even on failure. */
-bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, double radius, Error *error);
+/* Allocates the layers in `wanted` for a film like `film`. Call render_layers_destroy even on failure. */
+bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 
 /* Adds an independent part of the picture to half 0 or 1 and to the variances. */

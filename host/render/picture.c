@@ -40,25 +40,35 @@ static size_t groups_of(const PictureSettings *settings, uint depth)
 }
 
 bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings, int width, int height, uint depth,
-                         Error *error)
+                         int threads, Error *error)
 {
     size_t row = 3 * (size_t)width, groups = groups_of(settings, depth);
     size_t plane = groups * EXR_BAND_ROWS * row, values = plane + 2 * row; /* despeckling reads a row above and below */
-    memory->spare_bytes = SPARE_BANDS * plane * sizeof(float) + SPARE_BYTES + sizeof(uint64_t) * (size_t)height;
-    memory->values = malloc(values * sizeof *memory->values);
-    memory->plane = malloc(plane * sizeof *memory->plane);
+    *memory = (PictureMemory){.lane_count = threads < PICTURE_LANES_MAX ? threads : PICTURE_LANES_MAX};
+    memory->lane_count = memory->lane_count > 1 ? memory->lane_count : 1;
+    size_t lanes = (size_t)memory->lane_count;
+    memory->spare_bytes =
+        SPARE_BANDS * lanes * plane * sizeof(float) + lanes * SPARE_BYTES + sizeof(uint64_t) * (size_t)height;
     memory->spare = malloc(memory->spare_bytes);
-    if (memory->values && memory->plane && memory->spare)
+    bool complete = memory->spare != NULL;
+    for (size_t i = 0; i < lanes; ++i) {
+        memory->lanes[i].values = malloc(values * sizeof *memory->lanes[i].values);
+        memory->lanes[i].plane = malloc(plane * sizeof *memory->lanes[i].plane);
+        complete = complete && memory->lanes[i].values && memory->lanes[i].plane;
+    }
+    if (complete)
         return true;
     picture_memory_destroy(memory);
-    return error_memory(error, (values + (SPARE_BANDS + 1) * plane) * sizeof(float) + SPARE_BYTES,
+    return error_memory(error, lanes * ((values + (SPARE_BANDS + 1) * plane) * sizeof(float) + SPARE_BYTES),
                         "writing the picture");
 }
 
 void picture_memory_destroy(PictureMemory *memory)
 {
-    free(memory->values);
-    free(memory->plane);
+    for (int i = 0; i < PICTURE_LANES_MAX; ++i) {
+        free(memory->lanes[i].values);
+        free(memory->lanes[i].plane);
+    }
     free(memory->spare);
     *memory = (PictureMemory){0};
 }
@@ -149,11 +159,11 @@ static void parts_add(Picture *picture, const Film *film)
 #undef ADD
 }
 
-static void variable_add(Picture *picture, uint aov, const char *red, const char *green, const char *blue)
+static void variable_add(Picture *picture, uint aov, uint values, const char *red, const char *green, const char *blue)
 {
     bool one = !green[0];
-    PictureGroup *group = group_add(picture, PICTURE_FILM, red, green, blue, !one);
-    film_set(group, &picture->settings.layers->aovs[aov], FILM_ALL, 1.0f);
+    PictureGroup *group = group_add(picture, PICTURE_VARIABLE, red, green, blue, values == AOV_LIGHTLIKE);
+    group->variable = &picture->settings.layers->aovs[aov];
     picture->channel_count -= one ? 2 : 0; /* not three equal ones */
 }
 
@@ -161,17 +171,18 @@ static void variables_add(Picture *picture)
 {
 #define ADD(NAME, name, text, values, red, green, blue)                                                                \
     if (wants(&picture->settings, LAYER_##NAME))                                                                       \
-        variable_add(picture, AOV_##NAME, red, green, blue);
+        variable_add(picture, AOV_##NAME, values, red, green, blue);
     AOV_LIST(ADD)
 #undef ADD
 }
 
-void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory)
+void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory,
+                  int lane)
 {
     *picture = (Picture){
         .settings = *settings, .width = film->crop[2] - film->crop[0], .height = film->crop[3] - film->crop[1]};
     size_t row = 3 * (size_t)picture->width;
-    picture->free = memory->values + row; /* leaves room for the row above the picture's own band */
+    picture->free = memory->lanes[lane].values + row; /* leaves room for the row above the picture's own band */
     film_set(group_add(picture, PICTURE_FILM, "R", "G", "B", false), film, FILM_ALL, settings->scale);
     picture->free += row;
     parts_add(picture, film);
@@ -213,6 +224,9 @@ static void group_band(const Picture *picture, const PictureGroup *group, int fi
         break;
     case PICTURE_DEPTH:
         film_resolve_depth(group->film, group->depth, group->scale, pixel, pixels, group->values);
+        break;
+    case PICTURE_VARIABLE:
+        aov_image_resolve(group->variable, pixel, pixels, group->values);
         break;
     case PICTURE_VARIANCE:
         render_layers_variance(picture->settings.layers, picture->settings.scale, pixel, pixels, group->values);

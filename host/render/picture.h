@@ -17,29 +17,42 @@ typedef struct PictureSettings {
     const RenderLayers *layers; /* NULL: none */
 } PictureSettings;
 
+/* Most threads that make bands at the same time. */
+#define PICTURE_LANES_MAX 4
+
 /* Memory for pictures of one size. */
 typedef struct PictureMemory {
-    float *values; /* a band of every group */
-    float *plane; /* ExrPicture.plane */
+    struct {
+        float *values; /* a band of every group */
+        float *plane; /* ExrLane.plane */
+    } lanes[PICTURE_LANES_MAX]; /* of each thread */
+    int lane_count;
     void *spare; /* reserve of spare_bytes for the libraries that write the file; freed meanwhile */
     size_t spare_bytes;
 } PictureMemory;
 
-/* Allocates the memory for pictures of this size, with layers by depth for paths of up to `depth` segments. Fails only
- * when out of memory. */
+/* Allocates the memory for pictures of this size, with layers by depth for paths of up to `depth` segments, which up to
+ * `threads` threads make. Fails only when out of memory. */
 bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings, int width, int height, uint depth,
-                         Error *error);
+                         int threads, Error *error);
 void picture_memory_destroy(PictureMemory *memory);
 
 /* Free the reserve before a file is written, and allocate it again afterwards. */
 void picture_memory_lend(PictureMemory *memory);
 void picture_memory_take_back(PictureMemory *memory);
 
-typedef enum PictureSource { PICTURE_FILM, PICTURE_DEPTH, PICTURE_VARIANCE, PICTURE_DESPECKLED } PictureSource;
+typedef enum PictureSource {
+    PICTURE_FILM,
+    PICTURE_DEPTH,
+    PICTURE_VARIABLE,
+    PICTURE_VARIANCE,
+    PICTURE_DESPECKLED
+} PictureSource;
 
 typedef struct PictureGroup {
     PictureSource source;
     const Film *film;
+    const AovImage *variable; /* of PICTURE_VARIABLE */
     FilmPart part;
     uint depth; /* of PICTURE_DEPTH */
     FilmScale scale;
@@ -49,7 +62,7 @@ typedef struct PictureGroup {
 typedef struct Picture {
     PictureSettings settings;
     int width, height; /* of the crop */
-    float *free; /* next unused value of PictureMemory.values */
+    float *free; /* next unused value of the lane */
     PictureGroup groups[PICTURE_GROUPS_MAX]; /* the first: the picture itself */
     size_t group_count;
     ExrChannel channels[3 * PICTURE_GROUPS_MAX]; /* data: of the latest band */
@@ -57,9 +70,10 @@ typedef struct Picture {
     char depth_names[SPLAT_DEPTH_MAX + 1][3][16]; /* "depth03.R" ... */
 } Picture;
 
-/* Prepares a picture of the film as it is now. `film` must not change while the picture is in use; `memory` must have
- * been made with these settings and this size. */
-void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory);
+/* Prepares a picture of the film as it is now, for one thread, which has a lane of the memory. `film` must not change while
+ * the picture is in use; `memory` must have been made with these settings and this size. */
+void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory,
+                  int lane);
 
 /* Resolves rows first ... first + count - 1 of all groups; count <= EXR_BAND_ROWS. */
 void picture_band(Picture *picture, int first, int count);

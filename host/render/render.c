@@ -176,11 +176,10 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     run.start = timing_now();
     run.last_save = run.start - options->save_every; /* the first image is due as soon as there is one */
     RenderLayers *layers = options->layers;
-    bool done =
-        (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
-        render_photons_make(&run, integrator, scene, error) &&
-        (!layers || render_layers_init(layers, layers->wanted, film, (double)scene->frame.scene.world_radius, error)) &&
-        (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
+    bool done = (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
+                render_photons_make(&run, integrator, scene, error) &&
+                (!layers || render_layers_init(layers, layers->wanted, film, error)) &&
+                (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     photon_map_destroy(&run.photons);
     return done;

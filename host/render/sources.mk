@@ -1,4 +1,5 @@
 libtwinlight_host_la_SOURCES += \
+	host/render/aov_image.c host/render/aov_image.h \
 	host/render/bd_fields.c host/render/bd_fields.h \
 	host/render/chain_statistics.c host/render/chain_statistics.h \
 	host/render/film_pilot.c host/render/film_pilot.h \

@@ -189,11 +189,11 @@ SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, 
                        color, film->exponent);
 }
 
-/* Adds a splat of a buffer, with this name in place of its own, and one sample to its pixel unless the splat comes from
- * the light. Any number of threads or work-items may do so concurrently. */
-SHARED_FUNCTION void film_splat_add_as(const FilmView *film, uint name, __global const uint *splats, uint stride,
-                                       uint item)
+/* Adds a splat of a buffer, and one sample to its pixel unless the splat comes from the light. Any number of threads or
+ * work-items may do so concurrently. */
+SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint item)
 {
+    uint name = state_load(splats, stride, SPLAT_PIXEL, item);
     bool from_light = (name & SPLAT_LIGHT) != 0u;
     uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
     uint slot = name != NONE ? film_slot(film, pixel) : NONE;
@@ -213,11 +213,6 @@ SHARED_FUNCTION void film_splat_add_as(const FilmView *film, uint name, __global
         film_color_add(film->rare_sums + 3u * (size_t)slot, color, film->exponent);
     if (film->depth_kinds != 0u)
         film_depth_add(film, slot, name, color);
-}
-
-SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint item)
-{
-    film_splat_add_as(film, state_load(splats, stride, SPLAT_PIXEL, item), splats, stride, item);
 }
 
 #endif

@@ -1,5 +1,5 @@
 /* Auxiliary variables (AOVs) of a pixel, properties of the first visible surface (layout/aov_list.h). A pass:
- * pt_start_paths, (rays traced), and for each of its variables aov_splat. */
+ * pt_start_paths, (rays traced), aov_shade_hits, and for each of its variables aov_splat. */
 #ifndef TWINLIGHT_AOV_CL
 #define TWINLIGHT_AOV_CL
 
@@ -18,20 +18,21 @@ typedef struct AovHit {
     Vec3 back; /* towards the viewer; unit */
     float distance; /* from the ray's origin */
     uint primitive;
-    uint pixel, sample;
+    Bsdf bsdf;
+    Frame shading;
+    Random4 random; /* that a path of light would draw its next direction from */
 } AovHit;
 
-/* The random numbers that a path of light would draw at this hit. */
-SHARED_FUNCTION Random4 aov_random(const SceneView *scene, const AovHit *hit, uint purpose)
+SHARED_FUNCTION void aov_hit(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit met, AovHit *hit)
 {
-    return path_random(scene->frame, hit->pixel, hit->sample, path_random_block(1u, purpose));
-}
-
-/* The surface's Bsdf and shading frame. */
-SHARED_FUNCTION void aov_material(const SceneView *scene, const AovHit *hit, Bsdf *bsdf, Frame *shading)
-{
+    hit->surface = surface_from_hit(scene, &ray, met);
+    hit->back = vec3_negate(ray.d);
+    hit->distance = vec3_length(vec3_sub(hit->surface.p, ray.o));
+    hit->primitive = met.primitive;
     Surface surface = hit->surface;
-    material_resolve(scene, random_float(aov_random(scene, hit, RANDOM_MIX).x[0]), &surface, bsdf, shading);
+    Random4 mix = path_random(scene->frame, pixel, sample, path_random_block(1u, RANDOM_MIX));
+    material_resolve(scene, random_float(mix.x[0]), &surface, &hit->bsdf, &hit->shading);
+    hit->random = path_random(scene->frame, pixel, sample, path_random_block(1u, RANDOM_SCATTER));
 }
 
 SHARED_FUNCTION bool aov_lamp(const SceneView *scene, const AovHit *hit)
@@ -51,23 +52,18 @@ SHARED_FUNCTION Vec3 aov_albedo(const SceneView *scene, const AovHit *hit)
 {
     if (aov_lamp(scene, hit))
         return vec3_splat(1.0f);
-    Bsdf bsdf;
-    Frame shading;
     BsdfSample sample;
-    aov_material(scene, hit, &bsdf, &shading);
-    Random4 random = aov_random(scene, hit, RANDOM_SCATTER);
-    bool drawn = bsdf_sample(scene, &bsdf, frame_to_local(shading, hit->back), random_float(random.x[0]),
-                             vec2(random_float(random.x[1]), random_float(random.x[2])), TRANSPORT_IMPORTANCE, &sample);
+    bool drawn = bsdf_sample(scene, &hit->bsdf, frame_to_local(hit->shading, hit->back), random_float(hit->random.x[0]),
+                             vec2(random_float(hit->random.x[1]), random_float(hit->random.x[2])), TRANSPORT_IMPORTANCE,
+                             &sample);
     return drawn ? sample.weight : vec3_splat(0.0f);
 }
 
 /* The shading normal on the viewer's side. */
 SHARED_FUNCTION Vec3 aov_normal(const SceneView *scene, const AovHit *hit)
 {
-    Bsdf bsdf;
-    Frame shading;
-    aov_material(scene, hit, &bsdf, &shading);
-    return vec3_face_forward(shading.n, hit->back);
+    (void)scene;
+    return vec3_face_forward(hit->shading.n, hit->back);
 }
 
 SHARED_FUNCTION Vec3 aov_depth(const SceneView *scene, const AovHit *hit)
@@ -76,60 +72,90 @@ SHARED_FUNCTION Vec3 aov_depth(const SceneView *scene, const AovHit *hit)
     return vec3_splat(hit->distance);
 }
 
+/* Whether there is something to see: a surface or an environment (aov_missed). */
+SHARED_FUNCTION Vec3 aov_alpha(const SceneView *scene, const AovHit *hit)
+{
+    (void)scene;
+    (void)hit;
+    return vec3_splat(1.0f);
+}
+
+/* The value where the ray meets nothing. */
+SHARED_FUNCTION Vec3 aov_missed(const SceneView *scene, uint aov)
+{
+    return vec3_splat(aov == AOV_ALPHA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) ? 1.0f : 0.0f);
+}
+
 /* ---- the kernel -------------------------------------------------------------------------------------------------- */
 
-/* AOV_LIGHTLIKE or AOV_DISTANCE. */
+/* AOV_LIGHTLIKE, AOV_DISTANCE or AOV_PART. */
 SHARED_FUNCTION uint aov_values(uint aov)
 {
-#define VALUES_OF(NAME, name, text, values, red, green, blue) | (values) << AOV_##NAME
-    return (0u AOV_LIST(VALUES_OF)) >> aov & 1u;
+#define VALUES_OF(NAME, name, text, values, red, green, blue) | (values) << 2u * AOV_##NAME
+    return (0u AOV_LIST(VALUES_OF)) >> 2u * aov & 3u;
 #undef VALUES_OF
 }
 
-SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint aov, uint pixel, uint sample, Ray ray, Hit hit)
+SHARED_FUNCTION Vec3 aov_value(const SceneView *scene, uint aov, const AovHit *hit)
 {
-    AovHit found;
-    found.surface = surface_from_hit(scene, &ray, hit);
-    found.back = vec3_negate(ray.d);
-    found.distance = vec3_length(vec3_sub(found.surface.p, ray.o));
-    found.primitive = hit.primitive;
-    found.pixel = pixel;
-    found.sample = sample;
 #define VALUE(NAME, name, text, values, red, green, blue)                                                              \
     if (aov == AOV_##NAME)                                                                                             \
-        return aov_##name(scene, &found);
+        return aov_##name(scene, hit);
     AOV_LIST(VALUE)
 #undef VALUE
     return vec3_splat(0.0f);
 }
 
-/* From: closest hits. To: one sample of the next variable (PATH_AOV) of the pass, for the film of that number; of an
- * AOV_DISTANCE none if the ray meets nothing. */
-__kernel void aov_splat(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
-                        __global const uint *restrict tables, __global const uint *restrict texels,
-                        __global uint *restrict paths, __global const uint *restrict rays,
-                        __global const uint *restrict hits, __global uint *restrict splats)
+SHARED_FUNCTION void aov_store(__global uint *paths, uint stride, uint item, uint aov, Vec3 value)
+{
+    float weight = aov_values(aov) == AOV_LIGHTLIKE ? state_load_float(paths, stride, PATH_WEIGHT, item) : 1.0f;
+    state_store_vec3(paths, stride, PATH_AOV_VALUES + 3u * aov, item, vec3_scale(value, weight));
+}
+
+/* From: closest hits. To: a sample of each variable of the pass. Paths that meet nothing end. */
+__kernel void aov_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                             __global const uint *restrict tables, __global const uint *restrict texels,
+                             __global uint *restrict paths, __global const uint *restrict rays,
+                             __global const uint *restrict hits)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
         return;
-    uint pixel = state_load(paths, stride, PATH_PIXEL, item), sample = state_load(paths, stride, PATH_SAMPLE, item);
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    Hit met = hit_load(hits, stride, item);
+    if (state_load(paths, stride, PATH_DEPTH, item) == 0u || met.primitive == NONE) {
+        state_store(paths, stride, PATH_DEPTH, item, 0u);
+        for (uint aov = 0; aov < AOV_COUNT; ++aov)
+            aov_store(paths, stride, item, aov, aov_missed(scene, aov));
+        return;
+    }
+    AovHit hit;
+    aov_hit(scene, state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
+            ray_load(rays, stride, item), met, &hit);
+    for (uint aov = 0; aov < AOV_COUNT; ++aov)
+        if ((frame->pass.aovs >> aov & 1u) != 0u)
+            aov_store(paths, stride, item, aov, aov_value(scene, aov, &hit));
+}
+
+/* From: samples. To: that of the next variable (PATH_AOV) of the pass, for the image of that number; of an AOV_DISTANCE none
+ * if the ray has met nothing. */
+__kernel void aov_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                        __global uint *restrict splats)
+{
+    uint item = (uint)get_global_id(0), stride = frame->pass.stride;
+    if (item >= frame->pass.item_count)
+        return;
     uint aov = state_load(paths, stride, PATH_AOV, item);
     while (aov < AOV_COUNT && (frame->pass.aovs >> aov & 1u) == 0u)
         ++aov;
     state_store(paths, stride, PATH_AOV, item, aov + 1u);
-    Hit hit = hit_load(hits, stride, item);
-    bool met = state_load(paths, stride, PATH_DEPTH, item) != 0u && hit.primitive != NONE;
-    Vec3 value = vec3_splat(0.0f);
-    if (met) {
-        KERNEL_SCENE(frame, geometry, tables, texels);
-        value = aov_value(scene, aov, pixel, sample, ray_load(rays, stride, item), hit);
-    }
-    bool distance = aov_values(aov) == AOV_DISTANCE;
-    if (!distance)
-        value = vec3_scale(value, state_load_float(paths, stride, PATH_WEIGHT, item));
-    state_store(splats, stride, SPLAT_PIXEL, item, met || !distance ? pixel | aov << SPLAT_FILM_SHIFT : NONE);
-    state_store_vec3(splats, stride, SPLAT_COLOR, item, value);
+    bool met = state_load(paths, stride, PATH_DEPTH, item) != 0u;
+    state_store(splats, stride, SPLAT_PIXEL, item,
+                met || aov_values(aov) != AOV_DISTANCE
+                    ? state_load(paths, stride, PATH_PIXEL, item) | aov << SPLAT_FILM_SHIFT
+                    : NONE);
+    state_store_vec3(splats, stride, SPLAT_COLOR, item,
+                     state_load_vec3(paths, stride, PATH_AOV_VALUES + 3u * aov, item));
 }
 
 #endif

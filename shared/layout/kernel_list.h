@@ -22,8 +22,9 @@
     X(pt_add_caustics, 2, BUFFER_FRAME, BUFFER_PATHS)                                                                  \
     X(pt_splat_rare, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                 \
     X(pt_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                                      \
-    X(aov_splat, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,            \
-      BUFFER_HITS, BUFFER_SPLATS)
+    X(aov_shade_hits, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,       \
+      BUFFER_HITS)                                                                                                     \
+    X(aov_splat, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS)
 
 /* Ray queries and film sums. */
 #define KERNEL_LIST_OTHERS(X)                                                                                          \

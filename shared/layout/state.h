@@ -86,7 +86,7 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
     return split_depths != 0u ? segments << SPLAT_DEPTH_SHIFT : 0u;
 }
 
-/* Passes for several films at once have the number of the film in the place of layers; all splats are samples. */
+/* Passes of several variables have the number of the image in the place of layers; all splats are samples. */
 #define SPLAT_FILM_SHIFT 30u
 #define SPLAT_FILMS 4u
 

@@ -12,6 +12,7 @@
 
 #include <openexr.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 TCase *film_output_tcase(void);
 
@@ -87,22 +88,26 @@ START_TEST(test_exr_noise)
 }
 END_TEST
 
+static void files_compare(const char *path_a, const char *path_b)
+{
+    size_t sizes[2];
+    unsigned char *a = test_file_read(path_a, &sizes[0]), *b = test_file_read(path_b, &sizes[1]);
+    ck_assert_uint_eq(sizes[0], sizes[1]);
+    ck_assert_mem_eq(a, b, sizes[0]);
+    free(a);
+    free(b);
+}
+
 START_TEST(test_exr_bytes_are_reproducible)
 {
     float rgb[3 * WIDTH * HEIGHT];
     Error error;
-    size_t sizes[2];
     picture_fill(rgb);
     ck_assert(rgb_write(test_path("a.exr"), rgb, WIDTH, HEIGHT, NULL, &error));
     sleep(1); /* a time stamp would differ */
     ck_assert(rgb_write(test_path("b.exr"), rgb, WIDTH, HEIGHT, NULL, &error));
-    unsigned char *a = test_file_read(test_path("a.exr"), &sizes[0]);
-    unsigned char *b = test_file_read(test_path("b.exr"), &sizes[1]);
-    ck_assert_uint_eq(sizes[0], sizes[1]);
-    ck_assert_mem_eq(a, b, sizes[0]);
+    files_compare(test_path("a.exr"), test_path("b.exr"));
     ck_assert_int_eq(test_folder_entries(), 2);
-    free(a);
-    free(b);
 }
 END_TEST
 
@@ -202,6 +207,57 @@ START_TEST(test_exr_layers)
 }
 END_TEST
 
+/* A picture in bands, as a lane of ExrPicture sees it. */
+typedef struct Banded {
+    const float *whole; /* RGB */
+    float band[3 * WIDTH * EXR_BAND_ROWS];
+    float plane[3 * WIDTH * EXR_BAND_ROWS];
+    ExrChannel channels[3];
+    int bands; /* made by this lane */
+} Banded;
+
+static void band_copy(void *context, int first, int count)
+{
+    Banded *banded = context;
+    memcpy(banded->band, banded->whole + 3 * WIDTH * first, 3 * WIDTH * (size_t)count * sizeof(float));
+    ++banded->bands;
+    if (first % (2 * EXR_BAND_ROWS) == 0) /* let others overtake */
+        usleep(2000);
+}
+
+/* Several threads write the same bytes as one, also for a data window that does not begin in the first row. */
+START_TEST(test_exr_lanes)
+{
+    enum { ROWS = 9 * EXR_BAND_ROWS + 3, LANES = 3 };
+    static float rgb[3 * WIDTH * ROWS];
+    static Banded banded[LANES];
+    ExrLane lanes[LANES];
+    Error error = {0};
+    int bands = 0;
+    unsigned state = 9;
+    for (size_t i = 0; i < 3 * WIDTH * ROWS; ++i)
+        rgb[i] = (float)test_random_unit(&state);
+    const ExrChannel channels[] = {{"R", rgb, 3, false}, {"G", rgb + 1, 3, true}, {"B", rgb + 2, 3, false}};
+    ExrPicture picture = {
+        .channels = channels, .channel_count = 3, .width = WIDTH, .height = ROWS + 7, .crop = {0, 7, WIDTH, ROWS + 7}};
+    ck_assert_msg(exr_write_picture(test_path("one.exr"), &picture, &error), "%s", error.message);
+    for (int i = 0; i < LANES; ++i) {
+        banded[i].whole = rgb;
+        for (int c = 0; c < 3; ++c)
+            banded[i].channels[c] = (ExrChannel){channels[c].name, banded[i].band + c, 3, channels[c].half};
+        lanes[i] = (ExrLane){banded[i].channels, &banded[i], banded[i].plane};
+    }
+    picture.band = band_copy;
+    picture.lanes = lanes;
+    picture.lane_count = LANES;
+    ck_assert_msg(exr_write_picture(test_path("three.exr"), &picture, &error), "%s", error.message);
+    files_compare(test_path("one.exr"), test_path("three.exr"));
+    for (int i = 0; i < LANES; ++i)
+        bands += banded[i].bands;
+    ck_assert_int_eq(bands, 10);
+}
+END_TEST
+
 /* Bands equal the rows of the whole image, in every layer, at every band's edge. */
 START_TEST(test_bands)
 {
@@ -216,17 +272,17 @@ START_TEST(test_bands)
     Error error;
     unsigned state = 5;
     ck_assert(film_init(&film, WIDTH + 9, ROWS + 9, crop, &error) &&
-              film_init_like(&layers.aovs[AOV_ALBEDO], &film, &error));
+              aov_image_init(&layers.aovs[AOV_ALBEDO], &film, 3, &error));
     for (size_t i = 0; i < 3 * WIDTH * ROWS; ++i) {
         film.sums[i] = 2 * (int64_t)(test_random_unit(&state) * 0x1p31);
-        layers.aovs[AOV_ALBEDO].sums[i] = film.sums[i] / 2;
-        film.counts[i / 3] = layers.aovs[AOV_ALBEDO].counts[i / 3] = (uint32_t)(i / 3 % 4);
+        layers.aovs[AOV_ALBEDO].sums[i] = (float)test_random_unit(&state);
+        film.counts[i / 3] = layers.aovs[AOV_ALBEDO].counts[i / 3] = (unsigned char)(i / 3 % 4);
     }
     film_resolve(&film, 4.0f, rgb);
     despeckle(rgb, WIDTH, ROWS, 0, ROWS, 1.5f, despeckled);
     ck_assert_uint_eq(film_empty_pixels(&film), (WIDTH * ROWS + 3) / 4);
-    ck_assert(picture_memory_init(&memory, &settings, WIDTH, ROWS, 5, &error));
-    picture_init(&picture, &settings, &film, &memory);
+    ck_assert(picture_memory_init(&memory, &settings, WIDTH, ROWS, 5, 2, &error));
+    picture_init(&picture, &settings, &film, &memory, 1);
     ck_assert_uint_eq(picture.group_count, 3);
     for (int y = 0; y < ROWS; y += EXR_BAND_ROWS) {
         int count = ROWS - y < EXR_BAND_ROWS ? ROWS - y : EXR_BAND_ROWS;
@@ -234,12 +290,15 @@ START_TEST(test_bands)
         picture_band(&picture, y, count);
         ck_assert_mem_eq(picture.channels[0].data, rgb + 3 * WIDTH * y, bytes);
         ck_assert_mem_eq(picture.groups[2].values, despeckled + 3 * WIDTH * y, bytes);
-        for (int i = 0; i < 3 * WIDTH * count; ++i)
-            ck_assert(picture.groups[1].values[i] == rgb[3 * WIDTH * y + i] / 8.0f);
+        for (int i = 0; i < 3 * WIDTH * count; ++i) {
+            int value = 3 * WIDTH * y + i, samples = value / 3 % 4;
+            ck_assert(picture.groups[1].values[i] ==
+                      (samples > 0 ? layers.aovs[AOV_ALBEDO].sums[value] / (float)samples : 0.0f));
+        }
     }
     ck_assert_mem_eq(picture_row(&picture, ROWS - 1), rgb + 3 * WIDTH * (ROWS - 1), 3 * WIDTH * sizeof *rgb);
     picture_memory_destroy(&memory);
-    film_destroy(&layers.aovs[AOV_ALBEDO]);
+    aov_image_destroy(&layers.aovs[AOV_ALBEDO]);
     film_destroy(&film);
 }
 END_TEST
@@ -307,6 +366,7 @@ TCase *film_output_tcase(void)
     tcase_add_test(tcase, test_exr_crop);
     tcase_add_test(tcase, test_exr_attribute_types);
     tcase_add_test(tcase, test_exr_layers);
+    tcase_add_test(tcase, test_exr_lanes);
     tcase_add_test(tcase, test_bands);
     tcase_add_test(tcase, test_unwritable);
     tcase_add_test(tcase, test_png);

@@ -2,7 +2,12 @@
 #ifndef TWINLIGHT_TESTS_MMLT_TEST_COMBINATION_H
 #define TWINLIGHT_TESTS_MMLT_TEST_COMBINATION_H
 
+#include "mmlt/combined_image.h"
 #include "support/test_util.h"
+
+/* Combines a generation whose estimators have left these films, with light_samples samples of each (0: none), by the
+ * teacher's weights, and lets the learner learn from it. The chains' film becomes the combination. */
+void films_combine(Combination *learner, Combination *teacher, Film *const films[ESTIMATOR_COUNT]);
 
 /* combinations of given variances */
 TCase *combination_known_tests(void);

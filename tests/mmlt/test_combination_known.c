@@ -15,8 +15,6 @@
 #define PIXELS ((size_t)WIDTH * HEIGHT)
 #define ROUNDS 40
 
-static const atomic_int never = 0; /* never stops */
-
 /* The pools' part of the time of pools and chains together if only these matter (test_plan in
  * mmlt/test_combination.c). */
 #define POOL_TIME 0.45
@@ -138,7 +136,6 @@ static double estimator_value(int s, size_t i, size_t channel)
 START_TEST(test_weights_known)
 {
     Known teacher, pupil, others[2];
-    Error error = {0};
     double samples[ESTIMATOR_COUNT] = {4.0 * PIXELS, 1.0 * PIXELS, _i == 1 ? 0.0 : 2.0 * PIXELS};
     known_init(&teacher, 1);
     known_init(&pupil, 2);
@@ -161,7 +158,7 @@ START_TEST(test_weights_known)
     }
     if (_i == 2)
         others[0].film.light_sums[3 * (PIXELS - 1)] = (int64_t)SUM_FULL;
-    ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
+    films_combine(&pupil.combination, &teacher.combination, films);
     double work = (double)pupil.film.light_samples / PIXELS;
     TEST_NEAR(work * PIXELS, FIRST_WORTH * estimators_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
@@ -289,7 +286,6 @@ END_TEST
 START_TEST(test_worth_known)
 {
     Known teacher, pupil, others[2];
-    Error error = {0};
     double costs[ESTIMATOR_COUNT], w, c;
     known_init(&teacher, 21);
     known_init(&pupil, 22);
@@ -326,7 +322,7 @@ START_TEST(test_worth_known)
         Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
         for (int s = 0; s < ESTIMATOR_COUNT; ++s)
             films[s]->light_samples = (uint64_t)samples[s];
-        ck_assert(combination_generation(&pupil.combination, &teacher.combination, films, &never, &error));
+        films_combine(&pupil.combination, &teacher.combination, films);
         double expected = estimators_work(samples) * fmin(errors[0] / errors[1], 2.0);
         TEST_NEAR((double)pupil.film.light_samples / expected, 1.0, 1e-4);
     }

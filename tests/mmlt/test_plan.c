@@ -123,12 +123,16 @@ START_TEST(test_last)
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
     plan_count(&plan, work_of(&plan));
     plan.chains = 10 * CHAINS_FIRST; /* ten times the work of the latest generation */
-    ck_assert(plan_fit(&plan, 0.1, 1.1));
+    ck_assert(plan_fit(&plan, 0.1, 0.0, 1.1, 10.0));
     ck_assert_uint_eq(plan.chains, 10 * CHAINS_FIRST);
-    ck_assert(!plan_fit(&plan, 0.1, 0.99 * LAST_PART));
-    ck_assert(plan_fit(&plan, 0.1, 0.5));
+    ck_assert(!plan_fit(&plan, 0.1, 0.0, 0.99 * LAST_PART, 10.0));
+    ck_assert(plan_fit(&plan, 0.1, 0.0, 0.5, 10.0));
     ck_assert_uint_ge(plan.chains, 5 * CHAINS_FIRST - 1);
     ck_assert_uint_le(plan.chains, 5 * CHAINS_FIRST + 1);
+    /* what cannot be made shorter may end late by a little */
+    double work = (double)plan.last;
+    ck_assert(plan_fit(&plan, 0.1, 8.0 * work, 0.5, 10.0));
+    ck_assert(!plan_fit(&plan, 0.1, 12.0 * work, 0.5, 10.0));
 }
 END_TEST
 

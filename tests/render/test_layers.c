@@ -88,9 +88,9 @@ START_TEST(test_variables)
     float albedo[3 * 64], normal[3 * 64], depth[3 * 64];
     fixture_render(&(RenderSetup){.text = WALL, .samples = 64, .integrator = integrators[_i], .layers = &layers},
                    &image);
-    film_resolve(&layers.aovs[AOV_ALBEDO], 1.0f, albedo);
-    film_resolve(&layers.aovs[AOV_NORMAL], 1.0f, normal);
-    film_resolve(&layers.aovs[AOV_DEPTH], 1.0f, depth);
+    aov_image_resolve(&layers.aovs[AOV_ALBEDO], 0, 64, albedo);
+    aov_image_resolve(&layers.aovs[AOV_NORMAL], 0, 64, normal);
+    aov_image_resolve(&layers.aovs[AOV_DEPTH], 0, 64, depth);
     const float wall[3] = {0.2f, 0.5f, 0.7f}, toward[3] = {0.0f, 0.0f, -1.0f};
     for (size_t i = 0; i < 64; ++i) {
         bool met = i >= 32; /* the lower half */
@@ -108,6 +108,25 @@ START_TEST(test_variables)
 }
 END_TEST
 
+/* Where a wall ends, alpha is the part of the pixel that it covers; an environment is everywhere. */
+START_TEST(test_alpha)
+{
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALPHA)};
+    RenderedImage image;
+    float alpha[3 * 64];
+    char text[sizeof LOW_WALL + 64];
+    const char *light = strstr(LOW_WALL, "LightSource \"infinite\""), *rest = strchr(light, '\n');
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(light - LOW_WALL), LOW_WALL,
+             _i == 0 ? "LightSource \"distant\" \"point3 from\" [ 0 0 -1 ]" : "LightSource \"infinite\"", rest);
+    fixture_render(&(RenderSetup){.text = text, .samples = 8, .layers = &layers}, &image);
+    aov_image_resolve(&layers.aovs[AOV_ALPHA], 0, 64, alpha);
+    for (size_t i = 0; i < 64; ++i)
+        TEST_NEAR(alpha[3 * i], _i == 1 || i >= 40 ? 1.0f : i < 32 ? 0.0f : 0.5f, 0.0);
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+}
+END_TEST
+
 /* Samples are stratified: exactly half of them meet a wall that covers half of a pixel. */
 START_TEST(test_variables_edge)
 {
@@ -116,7 +135,7 @@ START_TEST(test_variables_edge)
     float albedo[3 * 64];
     fixture_render(&(RenderSetup){.text = LOW_WALL, .samples = 64, .integrator = integrator_mmlt(), .layers = &layers},
                    &image);
-    film_resolve(&layers.aovs[AOV_ALBEDO], 1.0f, albedo);
+    aov_image_resolve(&layers.aovs[AOV_ALBEDO], 0, 64, albedo);
     for (size_t i = 0; i < 64; ++i)
         TEST_NEAR(albedo[3 * i + 1], i < 32 ? 0.0f : i < 40 ? 0.25f : 0.5f, 1e-6);
     ck_assert_uint_eq(layers.aov_samples, 8);
@@ -139,6 +158,32 @@ START_TEST(test_direct_edge)
     printf("edge: %.0f samples, variance %.3g of independent ones\n", samples, square / independent);
     ck_assert_double_gt(samples, 50.0);
     ck_assert_double_lt(square, 0.2 * independent);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* The first picture that is saved is that of a sample per pixel of path tracing, before chains have run, and all of path
+ * tracing's samples, these too, are in the last. */
+START_TEST(test_first)
+{
+    RenderLayers layers = {.wanted = LAYERS_AOV};
+    RenderedImage image;
+    float saved[3 * 64];
+    const char *scene = WALL_TO("9");
+    fixture_render(
+        &(RenderSetup){.text = scene, .samples = 6, .integrator = integrator_mmlt(), .layers = &layers, .saved = saved},
+        &image);
+    ck_assert_uint_ge(layers.aov_samples, 2);
+    ck_assert_uint_lt(layers.aov_samples, 8);
+    double first = 0.0, all = 0.0;
+    for (size_t i = 0; i < 3 * 64; ++i) {
+        ck_assert_uint_eq(image.film.counts[i / 3], layers.aov_samples);
+        first += (double)saved[i];
+        all += (double)image.rgb[i];
+    }
+    printf("first picture: %.3f times the light of the last\n", first / all);
+    TEST_NEAR(first / all, 1.0, 0.1);
+    render_layers_destroy(&layers);
     fixture_destroy(&image);
 }
 END_TEST
@@ -257,8 +302,10 @@ int main(void)
     tcase_add_test(tcase, test_series);
     tcase_add_test(tcase, test_despeckle);
     tcase_add_loop_test(tcase, test_variables, 0, 3);
+    tcase_add_loop_test(tcase, test_alpha, 0, 2);
     tcase_add_test(tcase, test_variables_edge);
     tcase_add_test(tcase, test_direct_edge);
+    tcase_add_test(tcase, test_first);
     tcase_add_test(tcase, test_halves);
     tcase_add_loop_test(tcase, test_by_depth, 0, 2);
     tcase_add_test(tcase, test_variance);

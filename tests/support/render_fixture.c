@@ -46,6 +46,13 @@ Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error
     return setup_interface(setup)->open(&view, &options, error);
 }
 
+static bool picture_save(void *context, const Film *film, Error *error)
+{
+    (void)error;
+    film_resolve(film, 1.0f, context);
+    return true;
+}
+
 void fixture_render(const RenderSetup *setup, RenderedImage *image)
 {
     Error error = {0};
@@ -70,11 +77,14 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .balance = setup->balance,
                              .only_strategy = setup->only_strategy,
                              .strategy = {setup->strategy[0], setup->strategy[1]},
+                             .save_every = setup->saved ? 1e9 : 0.0,
                              .unweighted = setup->unweighted};
+    RenderCallbacks callbacks = {.save = setup->saved ? picture_save : NULL, .context = setup->saved};
     const RenderTask task = {.integrator = setup->integrator ? setup->integrator : integrator_pt(),
                              .scene = &scene,
                              .backend = {interface, backend},
                              .options = &options,
+                             .callbacks = &callbacks,
                              .keep_quantum = setup->quantum_of != NULL};
     if (setup->after_another) {
         Film another;

@@ -25,6 +25,7 @@ typedef struct RenderSetup {
     unsigned strategy[2];
     ChainOptions chains;
     struct RenderLayers *layers; /* as in RenderOptions; to be destroyed by the test */
+    float *saved; /* receives the pixels of the first picture that is saved; NULL: none is */
     const Film *quantum_of; /* uses the quantum of this film; NULL: a pilot's */
 } RenderSetup;
 

@@ -1,0 +1,168 @@
+#include "mmlt/combined_image.h"
+
+#include "camera/film_sum.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Floats for the light of paths of fewer than `segments` segments. */
+static size_t depths_before(const Film *film, uint segments)
+{
+    return film_depth_place((uint)film_pixels(film), 1, segments, FILM_KIND_LIGHT);
+}
+
+bool combined_image_init(CombinedImage *image, const Film *film, Error *error)
+{
+    size_t values = 3 * film_pixels(film), depths = film->depth_sums ? depths_before(film, film->depth_last + 1) : 0;
+    *image = (CombinedImage){.light = malloc(values * sizeof *image->light), .values = values, .depth_values = depths};
+    if (depths > 0)
+        image->depths = malloc(depths * sizeof *image->depths);
+    return (image->light && (depths == 0 || image->depths)) ||
+           error_memory(error, (values + depths) * sizeof(float), "a generation's picture");
+}
+
+void combined_image_destroy(CombinedImage *image)
+{
+    free(image->light);
+    free(image->depths);
+    *image = (CombinedImage){0};
+}
+
+void combined_image_begin(CombinedImage *image, Combination *learner, Combination *teacher,
+                          const double samples[ESTIMATOR_COUNT])
+{
+    image->learner = learner;
+    image->teacher = teacher;
+    image->worth = combination_weights_set(teacher, samples);
+    image->saturated = image->vanished = image->not_finite = 0;
+    memcpy(image->samples, samples, sizeof image->samples);
+    memset(image->light, 0, image->values * sizeof *image->light);
+    if (image->depths)
+        memset(image->depths, 0, image->depth_values * sizeof *image->depths);
+}
+
+/* Sums of an estimator, 3 values a pixel, and the image that they go to. */
+typedef struct EstimatorSums {
+    const int64_t *light, *own, *rare;
+    float *into;
+} EstimatorSums;
+
+typedef struct ImageAdding {
+    CombinedImage *image;
+    const Film *film;
+    EstimatorKind kind;
+    FilmLearning learning;
+} ImageAdding;
+
+/* Weights of the film's layers in a tile. */
+typedef struct LayerWeights {
+    double light, own, rare;
+} LayerWeights;
+
+/* Path tracing shows the part paths_rare of rare light itself, which is in its light; chains add the rest. Pools and chains,
+ * which have the weight that path tracing leaves, share the excess. */
+static LayerWeights layer_weights(const CombinationTile *tile, EstimatorKind kind)
+{
+    double paths = tile->weight[ESTIMATOR_PATHS], by_chains = paths * (1.0 - tile->paths_rare);
+    LayerWeights weights = {.light = tile->weight[kind]};
+    if (kind == ESTIMATOR_CHAINS)
+        weights.own = 1.0 - paths;
+    if (kind != ESTIMATOR_POOL)
+        weights.rare = kind == ESTIMATOR_CHAINS ? by_chains : -by_chains;
+    return weights;
+}
+
+static void sums_add(const ImageAdding *adding, EstimatorSums sums, RowRange pixels)
+{
+    const CombinedImage *image = adding->image;
+    const double scale = (double)image->worth / image->samples[adding->kind];
+    for (size_t pixel = pixels.first; pixel < pixels.end; ++pixel) {
+        const CombinationTile *tile = &image->teacher->known[combination_tile_of(image->teacher, pixel)];
+        LayerWeights weights = layer_weights(tile, adding->kind);
+        for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
+            double sum = weights.light * (double)film_sum_shown(sums.light[i]);
+            if (weights.own > 0.0)
+                sum += weights.own * (double)film_sum_shown(sums.own[i]);
+            if (sums.rare)
+                sum += weights.rare * (double)film_sum_shown(sums.rare[i]);
+            sums.into[i] = (float)((double)sums.into[i] + scale * sum);
+        }
+    }
+}
+
+/* The sums of all depths, or of paths of `segments` segments. */
+static EstimatorSums film_sums(const ImageAdding *adding)
+{
+    const Film *film = adding->film;
+    return (EstimatorSums){film->light_sums, film->sums, adding->kind == ESTIMATOR_POOL ? NULL : film->rare_sums,
+                           adding->image->light};
+}
+
+static EstimatorSums film_sums_of(const ImageAdding *adding, uint segments)
+{
+    const Film *film = adding->film;
+    return (EstimatorSums){film_depth_sums(film, segments, FILM_KIND_LIGHT),
+                           film_depth_sums(film, segments, FILM_KIND_OWN),
+                           adding->kind == ESTIMATOR_POOL ? NULL : film_depth_sums(film, segments, FILM_KIND_RARE),
+                           adding->image->depths + depths_before(film, segments)};
+}
+
+static void row_add(void *context, size_t row)
+{
+    const ImageAdding *adding = context;
+    const Combination *learner = adding->image->learner;
+    RowRange pixels = combination_row_pixels(learner, row);
+    learner->rows[row].full = film_full_pixels_of(adding->film, pixels.first, pixels.end);
+    combination_row_learn(&adding->learning, row);
+    sums_add(adding, film_sums(adding), pixels);
+    for (uint segments = SPLAT_DEPTH_MIN; adding->image->depths && segments <= adding->film->depth_last; ++segments)
+        sums_add(adding, film_sums_of(adding, segments), pixels);
+}
+
+void combined_image_add(CombinedImage *image, EstimatorKind kind, const Film *film)
+{
+    ImageAdding adding = {.image = image, .film = film, .kind = kind};
+    if (!(image->samples[kind] > 0.0))
+        return;
+    combination_learning_begin(&adding.learning, image->learner, kind, film, (uint64_t)image->samples[kind]);
+    combination_rows_run(image->learner, row_add, &adding);
+    /* A sum that is full in an estimator need not be so in the combination. */
+    for (int row = 0; row < image->learner->tiles[1]; ++row)
+        image->saturated += image->learner->rows[row].full;
+    image->saturated += film->saturated;
+    image->vanished += film->vanished;
+    image->not_finite += film->not_finite;
+}
+
+typedef struct ImageFinishing {
+    const CombinedImage *image;
+    Film *film;
+} ImageFinishing;
+
+static void sums_set(int64_t *sums, const float *light, RowRange pixels)
+{
+    for (size_t i = 3 * pixels.first; i < 3 * pixels.end; ++i)
+        sums[i] = film_sum_rounded((double)light[i]);
+}
+
+static void row_finish(void *context, size_t row)
+{
+    const ImageFinishing *finishing = context;
+    const CombinedImage *image = finishing->image;
+    Film *film = finishing->film;
+    RowRange pixels = combination_row_pixels(image->learner, row);
+    sums_set(film->light_sums, image->light, pixels);
+    for (uint segments = SPLAT_DEPTH_MIN; image->depths && segments <= film->depth_last; ++segments)
+        sums_set(film_depth_sums(film, segments, FILM_KIND_LIGHT), image->depths + depths_before(film, segments),
+                 pixels);
+}
+
+void combined_image_finish(const CombinedImage *image, Film *film)
+{
+    ImageFinishing finishing = {image, film};
+    combination_rows_run(image->learner, row_finish, &finishing);
+    film->light_samples = image->worth;
+    film->saturated = image->saturated;
+    film->vanished = image->vanished;
+    film->not_finite = image->not_finite;
+}

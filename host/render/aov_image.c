@@ -1,0 +1,55 @@
+#include "render/aov_image.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error)
+{
+    size_t pixels = film_pixels(film);
+    *image = (AovImage){.width = film->width, .channels = channels};
+    memcpy(image->crop, film->crop, sizeof image->crop);
+    image->sums = calloc(pixels * channels, sizeof *image->sums);
+    image->counts = calloc(pixels, sizeof *image->counts);
+    return (image->sums && image->counts) ||
+           error_memory(error, pixels * (channels * sizeof *image->sums + sizeof *image->counts), "layers");
+}
+
+void aov_image_destroy(AovImage *image)
+{
+    free(image->sums);
+    free(image->counts);
+    *image = (AovImage){0};
+}
+
+static void sample_add(AovImage *image, uint pixel, Vec3 value)
+{
+    const float values[3] = {value.x, value.y, value.z};
+    const int *crop = image->crop;
+    int x = (int)(pixel % (uint)image->width), y = (int)(pixel / (uint)image->width);
+    if (x < crop[0] || x >= crop[2] || y < crop[1] || y >= crop[3])
+        return;
+    size_t slot = (size_t)(y - crop[1]) * (size_t)(crop[2] - crop[0]) + (size_t)(x - crop[0]);
+    for (size_t c = 0; c < 3 && c < image->channels && vec3_finite(value); ++c)
+        image->sums[image->channels * slot + c] += values[c];
+    ++image->counts[slot];
+}
+
+void aov_images_add(AovImage *images, uint number, const uint *splats, uint count, uint stride)
+{
+    const uint pixel = (1u << SPLAT_FILM_SHIFT) - 1u;
+    for (uint item = 0; item < count; ++item) {
+        uint name = state_load(splats, stride, SPLAT_PIXEL, item);
+        if (name != NONE && name >> SPLAT_FILM_SHIFT < number)
+            sample_add(&images[name >> SPLAT_FILM_SHIFT], name & pixel,
+                       state_load_vec3(splats, stride, SPLAT_COLOR, item));
+    }
+}
+
+void aov_image_resolve(const AovImage *image, size_t first, size_t count, float *rgb)
+{
+    for (size_t i = 0; i < count; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            size_t pixel = first + i, value = image->channels * pixel + (image->channels == 3 ? c : 0);
+            rgb[3 * i + c] = image->counts[pixel] > 0 ? image->sums[value] / (float)image->counts[pixel] : 0.0f;
+        }
+}

@@ -1,0 +1,30 @@
+/* The image of an auxiliary variable (layout/aov_list.h). Its few samples per pixel are added pass by pass, one of each pixel in a
+ * pass, so that sums of floats do not depend on the order in which a pass ends. */
+#ifndef TWINLIGHT_RENDER_AOV_IMAGE_H
+#define TWINLIGHT_RENDER_AOV_IMAGE_H
+
+#include "film/film.h"
+
+/* Most samples per pixel. */
+#define AOV_SAMPLES_MAX 255u
+
+typedef struct AovImage {
+    int width, crop[4]; /* as of a film */
+    size_t channels; /* 1 or 3 */
+    float *sums; /* channels per pixel of the crop */
+    unsigned char *counts; /* samples per pixel */
+} AovImage;
+
+/* An empty image for the crop of `film`. Fails when out of memory. */
+bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error);
+void aov_image_destroy(AovImage *image);
+
+/* Adds the splats of a pass of several variables (SPLAT_FILM_SHIFT): `images`, of which `number` exist. A sample that is not finite
+ * counts as zero. Any number of threads may add those of different pixels concurrently. */
+void aov_images_add(AovImage *images, uint number, const uint *splats, uint count, uint stride);
+
+/* rgb[3 * count]: the means of pixels first ... first + count - 1, of a variable with one channel three times; 0 without
+ * samples. */
+void aov_image_resolve(const AovImage *image, size_t first, size_t count, float *rgb);
+
+#endif
