@@ -34,7 +34,7 @@ static bool generations_run(Mmlt *mmlt, Error *error)
         plan_next(plan, mmlt->generation.index, now - begin, timing_now() - run->start);
         double limit = run->options->seconds;
         if (limit > 0.0 &&
-            !plan_fit(plan, now - begin, mmlt_least_work(mmlt), limit - (timing_now() - run->start), limit))
+            !plan_fit(plan, now - begin, mmlt_least_seconds(mmlt), limit - (timing_now() - run->start), limit))
             break;
         render_run_save_if_due(run);
     }

@@ -214,8 +214,8 @@ static void generation_samples(Mmlt *mmlt, uint count, double samples[ESTIMATOR_
 {
     bool chains = chains_needed(mmlt);
     paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
-    mmlt->chains.own.samples = chains ? (uint64_t)count * mmlt->options.steps : 0;
-    samples[ESTIMATOR_CHAINS] = (double)mmlt->chains.own.samples;
+    mmlt->chains.own.samples = (uint64_t)count * mmlt->options.steps; /* also if no path is long enough for any */
+    samples[ESTIMATOR_CHAINS] = chains ? (double)mmlt->chains.own.samples : 0.0;
     samples[ESTIMATOR_POOL] = chains && pool_due(mmlt) ? (double)plan_pool_samples(&mmlt->plan, count) : 0.0;
     samples[ESTIMATOR_PATHS] = (double)mmlt->paths.own.samples;
 }
@@ -291,8 +291,9 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
     return true;
 }
 
-double mmlt_least_work(const Mmlt *mmlt)
+double mmlt_least_seconds(const Mmlt *mmlt)
 {
-    double paths = (double)(paths_estimator_due(&mmlt->paths, &mmlt->generation, 0.0) * mmlt->run->crop_pixels);
-    return estimators_work((const double[ESTIMATOR_COUNT]){[ESTIMATOR_PATHS] = paths});
+    const PathsEstimator *paths = &mmlt->paths;
+    double due = (double)paths_estimator_due(paths, &mmlt->generation, 0.0);
+    return paths->fresh > 0 ? paths->seconds * due / (double)paths->fresh : 0.0;
 }

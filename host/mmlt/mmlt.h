@@ -42,7 +42,8 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
  * kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
-/* The work that the next generation has with any number of chains: path tracing in the first ones. */
-double mmlt_least_work(const Mmlt *mmlt);
+/* The seconds that the next generation takes with any number of chains, as far as the latest one tells: path tracing in the
+ * first ones. */
+double mmlt_least_seconds(const Mmlt *mmlt);
 
 #endif

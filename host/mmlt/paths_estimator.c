@@ -45,10 +45,25 @@ void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, d
     paths->own.samples = paths->fresh * generation->run->crop_pixels;
 }
 
+/* A pass of one path that is not shown: a device builds its kernels now, and not while passes are timed. */
+static bool kernels_prepare(PathsEstimator *paths, RenderRun *run, Error *error)
+{
+    FrameParams frame = paths->frame;
+    uint64_t delivered;
+    frame.pass.first_item = 0;
+    frame.pass.item_count = 1;
+    paths->own.hidden = true;
+    bool done = estimator_pass(&paths->own, run, &frame, true, &delivered, error);
+    paths->own.hidden = false;
+    return done;
+}
+
 bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error)
 {
     RenderRun *run = generation->run;
     FrameParams *frame = &paths->frame;
+    if (generation->index == 0 && run->options->seconds > 0.0 && !kernels_prepare(paths, run, error))
+        return false;
     double begin = timing_now();
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
@@ -68,7 +83,8 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
     }
     paths->done += paths->fresh;
     paths->of_half[half] += paths->fresh;
-    run->chains.direct_seconds += timing_now() - begin;
+    paths->seconds = timing_now() - begin;
+    run->chains.direct_seconds += paths->seconds;
     return true;
 }
 

@@ -13,6 +13,7 @@ typedef struct PathsEstimator {
     uint64_t of_half[REPLICAS]; /* ... in even and in odd generations, the layers' halves: a stratified sequence each */
     double wanted; /* the same according to the plan, fractions included */
     uint64_t fresh; /* samples of every pixel in the generation under way */
+    double seconds; /* that these took */
 } PathsEstimator;
 
 /* Makes the list. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of

@@ -112,9 +112,8 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit)
 {
-    double each = seconds / (double)plan->last, expected = each * chain_work(plan) * plan->chains;
-    if (left <= 0.0 ||
-        (plan->scheme->grows && (left < LAST_PART * expected || each * least > left + LATE_PART * limit)))
+    double expected = seconds * chain_work(plan) * plan->chains / (double)plan->last;
+    if (left <= 0.0 || (plan->scheme->grows && (left < LAST_PART * expected || least > left + LATE_PART * limit)))
         return false;
     if (plan->scheme->grows && left < expected)
         plan->chains = (uint)fmax(plan->chains * (left / expected), 1.0);

@@ -39,8 +39,8 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed);
 
 /* Fits the next generation into what is left of the time, unless that is so little that none should follow (false).
  * With the published scheme, whose generations have one size, it is only whether there is time left. seconds: of the latest
- * generation, which tells what work takes. least: the work that the next one has with any number of chains. limit: all of
- * the time. */
+ * generation, which tells what work takes. least: what the next one takes with any number of chains. limit: all of the
+ * time. */
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit);
 
 /* Samples of a pool for `chains` chains: --mlt=pool, else by the rates, rounded to whole samples per pixel if that gives at

@@ -353,8 +353,15 @@ for seed in 1 2; do
 done
 render --integrator=mmlt -o usual.exr "$scene"
 expect 0 'z-test           none' compare usual.exr halves1.exr
-grep -q albedo.R usual.exr && grep -q normal.X usual.exr && ! grep -q halfA.R usual.exr
-result 'mmlt has other layers than albedo, normal and depth by default' $?
+# header CHANNEL FILE: whether the EXR has the channel; a name ends with a zero byte, so that A is not all that ends in it
+header() {
+    head -c 4096 "$2" | tr '\0' '\n' | grep -aqx "$1"
+}
+header albedo.R usual.exr && header normal.X usual.exr && header Z usual.exr && header A usual.exr && ! header halfA.R usual.exr
+result 'mmlt has other layers than albedo, normal, depth and alpha by default' $?
+render --integrator=mmlt --max-depth=2 --layers=direct,indirect -o short.exr "$scene"
+header direct.R short.exr && header indirect.R short.exr
+result 'no layers of light where no path is long enough for chains' $?
 expect 0 'z-test           no difference found' compare --side-by-side=sheet.png halves1.exr halves2.exr
 file_exists sheet.png
 expect 0 '"z_test": {' compare --json halves1.exr halves2.exr
