@@ -186,11 +186,11 @@ static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
         return false;
     if (!*whole)
         return true;
-    estimator_take(mmlt, ESTIMATOR_PATHS);
     if (!render_layers_sample(mmlt->run, mmlt->paths.own.samples, error))
         return false;
     render_run_report(mmlt->run, mmlt->plan.timed ? 0.0 : (double)mmlt->run->done / (double)mmlt->plan.total);
     render_run_save_if_due(mmlt->run);
+    estimator_take(mmlt, ESTIMATOR_PATHS);
     return true;
 }
 
