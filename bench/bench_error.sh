@@ -50,12 +50,13 @@ images() {
     process=$!
     for budget in $BUDGETS; do
         if [ "$budget" = "$last" ]; then
-            wait "$process" || render_failed
+            wait "$process" || render_failed # it may have ended a little before the limit
+        else
+            until [ -s "$out" ] && awk "BEGIN { exit !($(saved_at "$out") >= $begin + $budget) }"; do
+                kill -0 "$process" 2>/dev/null || wait "$process" || render_failed
+                sleep 0.1
+            done
         fi
-        until [ -s "$out" ] && awk "BEGIN { exit !($(saved_at "$out") >= $begin + $budget) }"; do
-            kill -0 "$process" 2>/dev/null || wait "$process" || render_failed
-            sleep 0.1
-        done
         cp -p "$out" "$folder/$2.$budget.exr" # take the time of the copy: the next image may replace $out at any moment
         awk "BEGIN { print $(saved_at "$folder/$2.$budget.exr") - $begin }" >"$folder/$2.$budget.time"
     done
@@ -119,6 +120,13 @@ for scene in "$@"; do
         variances "$integrator" "$scene" | awk -v head="$name\t$integrator\t" '{ print head $0 }'
     done
 done | tee "$folder/table"
+# A part of a pipeline that fails does not end the script.
+# shellcheck disable=SC2086
+rows=$(($# * $(echo $INTEGRATORS | wc -w) * $(echo $BUDGETS | wc -w)))
+if [ "$(wc -l <"$folder/table")" -ne $rows ]; then
+    echo "$0: $rows rows wanted" >&2
+    exit 1
+fi
 
 echo
 printf 'scene\tintegrator\tmedian efficiency\ttimes as efficient as the first\n'

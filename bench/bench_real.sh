@@ -14,12 +14,13 @@ trap 'rm -f "$table"' EXIT
 
 for size in $SIZES; do
     RESOLUTION=$size "$(dirname "$0")/bench_error.sh" "$@" | tee "$table"
+    grep -q 'median efficiency' "$table" || exit 1 # it has failed, and said why
     printf '\nscene\tsize\tbudget\tpixels: mmlt over the best\tbest\t8 x 8: mmlt over the best\tbest\n'
     awk -F'\t' -v size="$size" -v budgets="$BUDGETS" '
         BEGIN { count = split(budgets, budget, " ") }
         $1 ~ /^#/ || NF < 11 || $1 == "scene" { next }
         {
-            row = $1 SUBSEP ++rows[$1, $2]
+            row = $1 SUBSEP (++rows[$1, $2])
             if (!($1 in known)) { known[$1] = 1; order[++scenes] = $1 }
             if ($2 == "mmlt") { own[row] = $6; own_tiles[row] = $8; next }
             if (!(row in least) || $6 < least[row]) { least[row] = $6; name[row] = $2 }
