@@ -19,7 +19,7 @@
 typedef struct ExrWriter {
     OutputFile file;
     const ExrPicture *picture;
-    size_t *channels; /* their numbers, sorted by name */
+    const ExrChannel **channels; /* sorted by name */
     int width, height; /* of the data window */
     int write_errno; /* errno of the first failed write; 0: none */
     pthread_mutex_t mutex; /* of the message */
@@ -60,16 +60,9 @@ static int64_t exr_write_bytes(exr_const_context_t context, void *user, const vo
     return (int64_t)done;
 }
 
-/* Insertion sort; names are few. */
-static void channels_sort(const ExrWriter *writer)
+static int channel_compare(const void *a, const void *b)
 {
-    const ExrPicture *picture = writer->picture;
-    for (size_t i = 0; i < picture->channel_count; ++i) {
-        size_t at = i;
-        for (; at > 0 && strcmp(picture->channels[writer->channels[at - 1]].name, picture->channels[i].name) > 0; --at)
-            writer->channels[at] = writer->channels[at - 1];
-        writer->channels[at] = i;
-    }
+    return strcmp((*(const ExrChannel *const *)a)->name, (*(const ExrChannel *const *)b)->name);
 }
 
 /* x0 <= x < x1, y0 <= y < y1 as an EXR box, which includes its maximum. */
@@ -154,8 +147,8 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
     if (result == EXR_ERR_SUCCESS)
         result = exr_set_zip_compression_level(context, part, EXR_ZIP_LEVEL);
     for (size_t i = 0; i < picture->channel_count && result == EXR_ERR_SUCCESS; ++i)
-        result = exr_add_channel(context, part, picture->channels[writer->channels[i]].name,
-                                 picture->channels[writer->channels[i]].half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+        result = exr_add_channel(context, part, writer->channels[i]->name,
+                                 writer->channels[i]->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
                                  EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     for (size_t i = 0; i < picture->attribute_count && result == EXR_ERR_SUCCESS; ++i)
         result = attribute_set(context, part, &picture->attributes[i]);
@@ -205,7 +198,7 @@ static void chunk_gather(const ExrWriter *writer, const ExrLane *lane, exr_encod
     if (picture->band)
         picture->band(lane->context, y, lines);
     for (size_t c = 0; c < picture->channel_count; ++c) {
-        const ExrChannel *channel = &lane->channels[writer->channels[c]];
+        const ExrChannel *channel = &lane->channels[writer->channels[c] - picture->channels];
         const float *from = channel->data + first * channel->stride;
         float *to = lane->plane + c * count;
         for (size_t i = 0; i < count; ++i)
@@ -324,10 +317,8 @@ static exr_result_t chunks_write(exr_context_t context, const ExrWriter *writer,
 static bool channels_check(const ExrWriter *writer, const char *path, Error *error)
 {
     for (size_t i = 1; i < writer->picture->channel_count; ++i)
-        if (strcmp(writer->picture->channels[writer->channels[i - 1]].name,
-                   writer->picture->channels[writer->channels[i]].name) == 0)
-            return error_set(error, "cannot write %s: two channels are named \"%s\"", path,
-                             writer->picture->channels[writer->channels[i]].name);
+        if (strcmp(writer->channels[i - 1]->name, writer->channels[i]->name) == 0)
+            return error_set(error, "cannot write %s: two channels are named \"%s\"", path, writer->channels[i]->name);
     return true;
 }
 
@@ -357,7 +348,10 @@ static bool exr_write_open(ExrWriter *writer, const char *path, const ExrLane *l
 
 static bool picture_write(ExrWriter *writer, const char *path, const ExrLane *lanes, int lane_count, Error *error)
 {
-    channels_sort(writer);
+    const ExrPicture *picture = writer->picture;
+    for (size_t i = 0; i < picture->channel_count; ++i)
+        writer->channels[i] = &picture->channels[i];
+    qsort(writer->channels, picture->channel_count, sizeof *writer->channels, channel_compare);
     bool good = channels_check(writer, path, error) && output_file_begin(&writer->file, path, error) &&
                 exr_write_open(writer, path, lanes, lane_count, error) && output_file_commit(&writer->file, error);
     output_file_cancel(&writer->file);
@@ -371,7 +365,7 @@ bool exr_write_picture(const char *path, const ExrPicture *picture, Error *error
         .file = {.descriptor = -1}, .picture = picture, .width = crop[2] - crop[0], .height = crop[3] - crop[1]};
     size_t bytes = picture->channel_count * EXR_BAND_ROWS * (size_t)writer.width * sizeof(float);
     assert(picture->channel_count > 0 && writer.width > 0 && writer.height > 0);
-    ExrLane own = {.channels = picture->channels, .context = picture->context};
+    ExrLane own = {.channels = picture->channels};
     if (!picture->lanes)
         own.plane = malloc(bytes);
     writer.channels = calloc(picture->channel_count, sizeof *writer.channels);

@@ -57,10 +57,9 @@ typedef struct ExrPicture {
     const ExrAttribute *attributes;
     size_t attribute_count;
     /* Fills rows first ... first + count - 1 of the data window, at most EXR_BAND_ROWS, into the start of the channels'
-     * data. NULL: the channels' data hold all rows. */
+     * data of the lane whose context it gets. NULL: the channels' data hold all rows. */
     void (*band)(void *context, int first, int count);
-    void *context;
-    /* Threads that write bands at the same time, each from its lane; NULL: one, from `channels` and `context`. */
+    /* Threads that write bands at the same time, each from its lane; NULL (without `band`): one, from `channels`. */
     const ExrLane *lanes;
     int lane_count;
 } ExrPicture;

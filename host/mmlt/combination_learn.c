@@ -187,7 +187,7 @@ static double light_bound_best(const Combination *combination, size_t tile, doub
 #define PATCH_PART ((double)(PATCH_SIDE * PATCH_SIDE) / (TILE_SIDE * TILE_SIDE))
 
 /* Squared luminance of a patch, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
- * few steps per pixel, their mean of a pixel is pulled toward that of its tile: otherwise the few pixels they have
+ * few steps per pixel, their mean of a patch is pulled toward that of its tile: otherwise the few patches they have
  * visited would count as bright, and the chains' relative variance as small. */
 static double light_square(const Combination *combination, size_t patch, const CombinationTile *tile, double dark)
 {

@@ -31,7 +31,7 @@
 #define SHOWN_PATHS_ALONE (ESTIMATOR_COUNT + 1)
 
 typedef struct CombinationTile {
-    double spread[SERIES_COUNT]; /* variance of one sample, summed over the tile's pixels (tiles_sum) */
+    double spread[SERIES_COUNT]; /* variance of one sample, summed over the tile's patches (tiles_sum) */
     double direct; /* the same of direct light */
     double light, indirect; /* luminances summed over the tile's pixels */
     double weight[ESTIMATOR_COUNT]; /* of the latest generation */

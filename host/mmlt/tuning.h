@@ -93,11 +93,11 @@
  * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0
 
-/* A pixel's luminance is clamped to this many times its tile's mean: it may be a firefly, whose variance would count
+/* A patch's luminance is clamped to this many times its tile's mean: it may be a firefly, whose variance would count
  * little if its luminance counted in full; docs/TUNING.md. */
 #define LIGHT_OVER_TILE 4.0
 
-/* Chain steps per pixel at which the pixel's own mean counts as much as its tile's. */
+/* Chain steps per pixel at which a patch's own mean counts as much as its tile's. */
 #define LIGHT_STEPS 16.0
 
 /* Errors are relative to light^2 plus this fraction of the squared mean light. */

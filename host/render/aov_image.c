@@ -1,13 +1,17 @@
 #include "render/aov_image.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error)
 {
     size_t pixels = film_pixels(film);
-    *image = (AovImage){.width = film->width, .channels = channels};
-    memcpy(image->crop, film->crop, sizeof image->crop);
+    const int *crop = film->crop;
+    *image = (AovImage){.channels = channels,
+                        .film = {.width = (uint)film->width,
+                                 .x0 = (uint)crop[0],
+                                 .y0 = (uint)crop[1],
+                                 .x1 = (uint)crop[2],
+                                 .y1 = (uint)crop[3]}};
     image->sums = calloc(pixels * channels, sizeof *image->sums);
     image->counts = calloc(pixels, sizeof *image->counts);
     return (image->sums && image->counts) ||
@@ -24,11 +28,9 @@ void aov_image_destroy(AovImage *image)
 static void sample_add(AovImage *image, uint pixel, Vec3 value)
 {
     const float values[3] = {value.x, value.y, value.z};
-    const int *crop = image->crop;
-    int x = (int)(pixel % (uint)image->width), y = (int)(pixel / (uint)image->width);
-    if (x < crop[0] || x >= crop[2] || y < crop[1] || y >= crop[3])
+    uint slot = film_slot(&image->film, pixel);
+    if (slot == NONE)
         return;
-    size_t slot = (size_t)(y - crop[1]) * (size_t)(crop[2] - crop[0]) + (size_t)(x - crop[0]);
     for (size_t c = 0; c < 3 && c < image->channels && vec3_finite(value); ++c)
         image->sums[image->channels * slot + c] += values[c];
     ++image->counts[slot];

@@ -3,13 +3,14 @@
 #ifndef TWINLIGHT_RENDER_AOV_IMAGE_H
 #define TWINLIGHT_RENDER_AOV_IMAGE_H
 
+#include "camera/film_sum.h"
 #include "film/film.h"
 
 /* Most samples per pixel. */
 #define AOV_SAMPLES_MAX 255u
 
 typedef struct AovImage {
-    int width, crop[4]; /* as of a film */
+    FilmView film; /* size and crop alone */
     size_t channels; /* 1 or 3 */
     float *sums; /* channels per pixel of the crop */
     unsigned char *counts; /* samples per pixel */
