@@ -197,7 +197,8 @@ tests_test_emit_SOURCES = tests/light/test_emit.c \
 
 tests_test_film_SOURCES = tests/film/test_film.c \
 	tests/film/test_film_files.c \
-	tests/film/test_film_output.c
+	tests/film/test_film_output.c \
+	tests/film/test_film_spread.c
 
 tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
 	tests/geometry/test_geometry_backend.c \

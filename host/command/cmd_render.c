@@ -147,6 +147,7 @@ static RenderOptions job_options(RenderJob *job)
         .bad_chains = job->bad_chains.stream,
         .layers = job->layers.wanted != 0 ? &job->layers : NULL,
         .balance = command->balance,
+        .reconstruction = command->reconstruction,
         .independent = command->sampler && strcmp(command->sampler, "independent") == 0,
         .only_strategy = command->only_strategy,
         .strategy = {command->strategy[0], command->strategy[1]},
@@ -378,7 +379,8 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command = {.png = true, .frame = -1, .photons = PHOTONS_DEFAULT};
+    RenderCommand command = {.png = true, .frame = -1, .photons = PHOTONS_DEFAULT,
+                             .reconstruction = RECONSTRUCTION_SPLAT};
     OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
     if (end != OPTIONS_READ)
         return options_status(end);

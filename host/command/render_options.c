@@ -14,6 +14,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                            "algorithm: mmlt (Metropolis; default), pt (path tracing), bdpt or ibpt (bidirectional)"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "MIS weights of strategies: power (default) or balance"},
     [OPTION_SAMPLER] = {"sampler", 0, "NAME", "random numbers of a pixel: stratified (sobol; default) or independent"},
+    [OPTION_RECONSTRUCTION] = {"reconstruction", 0, "NAME",
+                               "by the pixel filter, a sample goes to one pixel (sample) or is spread (splat; default)"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
     [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},
@@ -136,6 +138,15 @@ static bool sampler_set(RenderCommand *command, const char *value, Error *error)
     return error_fix(error, "use sobol or independent");
 }
 
+static bool reconstruction_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->reconstruction = strcmp(value, "splat") == 0 ? RECONSTRUCTION_SPLAT : RECONSTRUCTION_SAMPLE;
+    if (command->reconstruction == RECONSTRUCTION_SPLAT || strcmp(value, "sample") == 0)
+        return true;
+    error_set(error, "--reconstruction=%s: there is no such reconstruction", value);
+    return error_fix(error, "use splat or sample");
+}
+
 static bool heuristic_set(RenderCommand *command, const char *value, Error *error)
 {
     command->balance = strcmp(value, "balance") == 0;
@@ -216,6 +227,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return heuristic_set(command, value, error);
     case OPTION_SAMPLER:
         return sampler_set(command, value, error);
+    case OPTION_RECONSTRUCTION:
+        return reconstruction_set(command, value, error);
     case OPTION_FILM:
         return film_set(command, value, error);
     case OPTION_STRATEGY:

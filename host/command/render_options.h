@@ -17,6 +17,7 @@ typedef struct RenderCommand {
     const char *integrator; /* NULL: not given */
     bool balance; /* balance heuristic */
     const char *sampler; /* "sobol" or "independent"; NULL: not given */
+    unsigned reconstruction; /* RECONSTRUCTION_* */
     bool only_strategy, unweighted;
     unsigned strategy[2]; /* s, t */
     ChainOptions chains;
@@ -55,6 +56,7 @@ typedef enum RenderOption {
     OPTION_INTEGRATOR,
     OPTION_HEURISTIC,
     OPTION_SAMPLER,
+    OPTION_RECONSTRUCTION,
     OPTION_STRATEGY,
     OPTION_UNWEIGHTED,
     OPTION_SAMPLES,

@@ -1,6 +1,7 @@
 #include "film/film.h"
 
-#include "camera/film_sum.h"
+#include "base/parallel.h"
+#include "camera/film_spread.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,7 +98,23 @@ bool film_init_like(Film *film, const Film *model, Error *error)
     if (!film_init(film, model->width, model->height, model->crop, error))
         return false;
     film->quantum_exponent = model->quantum_exponent;
+    film->reconstruction = model->reconstruction;
+    film->axis_x = model->axis_x;
+    film->axis_y = model->axis_y;
     return !model->light_sums || film_light_reserve(film, error);
+}
+
+void film_filter_set(Film *film, const FilmParams *params, const float *lookup)
+{
+    film->reconstruction = params->reconstruction;
+    film->axis_x = film_axis_x(params, lookup);
+    film->axis_y = film_axis_y(params, lookup);
+}
+
+uint64_t film_samples_most(uint reconstruction)
+{
+    /* Pixels get some samples more or less than others. */
+    return reconstruction == RECONSTRUCTION_SPLAT ? UINT32_MAX / film_sample_units(reconstruction) - 0xffffu : UINT32_MAX;
 }
 
 void film_quantum_set(Film *film, double mean)
@@ -125,6 +142,9 @@ static FilmView film_view(const Film *film)
                       .depth_sums = (ulong *)film->depth_sums,
                       .depth_kinds = film->depth_kinds,
                       .depth_last = film->depth_last,
+                      .reconstruction = film->reconstruction,
+                      .axis_x = film->axis_x,
+                      .axis_y = film->axis_y,
                       .counts = film->counts,
                       .saturated = (ulong *)&film->saturated,
                       .vanished = (ulong *)&film->vanished,
@@ -134,8 +154,14 @@ static FilmView film_view(const Film *film)
 void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
 {
     const FilmView view = film_view(film);
-    for (uint item = 0; item < count; ++item)
-        film_splat_add(&view, splats, stride, item);
+    FilmPending pending;
+    for (uint first = 0; first < count; first += FILM_PENDING_SPLATS) {
+        uint left = count - first;
+        film_pending_begin(&pending);
+        for (uint i = 0; i < left && i < FILM_PENDING_SPLATS; ++i)
+            film_splat_add(&view, &pending, splats, stride, first + i);
+        film_pending_end(&view, &pending);
+    }
 }
 
 /* ---- adding films ------------------------------------------------------------------------------------------------ */
@@ -209,11 +235,14 @@ static bool film_merge_check(const Film *film, const Film *from, Error *error)
     if (film->quantum_exponent != from->quantum_exponent)
         return error_set(error, "films of different quanta cannot be merged: 2^%d and 2^%d", film->quantum_exponent,
                          from->quantum_exponent);
+    if (film->reconstruction != from->reconstruction)
+        return error_set(error, "films of different --reconstruction cannot be merged");
     if (!film->light_sums != !from->light_sums)
         return error_set(error, "films of integrators with and without paths from the light cannot be merged");
     for (size_t i = 0; i < film_pixels(film); ++i)
         if ((uint64_t)film->counts[i] + from->counts[i] > UINT32_MAX)
-            return error_set(error, "merged films have more than %u samples in a pixel", UINT32_MAX);
+            return error_set(error, "merged films have more than %llu samples in a pixel",
+                             (unsigned long long)film_samples_most(film->reconstruction));
     return true;
 }
 
@@ -237,6 +266,47 @@ void film_swap_own(Film *a, Film *b)
     b->counts = counts;
 }
 
+/* Multiplies a pixel's sums of one kind. */
+static void sums_scale(int64_t *sums, size_t pixel, double factor)
+{
+    for (size_t c = 3 * pixel; sums && c < 3 * pixel + 3; ++c)
+        if (sums[c] != 0)
+            sums[c] = film_sum_rounded((double)film_sum_shown(sums[c]) * factor);
+}
+
+typedef struct FilmNormalizing {
+    Film *film;
+    uint32_t count; /* of all pixels afterwards */
+} FilmNormalizing;
+
+static void pixel_normalize(const FilmNormalizing *normalizing, size_t pixel)
+{
+    Film *film = normalizing->film;
+    double factor = film->counts[pixel] > 0 ? (double)normalizing->count / film->counts[pixel] : 1.0;
+    sums_scale(film->sums, pixel, factor);
+    sums_scale(film->light_sums, pixel, factor);
+    sums_scale(film->rare_sums, pixel, factor);
+    for (uint depth = SPLAT_DEPTH_MIN; film->depth_kinds > 0 && depth <= film->depth_last; ++depth)
+        for (uint kind = 0; kind < film->depth_kinds; ++kind)
+            sums_scale(film_depth_sums(film, depth, kind), pixel, factor);
+    film->counts[pixel] = normalizing->count;
+}
+
+static void row_normalize(void *context, size_t row)
+{
+    const FilmNormalizing *normalizing = context;
+    size_t width = (size_t)(normalizing->film->crop[2] - normalizing->film->crop[0]);
+    for (size_t pixel = row * width; pixel < (row + 1) * width; ++pixel)
+        pixel_normalize(normalizing, pixel);
+}
+
+void film_normalize(Film *film, uint64_t samples, int threads)
+{
+    FilmNormalizing normalizing = {film, (uint32_t)(samples * film_sample_units(film->reconstruction))};
+    if (film->reconstruction == RECONSTRUCTION_SPLAT && samples > 0)
+        parallel_run((size_t)(film->crop[3] - film->crop[1]), threads, row_normalize, &normalizing);
+}
+
 void film_clear(Film *film)
 {
     size_t pixels = film_pixels(film);
@@ -250,113 +320,4 @@ void film_clear(Film *film)
         memset(film->depth_sums, 0,
                film_depth_words((uint)pixels, film->depth_kinds, film->depth_last) * sizeof *film->depth_sums);
     film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
-}
-
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
-
-int64_t film_sum_shown(int64_t sum)
-{
-    const int64_t most = (int64_t)SUM_MAX;
-    return sum > most ? most : sum < -most ? -most : sum;
-}
-
-int64_t film_sum_rounded(double units)
-{
-    const double most = (double)SUM_MAX;
-    if (fabs(units) < most)
-        return llrint(units);
-    return units < 0.0 ? -(int64_t)SUM_FULL : (int64_t)SUM_FULL;
-}
-
-/* Whether one of a pixel's three sums is full; false if `sums` is NULL. */
-static bool pixel_full(const int64_t *sums, size_t pixel)
-{
-    for (size_t c = 3 * pixel; sums && c < 3 * pixel + 3; ++c)
-        if (sums[c] >= (int64_t)SUM_MAX || sums[c] <= -(int64_t)SUM_MAX)
-            return true;
-    return false;
-}
-
-size_t film_full_pixels(const Film *film)
-{
-    return film_full_pixels_of(film, 0, film_pixels(film));
-}
-
-size_t film_full_pixels_of(const Film *film, size_t first, size_t end)
-{
-    size_t full = 0;
-    for (size_t i = first; i < end; ++i)
-        if (pixel_full(film->sums, i) || pixel_full(film->light_sums, i) || pixel_full(film->rare_sums, i))
-            ++full;
-    return full;
-}
-
-size_t film_empty_pixels(const Film *film)
-{
-    size_t empty = 0;
-    for (size_t i = 0; i < film_pixels(film); ++i)
-        empty += film->counts[i] == 0;
-    return empty;
-}
-
-/* Radiance per unit of the light sums. */
-static double light_unit_of(const Film *film, double unit)
-{
-    size_t pixels = film_pixels(film);
-    uint64_t samples = film->light_samples;
-    for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
-        samples += film->counts[i];
-    return samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
-}
-
-FilmScale film_scale_of(const Film *film, float scale)
-{
-    double unit = ldexp((double)scale, film->quantum_exponent);
-    return (FilmScale){unit, light_unit_of(film, unit)};
-}
-
-/* Resolves value v (3 per pixel) of a part of the film. */
-static float value_resolve(const Film *film, FilmPart part, FilmScale scale, size_t v)
-{
-    uint32_t count = film->counts[v / 3];
-    double value = count && part != FILM_LIGHT ? (double)film_sum_shown(film->sums[v]) * scale.own / count : 0.0;
-    if (film->light_sums && part != FILM_OWN)
-        value += (double)film_sum_shown(film->light_sums[v]) * scale.light;
-    return (float)value;
-}
-
-void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_t first, size_t count, float *rgb)
-{
-    for (size_t v = 0; v < 3 * count; ++v)
-        rgb[v] = value_resolve(film, part, scale, 3 * first + v);
-}
-
-size_t film_infinite_pixels(const Film *film, float scale)
-{
-    const FilmScale units = film_scale_of(film, scale);
-    size_t infinite = 0;
-    for (size_t i = 0; i < film_pixels(film); ++i) {
-        bool finite = true;
-        for (size_t c = 0; c < 3; ++c)
-            finite = finite && isfinite(value_resolve(film, FILM_ALL, units, 3 * i + c));
-        infinite += !finite;
-    }
-    return infinite;
-}
-
-void film_resolve_part(const Film *film, FilmPart part, float scale, float *rgb)
-{
-    film_resolve_pixels(film, part, film_scale_of(film, scale), 0, film_pixels(film), rgb);
-}
-
-void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb)
-{
-    const int64_t *sums = film_depth_sums(film, segments, FILM_KIND_LIGHT) + 3 * first;
-    for (size_t i = 0; i < 3 * count; ++i)
-        rgb[i] = (float)((double)film_sum_shown(sums[i]) * scale.light);
-}
-
-void film_resolve(const Film *film, float scale, float *rgb)
-{
-    film_resolve_part(film, FILM_ALL, scale, rgb);
 }

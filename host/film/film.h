@@ -5,6 +5,7 @@
 #define TWINLIGHT_FILM_FILM_H
 
 #include "base/error.h"
+#include "camera/film_axis.h"
 #include "layout/state.h"
 
 /* Maximum number of pixels: splats store a pixel in 30 bits. */
@@ -23,7 +24,9 @@ typedef struct Film {
     int64_t *depth_sums;
     uint depth_kinds, depth_last;
     uint64_t light_samples; /* number of paths behind light_sums; 0: as many as samples of pixels */
-    uint32_t *counts; /* samples per pixel of the crop */
+    uint reconstruction; /* RECONSTRUCTION_*, with the pixel filter: film_filter_set */
+    FilmAxis axis_x, axis_y;
+    uint32_t *counts; /* samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h) */
     uint64_t saturated; /* contributions clamped because they were too large */
     uint64_t vanished; /* contributions that are not black, but below half a unit in every channel */
     uint64_t not_finite; /* contributions that were NaN or infinite and counted as zero */
@@ -34,7 +37,14 @@ typedef struct Film {
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error);
 void film_destroy(Film *film);
 
-/* An empty film with the size, crop and quantum of `model`, and with light sums if `model` has them (but no rare or
+/* Takes reconstruction and filter from `params`, whose crop is that of the film. `lookup`: the scene's, for as long as
+ * splats are added. Only while the film is empty. */
+void film_filter_set(Film *film, const FilmParams *params, const float *lookup);
+
+/* Largest number of samples per pixel. */
+uint64_t film_samples_most(uint reconstruction);
+
+/* An empty film with the size, crop, filter and quantum of `model`, and with light sums if `model` has them (but no rare or
  * depth sums). */
 bool film_init_like(Film *film, const Film *model, Error *error);
 
@@ -76,6 +86,11 @@ bool film_merge(Film *film, const Film *from, Error *error);
 
 /* Exchanges `sums` and counts of two films of the same size. */
 void film_swap_own(Film *a, Film *b);
+
+/* For a film in which every pixel has `samples` samples, of which splats from the light are a part: divides each pixel's
+ * sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes unless the
+ * film spreads splats. */
+void film_normalize(Film *film, uint64_t samples, int threads);
 
 /* Resets all sums and counters to zero; size and quantum stay. */
 void film_clear(Film *film);

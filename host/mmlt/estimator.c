@@ -22,6 +22,7 @@ void estimator_film_params(const Estimator *estimator, FilmParams *params)
 {
     params->exponent = estimator->film->quantum_exponent;
     params->split_depths = estimator->film->depth_kinds;
+    params->reconstruction = estimator->film->reconstruction;
 }
 
 static void splats_drop(void *context, const uint *splats, uint count, uint stride)

@@ -7,13 +7,15 @@
 #include "mmlt/tuning.h"
 #include "render/integrator.h"
 
+#include <math.h>
+
 /* The number of the first sample in odd generations, beyond all that even ones can make. */
 #define HALF_SAMPLES 0x40000000u
 
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
                           Error *error)
 {
-    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame};
+    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame, .threads = 1};
     paths->frame.path.strategies = integrator_pt()->strategies;
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
@@ -32,7 +34,8 @@ void paths_estimator_destroy(PathsEstimator *paths)
 
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more)
 {
-    uint64_t target = (uint64_t)(paths->wanted + more), first = (uint64_t)generation->index + 1;
+    uint64_t most = film_samples_most(paths->own.film->reconstruction);
+    uint64_t target = (uint64_t)fmin(paths->wanted + more, (double)most), first = (uint64_t)generation->index + 1;
     if (generation->index < 2 * REPLICAS && target < first)
         target = first;
     return target > paths->done ? target - paths->done : 0;
@@ -81,6 +84,8 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
         paths->delivered += delivered;
         *whole = delivered == frame->pass.item_count;
     }
+    if (*whole && frame->partition.split_direct != 0u)
+        film_normalize(paths->own.film, paths->fresh, paths->threads);
     paths->done += paths->fresh;
     paths->of_half[half] += paths->fresh;
     paths->seconds = timing_now() - begin;

@@ -14,6 +14,7 @@ typedef struct PathsEstimator {
     double wanted; /* the same according to the plan, fractions included */
     uint64_t fresh; /* samples of every pixel in the generation under way */
     double seconds; /* that these took */
+    int threads; /* that make sums over images */
 } PathsEstimator;
 
 /* Makes the list. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of

@@ -186,6 +186,7 @@ static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *erro
     const SplatSink sink = {.splats = aov_splats, .context = layers};
     frame.pass.aovs = aovs;
     frame.path.sobol = 1;
+    frame.film.reconstruction = RECONSTRUCTION_SAMPLE;
     frame.pass.sample_index = run->options->first_sample + layers->aov_samples;
     frame.pass.first_item = 0;
     frame.pass.item_count = (uint)run->crop_pixels;

@@ -87,6 +87,8 @@ static bool samples_render(const Integrator *integrator, RenderRun *run, Error *
     const RenderOptions *options = run->options;
     PassLoop loop = {.run = run};
     loop.total = run->crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
+    uint64_t most = run->crop_pixels * film_samples_most(run->frame.film.reconstruction);
+    loop.total = loop.total < most ? loop.total : most;
     if (!integrator->list(&run->frame, &loop.list, error))
         return false;
     loop.list.photons = &run->photons;
@@ -113,6 +115,18 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     }
 }
 
+/* A filter wider than this costs more to spread splats by than they cost. */
+#define SPREAD_RADIUS_MAX 8.0f
+
+/* Whether splats are spread over pixels: not if the filter covers one pixel alone. */
+static uint reconstruction_of(const RenderOptions *options, const PixelFilter *filter)
+{
+    bool single = filter->kind == PIXEL_FILTER_BOX && filter->radius_x <= 0.5f && filter->radius_y <= 0.5f;
+    bool wide = filter->radius_x > SPREAD_RADIUS_MAX || filter->radius_y > SPREAD_RADIUS_MAX;
+    bool many = options->samples > film_samples_most(RECONSTRUCTION_SPLAT);
+    return single || wide || many ? RECONSTRUCTION_SAMPLE : options->reconstruction;
+}
+
 void render_frame(const Integrator *integrator, const Scene *scene, const RenderOptions *options, FrameParams *frame)
 {
     *frame = scene->frame;
@@ -129,6 +143,7 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->pass.sample_index = options->first_sample;
     frame->pass.first_item = 0;
     frame->pass.pixel_stride = 1;
+    frame->film.reconstruction = reconstruction_of(options, &frame->film.filter);
     frame->path.min_depth = 1;
     frame->path.roulette_depth = ROULETTE_DEPTH;
     if (!integrator->guides || options->chains.paper || options->chains.unguided)
@@ -170,6 +185,7 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     run.crop_pixels = film_pixels(film);
     memset(result, 0, sizeof *result);
     render_frame(integrator, scene, options, &run.frame);
+    film_filter_set(film, &run.frame.film, scene->lookup.data);
     bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
     if (from_light && !film_light_reserve(film, error))
         return false;

@@ -35,6 +35,7 @@ static const StateField SHARED_FIELDS[] = {
     SHARED_FIELD(BUFFER_SHADOWS, SHADOW_OCCLUDED, 1, false, "occlusion"),
     SHARED_FIELD(BUFFER_SPLATS, SPLAT_PIXEL, 1, false, "splat pixel"),
     SHARED_FIELD(BUFFER_SPLATS, SPLAT_COLOR, 3, true, "splat colour"),
+    SHARED_FIELD(BUFFER_SPLATS, SPLAT_OFFSET, 1, false, "splat offset"),
 };
 #undef SHARED_FIELD
 

@@ -11,6 +11,7 @@
 #ifndef TWINLIGHT_CAMERA_FILM_SUM_H
 #define TWINLIGHT_CAMERA_FILM_SUM_H
 
+#include "camera/film_axis.h"
 #include "layout/state.h"
 
 /* Largest magnitude that is read of a sum: at or beyond +-this it is full. */
@@ -40,7 +41,9 @@ typedef struct FilmView {
     __global ulong *depth_sums; /* the same again for each depth: film_depth_place */
     uint depth_kinds; /* kinds of depth_sums: 0 (splats carry no depth), 1: light, 3: light, own and rare */
     uint depth_last; /* largest depth that has sums; the smallest is SPLAT_DEPTH_MIN */
-    __global uint *counts; /* samples of a pixel */
+    uint reconstruction; /* RECONSTRUCTION_* */
+    FilmAxis axis_x, axis_y; /* for RECONSTRUCTION_SPLAT */
+    __global uint *counts; /* samples of a pixel, in units of film_sample_units */
     __global ulong *saturated; /* contributions that were clamped */
     __global ulong *vanished; /* contributions that are not black, but less than half a unit in every channel */
     __global ulong *not_finite; /* contributions that were not finite and counted as zero */
@@ -149,70 +152,141 @@ SHARED_FUNCTION void film_sum_add(__global ulong *sum, ulong units)
     }
 }
 
-/* Results of film_color_add. */
+/* Results of adding a color. */
 #define FILM_ADDED 0u
 #define FILM_CLAMPED 1u
 #define FILM_VANISHED 2u
 
-/* Adds a contribution to the three sums of a pixel. Returns FILM_*. */
-SHARED_FUNCTION uint film_color_add(__global ulong *sums, Vec3 color, int exponent)
+/* A color in units of the film's sums. */
+typedef struct FilmUnits {
+    ulong rgb[3]; /* magnitudes */
+    bool negative[3];
+    uint what; /* FILM_* */
+} FilmUnits;
+
+SHARED_FUNCTION FilmUnits film_color_units(Vec3 color, int exponent)
 {
     const float values[3] = {color.x, color.y, color.z};
     bool any_clamped = false, black = true, none = true;
+    FilmUnits units;
     for (uint c = 0; c < 3u; ++c) {
         bool clamped;
-        ulong units = film_units(values[c], exponent, &clamped);
-        if (units != 0u)
-            film_sum_add(sums + c, values[c] < 0.0f ? 0u - units : units);
+        units.rgb[c] = film_units(values[c], exponent, &clamped);
+        units.negative[c] = values[c] < 0.0f;
         any_clamped = any_clamped || clamped;
         black = black && values[c] == 0.0f;
-        none = none && units == 0u;
+        none = none && units.rgb[c] == 0u;
     }
-    if (any_clamped)
-        return FILM_CLAMPED;
-    return none && !black ? FILM_VANISHED : FILM_ADDED;
+    units.what = any_clamped ? FILM_CLAMPED : none && !black ? FILM_VANISHED : FILM_ADDED;
+    return units;
 }
 
-/* Adds to the sums by depth a splat that has been added to the main sums. */
-SHARED_FUNCTION void film_depth_add(const FilmView *film, uint slot, uint name, Vec3 color)
+/* Whether every channel is below UNITS_SMALL. */
+SHARED_FUNCTION bool film_units_small(const FilmUnits *units)
+{
+    return (units->rgb[0] | units->rgb[1] | units->rgb[2]) < UNITS_SMALL;
+}
+
+/* A pixel's share of a splat. */
+typedef struct FilmShare {
+    uint slot; /* the pixel */
+    uint name; /* of the splat */
+    ulong rgb[3]; /* units, two's complement */
+    bool small; /* below UNITS_SMALL in magnitude */
+    uint samples; /* to be counted, in units of film_sample_units */
+} FilmShare;
+
+SHARED_FUNCTION void film_sums_add(__global ulong *sums, const ulong rgb[3])
+{
+    for (uint c = 0; c < 3u; ++c)
+        if (rgb[c] != 0u)
+            film_sum_add(sums + c, rgb[c]);
+}
+
+/* What a thread of the host has not yet added to the film: a table of pixels, in which small shares that meet in a pixel
+ * are added up without atomic operations. Devices have none. It is emptied after at most FILM_PENDING_SPLATS splats, so
+ * that no sum in it overflows. */
+#define FILM_PENDING_PIXELS 512u
+#define FILM_PENDING_SPLATS (1u << 16)
+
+typedef struct FilmPending {
+    struct {
+        __global ulong *sums; /* of the pixel; NULL: none */
+        ulong rgb[3];
+        uint slot, samples;
+    } pixels[FILM_PENDING_PIXELS];
+} FilmPending;
+
+SHARED_FUNCTION void film_pending_begin(FilmPending *pending)
+{
+    for (uint place = 0; place < FILM_PENDING_PIXELS; ++place)
+        pending->pixels[place].sums = 0;
+}
+
+SHARED_FUNCTION void film_pending_add(const FilmView *film, const FilmPending *pending, uint place)
+{
+    if (!pending->pixels[place].sums)
+        return;
+    film_sums_add(pending->pixels[place].sums, pending->pixels[place].rgb);
+    if (pending->pixels[place].samples != 0u)
+        atomic_count_add(film->counts + pending->pixels[place].slot, pending->pixels[place].samples);
+}
+
+SHARED_FUNCTION void film_pending_end(const FilmView *film, const FilmPending *pending)
+{
+    for (uint place = 0; place < FILM_PENDING_PIXELS; ++place)
+        film_pending_add(film, pending, place);
+}
+
+/* Adds a share to three sums of its pixel, and the samples to its count. */
+SHARED_FUNCTION void film_rgb_add(const FilmView *film, FilmPending *pending, __global ulong *sums,
+                                  const FilmShare *share, uint samples)
+{
+    sums += 3u * (size_t)share->slot;
+    if (!pending || !share->small) {
+        film_sums_add(sums, share->rgb);
+        if (samples != 0u)
+            atomic_count_add(film->counts + share->slot, samples);
+        return;
+    }
+    /* neighbouring pixels: eight next to each other */
+    uint place = (share->slot & 7u) | ((share->slot >> 3) * 0x9e3779b1u) >> 26 << 3;
+    if (pending->pixels[place].sums != sums) {
+        film_pending_add(film, pending, place);
+        pending->pixels[place].sums = sums;
+        pending->pixels[place].slot = share->slot;
+        pending->pixels[place].rgb[0] = pending->pixels[place].rgb[1] = pending->pixels[place].rgb[2] = 0u;
+        pending->pixels[place].samples = 0u;
+    }
+    for (uint c = 0; c < 3u; ++c)
+        pending->pixels[place].rgb[c] += share->rgb[c];
+    pending->pixels[place].samples += samples;
+}
+
+/* Adds to the sums by depth a share that has been added to the main sums. */
+SHARED_FUNCTION void film_depth_add(const FilmView *film, FilmPending *pending, const FilmShare *share)
 {
     uint pixels = (film->x1 - film->x0) * (film->y1 - film->y0), kinds = film->depth_kinds;
-    uint depth = name >> SPLAT_DEPTH_SHIFT & SPLAT_DEPTH_MAX;
-    uint kind = (name & SPLAT_LIGHT) != 0u ? FILM_KIND_LIGHT : FILM_KIND_OWN;
+    uint depth = share->name >> SPLAT_DEPTH_SHIFT & SPLAT_DEPTH_MAX;
+    uint kind = (share->name & SPLAT_LIGHT) != 0u ? FILM_KIND_LIGHT : FILM_KIND_OWN;
     if (depth < SPLAT_DEPTH_MIN || depth > film->depth_last)
         return;
     if (kind < kinds)
-        film_color_add(film->depth_sums + film_depth_place(pixels, kinds, depth, kind) + 3u * (size_t)slot, color,
-                       film->exponent);
-    if ((name & SPLAT_RARE) != 0u && FILM_KIND_RARE < kinds)
-        film_color_add(film->depth_sums + film_depth_place(pixels, kinds, depth, FILM_KIND_RARE) + 3u * (size_t)slot,
-                       color, film->exponent);
+        film_rgb_add(film, pending, film->depth_sums + film_depth_place(pixels, kinds, depth, kind), share, 0u);
+    if ((share->name & SPLAT_RARE) != 0u && FILM_KIND_RARE < kinds)
+        film_rgb_add(film, pending, film->depth_sums + film_depth_place(pixels, kinds, depth, FILM_KIND_RARE), share,
+                     0u);
 }
 
-/* Adds a splat of a buffer, and one sample to its pixel unless the splat comes from the light. Any number of threads or
- * work-items may do so concurrently. */
-SHARED_FUNCTION void film_splat_add(const FilmView *film, __global const uint *splats, uint stride, uint item)
+/* Adds a share to the sums that the splat's name says, at a pixel that the film keeps. */
+SHARED_FUNCTION void film_share_add(const FilmView *film, FilmPending *pending, const FilmShare *share)
 {
-    uint name = state_load(splats, stride, SPLAT_PIXEL, item);
-    bool from_light = (name & SPLAT_LIGHT) != 0u;
-    uint pixel = name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
-    uint slot = name != NONE ? film_slot(film, pixel) : NONE;
-    if (slot == NONE)
-        return;
-    Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, item);
-    if (!from_light)
-        atomic_count_add(film->counts + slot, 1u);
-    if (!vec3_finite(color)) {
-        atomic_sum_add(film->not_finite, 1u);
-        return;
-    }
-    uint what = film_color_add((from_light ? film->light_sums : film->sums) + 3u * (size_t)slot, color, film->exponent);
-    if (what != FILM_ADDED)
-        atomic_sum_add(what == FILM_CLAMPED ? film->saturated : film->vanished, 1u);
-    if ((name & SPLAT_RARE) != 0u && film->rare_sums)
-        film_color_add(film->rare_sums + 3u * (size_t)slot, color, film->exponent);
+    bool from_light = (share->name & SPLAT_LIGHT) != 0u;
+    film_rgb_add(film, pending, from_light ? film->light_sums : film->sums, share, share->samples);
+    if ((share->name & SPLAT_RARE) != 0u && film->rare_sums)
+        film_rgb_add(film, pending, film->rare_sums, share, 0u);
     if (film->depth_kinds != 0u)
-        film_depth_add(film, slot, name, color);
+        film_depth_add(film, pending, share);
 }
 
 #endif

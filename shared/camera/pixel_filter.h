@@ -1,6 +1,7 @@
 /* The pixel filter, importance sampled: the offset of a pixel's sample is drawn from |f|, and its radiance goes to that
  * pixel alone with a weight of constant magnitude (Ernst, Stamminger and Greiner, "Filter Importance Sampling", IEEE
- * Symposium on Interactive Ray Tracing, 2006). */
+ * Symposium on Interactive Ray Tracing, 2006); or, with RECONSTRUCTION_SPLAT, to all pixels whose filter covers the
+ * position (camera/film_spread.h). */
 #ifndef TWINLIGHT_CAMERA_PIXEL_FILTER_H
 #define TWINLIGHT_CAMERA_PIXEL_FILTER_H
 
@@ -24,6 +25,13 @@ SHARED_FUNCTION float pixel_filter_invert(const SceneView *scene, uint table, fl
     return ((float)cell + inside) * (2.0f / (float)PIXEL_FILTER_CELLS) - 1.0f;
 }
 
+/* The weight of a splat, whose sign is f's at the pixel that it names. If the film spreads splats over pixels, it applies
+ * the sign of each. */
+SHARED_FUNCTION float filter_sign_kept(__global const FilmParams *film, float weight)
+{
+    return film->reconstruction == RECONSTRUCTION_SPLAT ? float_abs(weight) : weight;
+}
+
 /* Offset from the pixel's centre in pixels, drawn from |f| with u in [0, 1)^2. *weight is +-(integral of |f|) /
  * (integral of f), so that its expectation is 1 and the expectation of weight times radiance is the filtered image. */
 SHARED_FUNCTION Vec2 pixel_filter_sample(const SceneView *scene, Vec2 u, float *weight)
@@ -41,7 +49,7 @@ SHARED_FUNCTION Vec2 pixel_filter_sample(const SceneView *scene, Vec2 u, float *
         x = pixel_filter_invert(scene, filter->table_x, u.x, &sign);
         y = pixel_filter_invert(scene, filter->table_y, u.y, &sign);
     }
-    *weight = sign * filter->weight;
+    *weight = filter_sign_kept(&scene->frame->film, sign) * filter->weight;
     return vec2(x * filter->radius_x, y * filter->radius_y);
 }
 

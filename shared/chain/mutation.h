@@ -140,6 +140,7 @@ SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict
         splat_store(splats, diagnostics, stride, item,
                     chain_splat_layers(frame, path->key, path->f, random_float(random.x[3])) | pixel |
                         splat_depth(frame->film.split_depths, chain_key_depth(path->key)),
+                    splat_offset(&frame->film, pixel, path->film),
                     vec3_scale(path->color, path->visits * (weight * frame->chains.brightness)));
 }
 

@@ -10,6 +10,7 @@
 #define TWINLIGHT_CHAIN_POOL_H
 
 #include "camera/film_splat.h"
+#include "camera/splat_offset.h"
 #include "layout/item.h"
 #include "path/bd_random.h"
 #include "path/bd_start.h"
@@ -83,6 +84,8 @@ SHARED_FUNCTION void pool_start_camera(const SceneView *scene, Walk walk)
     float weight;
     Random4 random = pool_camera(scene, paths, item, &weight);
     Vec2 film = film_position(frame, random.x[0], random.x[1]);
+    state_store(paths, stride, BD_OFFSET, item,
+                splat_offset(&frame->film, state_load(paths, stride, BD_PIXEL, item), film));
     state_store_float(paths, stride, BD_COVER, item, film_splat_cover(scene, film));
     state_store_float(paths, stride, BD_IMPORTANCE, item, film_importance(frame, scene->guide, film));
     float density_ratio = pool_density_ratio(frame, scene->guide, state_load(paths, stride, BD_PIXEL, item));

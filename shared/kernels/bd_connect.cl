@@ -130,7 +130,8 @@ __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint
         flags |= splat_depth(frame->film.split_depths, state_load(paths, stride, BD_GATHERED, item));
         state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
     }
-    splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item), radiance);
+    splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item),
+                state_load(paths, stride, BD_OFFSET, item), radiance);
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "bsdf/material.h"
 #include "camera/camera.h"
 #include "camera/film_splat.h"
+#include "camera/splat_offset.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
 #include "layout/diagnostics.h"
@@ -62,6 +63,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     state_store(paths, stride, PATH_DEPTH, item, 1u);
     state_store(paths, stride, PATH_FLAGS, item, PATH_FLAG_DELTA);
     state_store_float(paths, stride, PATH_WEIGHT, item, weight);
+    state_store(paths, stride, PATH_OFFSET, item, splat_offset(&frame->film, pixel, film));
     state_store_vec3(paths, stride, PATH_BETA, item, vec3_splat(1.0f));
     state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_splat(0.0f));
     state_store_float(paths, stride, PATH_PDF_W, item, 1.0f);
@@ -370,6 +372,7 @@ SHARED_FUNCTION void path_splat(__global const FrameParams *frame, __global uint
     }
     state_store(splats, stride, SPLAT_PIXEL, item, flags | state_load(paths, stride, PATH_PIXEL, item));
     state_store_vec3(splats, stride, SPLAT_COLOR, item, radiance);
+    state_store(splats, stride, SPLAT_OFFSET, item, state_load(paths, stride, PATH_OFFSET, item));
     state_store_vec3(paths, stride, field, item, vec3_splat(0.0f));
 }
 

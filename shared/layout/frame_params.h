@@ -42,12 +42,17 @@ typedef struct SceneParams {
     float ray_reach; /* no coordinate of a ray's origin is larger: boxes are widened for it (geometry/box.h) */
 } SceneParams;
 
+/* A splat goes to one pixel, or is spread over the pixels whose filter covers it (camera/film_spread.h). */
+#define RECONSTRUCTION_SAMPLE 0u
+#define RECONSTRUCTION_SPLAT 1u
+
 typedef struct FilmParams {
     uint width, height; /* of the whole film, pixels */
     uint crop_x0, crop_y0, crop_x1, crop_y1; /* pixels rendered: x0 <= x < x1 */
     PixelFilter filter;
     int exponent; /* one unit of the film's sums, the quantum, is 2^exponent (camera/film_sum.h) */
     uint split_depths; /* kinds of sums that the film has per depth (camera/film_sum.h); 0: splats carry no depth */
+    uint reconstruction; /* RECONSTRUCTION_* */
 } FilmParams;
 
 /* Paths of any integrator, and MIS. */

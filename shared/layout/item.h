@@ -64,13 +64,27 @@ SHARED_FUNCTION float pool_density_ratio(__global const FrameParams *frame, __gl
     return (float)all / ((float)each * (float)(width * height));
 }
 
+/* Rows of a band. */
+#define BAND_ROWS 8u
+
+/* Pixel `at` in the order of passes that visit all pixels in turn, as an index into the crop's rows: in bands of a few
+ * rows, each column by column, so that items of a chunk are near each other in both directions. */
+SHARED_FUNCTION uint pixel_in_bands(uint at, uint width, uint height)
+{
+    uint first = at / (BAND_ROWS * width) * BAND_ROWS, rows = height - first < BAND_ROWS ? height - first : BAND_ROWS;
+    uint inside = at - first * width;
+    return (first + inside % rows) * width + inside / rows;
+}
+
 /* The place of item `item`, counted from the beginning of the pixels' order, if all pixels are visited equally. */
 SHARED_FUNCTION ItemPlace item_place_even(__global const FrameParams *frame, uint item)
 {
     uint crop_width = frame->film.crop_x1 - frame->film.crop_x0,
          crop_height = frame->film.crop_y1 - frame->film.crop_y0;
     uint crop_pixels = crop_width * crop_height;
-    uint at = (uint)((ulong)(item % crop_pixels) * frame->pass.pixel_stride % crop_pixels);
+    uint at = frame->pass.pixel_stride == 1u
+                  ? pixel_in_bands(item % crop_pixels, crop_width, crop_height)
+                  : (uint)((ulong)(item % crop_pixels) * frame->pass.pixel_stride % crop_pixels);
     ItemPlace place;
     place.pixel = (frame->film.crop_y0 + at / crop_width) * frame->film.width + frame->film.crop_x0 + at % crop_width;
     place.sample = frame->pass.sample_index + item / crop_pixels;

@@ -30,7 +30,7 @@
 #define KERNEL_LIST_OTHERS(X)                                                                                          \
     X(count_closest, 3, BUFFER_FRAME, BUFFER_RAYS, BUFFER_COUNTS)                                                      \
     X(count_shadow, 3, BUFFER_FRAME, BUFFER_SHADOWS, BUFFER_COUNTS)                                                    \
-    X(film_add, 3, BUFFER_FRAME, BUFFER_SPLATS, BUFFER_FILM)                                                           \
+    X(film_add, 4, BUFFER_FRAME, BUFFER_TABLES, BUFFER_SPLATS, BUFFER_FILM)                                            \
     X(trace_closest, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_RAYS,          \
       BUFFER_HITS)                                                                                                     \
     X(trace_shadow, 6, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_BVH, BUFFER_SHADOWS)

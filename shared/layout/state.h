@@ -65,7 +65,8 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_V 4u
 #define HIT_WORDS 5u
 
-/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), and linear RGB. A splat is in one of three
+/* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), linear RGB, and where in that pixel's filter it
+ * is (camera/splat_offset.h; read only by a film that spreads splats). A splat is in one of three
  * layers: a sample of its pixel; light from a path that could have reached any pixel; or, from chains, the excess of a
  * path over what the pool shows (path/partition.h). Chains take no samples of pixels, so the excess uses the sums of
  * samples. A splat may be in a fourth layer as well: what path tracing does not show of the path. */
@@ -92,7 +93,8 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
 
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
-#define SPLAT_WORDS 4u
+#define SPLAT_OFFSET 4u
+#define SPLAT_WORDS 5u
 
 /* BUFFER_COUNTS: live rays counted by kernels/count.cl. */
 #define COUNT_CLOSEST 0u

@@ -4,6 +4,7 @@
 
 #include "camera/camera.h"
 #include "camera/film_splat.h"
+#include "camera/splat_offset.h"
 #include "layout/diagnostics.h"
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
@@ -15,6 +16,7 @@ typedef struct Connection {
     Ray shadow;
     Vec2 film; /* t = 1: film position of y */
     uint target; /* t = 1: pixel of the splat */
+    uint target_offset; /* in the filter of that pixel (camera/splat_offset.h) */
     float target_weight; /* of the pixel filter */
     StrategyEnds ends;
 } Connection;
@@ -119,6 +121,7 @@ SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const 
                                   Random4 random, Connection *connection)
 {
     connection->target = NONE;
+    connection->target_offset = 0u;
     connection->ends.connect = 1.0f;
     if (t == 1u)
         return connect_camera(scene, y, random, connection);
@@ -133,6 +136,7 @@ SHARED_FUNCTION bool connection_target(const SceneView *scene, Random4 random, C
     connection->target =
         film_splat_pixel(scene, connection->film, vec2(random_float(random.x[2]), random_float(random.x[3])),
                          &connection->target_weight);
+    connection->target_offset = splat_offset(&scene->frame->film, connection->target, connection->film);
     return connection->target != NONE;
 }
 
@@ -156,19 +160,21 @@ SHARED_FUNCTION void connection_store(__global uint *restrict paths, __global ui
 {
     state_store_vec3(paths, stride, BD_CONTRIBUTION, item, vec3_scale(connection->contribution, weight));
     state_store(paths, stride, BD_TARGET, item, connection->target);
+    state_store(paths, stride, BD_TARGET_OFFSET, item, connection->target_offset);
     state_store_float(paths, stride, BD_TARGET_WEIGHT, item, connection->target_weight);
     ray_store(shadows, stride, item, connection->shadow);
 }
 
 SHARED_FUNCTION void splat_store(__global uint *restrict splats, __global uint *restrict diagnostics, uint stride,
-                                 uint item, uint pixel, Vec3 color)
+                                 uint item, uint name, uint offset, Vec3 color)
 {
     if (!vec3_finite(color)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_NOT_FINITE);
         color = vec3_splat(0.0f);
     }
-    state_store(splats, stride, SPLAT_PIXEL, item, pixel);
+    state_store(splats, stride, SPLAT_PIXEL, item, name);
     state_store_vec3(splats, stride, SPLAT_COLOR, item, color);
+    state_store(splats, stride, SPLAT_OFFSET, item, offset);
 }
 
 /* Whether a shadow ray was cast and hit nothing; clears it, so that it is not traced again. */
@@ -190,6 +196,7 @@ SHARED_FUNCTION void connection_add(__global uint *restrict paths, __global uint
     uint target = state_load(paths, stride, BD_TARGET, item);
     if (from_lens && visible && target != NONE)
         splat_store(splats, diagnostics, stride, item, SPLAT_LIGHT | target,
+                    state_load(paths, stride, BD_TARGET_OFFSET, item),
                     vec3_scale(contribution, state_load_float(paths, stride, BD_TARGET_WEIGHT, item)));
     else if (from_lens)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);

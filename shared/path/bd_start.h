@@ -3,6 +3,7 @@
 #define TWINLIGHT_PATH_BD_START_H
 
 #include "camera/pixel_filter.h"
+#include "camera/splat_offset.h"
 #include "layout/item.h"
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
@@ -70,6 +71,7 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, Walk walk)
     Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
                          vec2(random_float(random.x[2]), random_float(random.x[3])));
     state_store_float(paths, stride, BD_WEIGHT, item, weight);
+    state_store(paths, stride, BD_OFFSET, item, splat_offset(&frame->film, pixel, film));
     walk_begin(walk, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
 }
 

@@ -51,9 +51,12 @@
 #define BD_IMPORTANCE 33u /* target importance where the camera's path began */
 #define BD_TARGET_IMPORTANCE 34u /* target importance at the film position of the connection under way (t = 1) */
 #define BD_GATHERED 35u /* frame->film.split_depths: depth of the paths in BD_RADIANCE */
+/* Film positions (camera/splat_offset.h) */
+#define BD_OFFSET 36u /* of the camera's path in the filter of BD_PIXEL */
+#define BD_TARGET_OFFSET 37u /* of a splat in that of BD_TARGET */
 /* Caustics by photons (path/caustic_rest.h); only with PhotonParams.count */
-#define BD_RECEIVER 36u /* of the camera subpath, RECEIVER_WORDS */
-#define BD_HEADER_WORDS 43u
+#define BD_RECEIVER 38u /* of the camera subpath, RECEIVER_WORDS */
+#define BD_HEADER_WORDS 45u
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can hit it */

@@ -36,7 +36,8 @@
 /* frame->partition.split_direct */
 #define PATH_RARE 62u /* gathered so far above the clamping threshold, 3 */
 #define PATH_LIGHT_SHOWN 65u /* the part of PATH_LIGHT that is below it */
-#define PATH_WORDS 66u
+#define PATH_OFFSET 66u /* in the pixel's filter (camera/splat_offset.h) */
+#define PATH_WORDS 67u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 

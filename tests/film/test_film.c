@@ -1,6 +1,6 @@
 #include "support/test_util.h"
 
-#include "camera/film_sum.h"
+#include "camera/film_spread.h"
 #include "film/film.h"
 
 #include <math.h>
@@ -8,6 +8,7 @@
 #include <string.h>
 
 TCase *film_output_tcase(void);
+TCase *film_spread_tcase(void);
 TCase *film_files_tcase(void);
 
 static const int CROP_WHOLE[4] = {0, 0, 4, 3};
@@ -579,6 +580,7 @@ int main(void)
     tcase_add_test(tcase, test_init_refuses);
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, film_output_tcase());
+    suite_add_tcase(suite, film_spread_tcase());
     suite_add_tcase(suite, film_files_tcase());
     return test_run(suite);
 }

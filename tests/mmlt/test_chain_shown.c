@@ -176,6 +176,9 @@ START_TEST(test_splat)
                 continue;
             uint pixel = shown.splats[SPLAT_PIXEL] & ~SPLAT_LAYERS, x = pixel % WIDTH - X0, y = pixel / WIDTH - Y0;
             TEST_TRUE(x < COLUMNS && y < ROWS);
+            uint offset = shown.splats[SPLAT_OFFSET];
+            TEST_NEAR(X0 + x + 0.5 + (double)splat_offset_of(offset & 0xffffu, RADIUS_X), (double)film.x, 1e-4);
+            TEST_NEAR(Y0 + y + 0.5 + (double)splat_offset_of(offset >> 16, RADIUS_Y), (double)film.y, 1e-4);
             double value = luminance_of(state_load_vec3(shown.splats, 1, SPLAT_COLOR, 0));
             pixels[y][x] += value / (N * N);
             largest = fmax(largest, value);

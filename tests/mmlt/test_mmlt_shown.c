@@ -19,7 +19,7 @@
 
 /* One estimator alone plus what it leaves to chains, against path tracing. */
 static void estimator_compare(const char *name, const BidirectionalScene *scene, int estimator,
-                              unsigned expected_samples, unsigned samples)
+                              unsigned expected_samples, unsigned samples, unsigned reconstruction)
 {
     PictureGroups expected, got;
     char line[128];
@@ -32,6 +32,7 @@ static void estimator_compare(const char *name, const BidirectionalScene *scene,
     setup.render.seed = 11000;
     setup.render.integrator = integrator_mmlt();
     setup.render.chains = (ChainOptions){.chains = 256, .steps = 16, .shown = 1 + estimator};
+    setup.render.reconstruction = reconstruction;
     groups_render(&setup, &got);
     snprintf(line, sizeof line, "%s, estimator %d", name, estimator);
     groups_compare(line, &got, &expected, 2, false);
@@ -48,12 +49,14 @@ static bool estimator_left_out(int estimator)
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
 /* Large pixels in a small scene, so that light tracing (t = 1) contributes much of the image, and a small crop window,
- * so that filters extend far beyond it. */
+ * so that filters extend far beyond it. With every other filter splats are spread; with one of these the pool is shown
+ * at effort 1, too. */
 START_TEST(test_shown_filters)
 {
     const int estimator = _i % SHOWN_COUNT, filter = _i / SHOWN_COUNT;
+    const unsigned reconstruction = filter % 2 == 1 ? RECONSTRUCTION_SPLAT : RECONSTRUCTION_SAMPLE;
     char text[2048];
-    if (estimator_left_out(estimator))
+    if (estimator_left_out(estimator) && !(estimator == ESTIMATOR_POOL && filter == 3))
         return;
     snprintf(text, sizeof text,
              "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"integer pixelbounds\" [ 2 5 3 6 ]\n"
@@ -62,7 +65,7 @@ START_TEST(test_shown_filters)
              "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
              BIDIRECTIONAL_FILTERS[filter]);
     const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
-    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096);
+    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096, reconstruction);
 }
 END_TEST
 
@@ -85,7 +88,7 @@ START_TEST(test_shown_lights)
     const int estimator = _i % SHOWN_COUNT;
     const BidirectionalScene *scene = &SUNS[_i / SHOWN_COUNT];
     if (!estimator_left_out(estimator))
-        estimator_compare(scene->name, scene, estimator, 128, 512);
+        estimator_compare(scene->name, scene, estimator, 128, 512, RECONSTRUCTION_SAMPLE);
 }
 END_TEST
 

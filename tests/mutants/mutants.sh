@@ -192,7 +192,7 @@ done
 likely() {
     case $1 in
     shared/kernels/ibpt.cl) echo test_verify test_partition test_bidirectional ;;
-    shared/kernels/*.cl | shared/path/bd_start.h) echo test_partition test_chain:shown test_layers ;;
+    shared/kernels/*.cl | shared/path/bd_start.h) echo test_partition test_chain:shown test_layers test_bidirectional:film ;;
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/chain/mutation.h) echo test_chain:shown test_partition test_chain test_shift test_layers ;;
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
@@ -209,7 +209,8 @@ likely() {
     host/scene/light_setup.c | host/scene/aim_setup.c) echo test_light test_emit test_numerics:lights ;;
     shared/math/*.h | shared/layout/distribution.h | shared/path/path_random.h) echo test_math test_light test_emit ;;
     shared/chain/chain_numbers.h) echo test_chain test_partition test_emit ;;
-    shared/camera/film_sum.h) echo test_film test_layers test_emit ;;
+    shared/camera/film_s*.h | shared/camera/splat_offset.h | host/film/*) echo test_film test_layers test_emit ;;
+    shared/camera/pixel_filter.h | shared/layout/item.h) echo test_film test_bidirectional:film ;;
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
     host/mmlt/plan.c) echo test_plan test_combination:known ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;

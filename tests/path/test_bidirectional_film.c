@@ -4,8 +4,26 @@
 
 #include "base/sample_statistics.h"
 
-/* BDPT and light tracing (t = 1) against path tracing. */
-static void pictures_agree(const char *name, const char *text, int depth, unsigned samples, const unsigned strategy[2])
+/* An integrator whose splats are spread against path tracing whose samples go to one pixel. */
+static void spread_agrees(const char *name, const char *text, int depth, unsigned samples, const Integrator *integrator)
+{
+    PictureGroups expected, got;
+    GroupSetup setup = {.groups = 16,
+                        .render = {.text = text, .samples = 2 * samples, .max_depth = depth, .threads = 1}};
+    groups_render(&setup, &expected);
+    setup.render.integrator = integrator;
+    setup.render.samples = samples;
+    setup.render.seed = 1000;
+    setup.render.reconstruction = RECONSTRUCTION_SPLAT;
+    groups_render(&setup, &got);
+    groups_compare(name, &got, &expected, 3, true);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+
+/* BDPT and light tracing (t = 1) against path tracing. reconstruction: of the former. */
+static void pictures_agree(const char *name, const char *text, int depth, unsigned samples, const unsigned strategy[2],
+                           unsigned reconstruction)
 {
     PictureGroups expected, got;
     GroupSetup setup = {.groups = 16,
@@ -16,6 +34,7 @@ static void pictures_agree(const char *name, const char *text, int depth, unsign
     setup.render.integrator = integrator_bdpt();
     setup.render.samples = samples;
     setup.render.seed = 1000;
+    setup.render.reconstruction = reconstruction;
     if (strategy) {
         setup.render.only_strategy = setup.render.unweighted = true;
         setup.render.strategy[0] = strategy[0];
@@ -40,13 +59,19 @@ START_TEST(test_filters)
 {
     static const unsigned LIGHT_TRACING[2] = {2, 1};
     static const char *const CROPS[] = {"", "\"integer pixelbounds\" [ 3 9 5 8 ]"};
+    const char *filter = BIDIRECTIONAL_FILTERS[_i / 4];
+    const unsigned reconstruction = _i / 2 % 2 == 0 ? RECONSTRUCTION_SAMPLE : RECONSTRUCTION_SPLAT;
     char text[4096];
     snprintf(
         text, sizeof text,
         "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 9 %s\nPixelFilter %s\n" LIT_FROM_ALL_SIDES,
-        CROPS[_i % 2], BIDIRECTIONAL_FILTERS[_i / 2]);
-    pictures_agree(BIDIRECTIONAL_FILTERS[_i / 2], text, 2, 240, LIGHT_TRACING);
-    pictures_agree(BIDIRECTIONAL_FILTERS[_i / 2], text, 3, 30, NULL);
+        CROPS[_i % 2], filter);
+    pictures_agree(filter, text, 2, 240, LIGHT_TRACING, reconstruction);
+    pictures_agree(filter, text, 3, 30, NULL, reconstruction);
+    if (reconstruction == RECONSTRUCTION_SPLAT) {
+        spread_agrees(filter, text, 3, 60, integrator_pt());
+        spread_agrees(filter, text, 3, 60, integrator_ibpt());
+    }
 }
 END_TEST
 
@@ -64,7 +89,7 @@ START_TEST(test_light_inside_glass)
                 "Shape \"sphere\" \"float radius\" 1\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"
                 "AreaLightSource \"diffuse\" \"rgb L\" [ 40 40 40 ]\nShape \"sphere\" \"float radius\" 0.6\n"
                 "AttributeEnd\n",
-        3, 100, LIGHT_TRACING);
+        3, 100, LIGHT_TRACING, RECONSTRUCTION_SAMPLE);
 }
 END_TEST
 
@@ -76,12 +101,12 @@ START_TEST(test_glass_both_ways)
                    BD_ROOM
                    "Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0.4 \"bool remaproughness\" false\n"
                    "Shape \"sphere\" \"float radius\" 1\nMaterial \"diffuse\"\nShape \"sphere\" \"float radius\" 0.6\n",
-                   6, 16, NULL);
+                   6, 16, NULL, RECONSTRUCTION_SAMPLE);
     pictures_agree("camera inside glass",
                    BD_ROOM "Material \"diffuse\"\n" BD_BALL
                            "Translate 0 1.2 -6 Material \"dielectric\" \"float eta\" 1.5\n"
                            "Shape \"sphere\" \"float radius\" 1\n",
-                   5, 16, NULL);
+                   5, 16, NULL, RECONSTRUCTION_SAMPLE);
 }
 END_TEST
 
@@ -155,7 +180,7 @@ TCase *bidirectional_film_case(void)
 {
     TCase *tcase = tcase_create("film");
     tcase_set_timeout(tcase, 600);
-    tcase_add_loop_test(tcase, test_filters, 0, 2 * BIDIRECTIONAL_FILTER_COUNT);
+    tcase_add_loop_test(tcase, test_filters, 0, 4 * BIDIRECTIONAL_FILTER_COUNT);
     return tcase;
 }
 

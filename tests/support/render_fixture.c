@@ -72,6 +72,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
                              .photons = setup->photons,
+                             .reconstruction = setup->reconstruction,
                              .chains = setup->chains,
                              .layers = setup->layers,
                              .balance = setup->balance,

@@ -19,6 +19,7 @@ typedef struct RenderSetup {
     bool record_spans;
     uint64_t seed;
     unsigned photons;
+    unsigned reconstruction; /* RECONSTRUCTION_* */
     bool after_another; /* the backend has rendered with the next seed before */
     const Integrator *integrator; /* NULL: path tracing */
     bool balance, only_strategy, unweighted; /* as in RenderOptions */
