@@ -161,6 +161,7 @@ tests_test_bidirectional_SOURCES = tests/path/test_bidirectional.c \
 	tests/path/bidirectional_path.c \
 	tests/path/test_bidirectional_film.c \
 	tests/path/test_bidirectional_running.c \
+	tests/path/test_bidirectional_spread.c \
 	tests/path/test_bidirectional_strategies.c \
 	tests/path/test_bidirectional_walks.c \
 	tests/path/test_bidirectional_weights.c

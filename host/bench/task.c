@@ -152,6 +152,7 @@ static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *
                                    .max_depth = shop->scene->max_depth,
                                    .seed = task->seed,
                                    .photons = PHOTONS_DEFAULT,
+                                   .reconstruction = RECONSTRUCTION_SPLAT,
                                    .stop = interrupt_flag()};
     const SceneSettings *settings = &shop->data.settings;
     Progress progress;

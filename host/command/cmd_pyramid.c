@@ -70,6 +70,7 @@ static bool strategy_render(const RenderCommand *command, const Scene *scene, co
 {
     const SceneSettings *settings = &scene->settings;
     const RenderOptions options = {.samples = (unsigned)command->samples,
+                                   .reconstruction = RECONSTRUCTION_SPLAT,
                                    .max_depth = (int)(s + t - 1),
                                    .seed = command->seed,
                                    .only_strategy = true,

@@ -25,6 +25,8 @@
         {BUFFER_PATHS, BD_CONTRIBUTION, 3, true, "contribution of the connection"},                                    \
         {BUFFER_PATHS, BD_TARGET, 1, false, "pixel of the connection"},                                                \
         {BUFFER_PATHS, BD_TARGET_WEIGHT, 1, true, "filter weight of the connection"},                                  \
+        {BUFFER_PATHS, BD_OFFSET, 1, false, "place in the pixel's filter"},                                            \
+        {BUFFER_PATHS, BD_TARGET_OFFSET, 1, false, "place of the connection in its pixel's filter"},                   \
         {BUFFER_PATHS, BD_COVER, 1, true, "filter cover"}, {BUFFER_PATHS, BD_IMPORTANCE, 1, true, "importance"},       \
         {BUFFER_PATHS, BD_TARGET_IMPORTANCE, 1, true, "target importance"},                                            \
         {BUFFER_PATHS, BD_CANDIDATE_SUM, 1, true, "luminance of candidates"},                                          \
@@ -37,7 +39,7 @@
     }
 
 /* All fields; those after the first BD_FIELD_COUNT belong to IBPT alone. */
-#define BD_FIELD_COUNT 31
+#define BD_FIELD_COUNT 33
 #define IB_FIELD_COUNT (BD_FIELD_COUNT + 6)
 extern const StateField BD_FIELDS[IB_FIELD_COUNT];
 

@@ -135,6 +135,7 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_CAUSTIC_BETA, 3, true, "throughput of the caustic path"),
     PATH_FIELD(PATH_RARE, 3, true, "rare radiance"),
     PATH_FIELD(PATH_LIGHT_SHOWN, 1, true, "shown part of the light sample"),
+    PATH_FIELD(PATH_OFFSET, 1, false, "place in the pixel's filter"),
 };
 #undef PATH_FIELD
 

@@ -174,6 +174,7 @@
     MEMBER(FilmParams, filter)                                                                                         \
     MEMBER(FilmParams, exponent)                                                                                       \
     MEMBER(FilmParams, split_depths)                                                                                   \
+    MEMBER(FilmParams, reconstruction)                                                                                 \
     STRUCT(PhotonParams)                                                                                               \
     MEMBER(PhotonParams, count)                                                                                        \
     MEMBER(PhotonParams, everywhere)                                                                                   \

@@ -81,6 +81,7 @@ expect 2 'the image of pt has no layers of light' render --integrator=pt --layer
 expect 2 'the image of bdpt has no layers of light' render --integrator=bdpt --layers=by-depth "$scene"
 expect 2 '--despeckle=0: out of range' render --despeckle=0 "$scene"
 expect 2 '--sampler=best: there is no such sampler' render --sampler=best "$scene"
+expect 2 '--reconstruction=best: there is no such reconstruction' render --reconstruction=best "$scene"
 expect 2 '--heuristic=best: there is no such heuristic' render --heuristic=best "$scene"
 expect 2 '--heuristic is for bidirectional integrators' render --integrator=pt --heuristic=balance "$scene"
 expect 2 '--strategy is for bidirectional integrators' render --integrator=pt --strategy=1,2 "$scene"
@@ -260,6 +261,22 @@ render --integrator=mmlt --sampler=independent --max-depth=3 -o independent.exr 
 render --integrator=mmlt --max-depth=3 -o sobol.exr "$scene"
 ! cmp -s independent.exr sobol.exr
 result '--sampler changes nothing of mmlt' $?
+# of a filter that covers neighbouring pixels
+grep -v PixelFilter "$scene" | sed 's/^WorldBegin/PixelFilter "gaussian"\nWorldBegin/' >gaussian.pbrt
+grep -v PixelFilter "$scene" | sed 's/^WorldBegin/PixelFilter "box"\nWorldBegin/' >box.pbrt
+for integrator in pt ibpt mmlt; do
+    for reconstruction in sample splat; do
+        render --integrator=$integrator --reconstruction=$reconstruction --max-depth=3 -o $reconstruction.exr gaussian.pbrt
+        render --integrator=$integrator --reconstruction=$reconstruction --max-depth=3 -o box_$reconstruction.exr box.pbrt
+    done
+    render --integrator=$integrator --max-depth=3 -o default.exr gaussian.pbrt
+    cmp -s splat.exr default.exr
+    result "splat is not the default of $integrator" $?
+    ! cmp -s sample.exr splat.exr
+    result "--reconstruction changes nothing of $integrator" $?
+    cmp -s box_sample.exr box_splat.exr
+    result "--reconstruction changes a box of one pixel ($integrator)" $?
+done
 render --integrator=bdpt --strategy=1,2 --max-depth=3 -o weighted.exr "$scene"
 render --integrator=bdpt --strategy=1,2 --unweighted --max-depth=3 -o unweighted.exr "$scene"
 ! cmp -s weighted.exr unweighted.exr

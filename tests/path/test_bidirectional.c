@@ -9,6 +9,7 @@ int main(void)
     suite_add_tcase(suite, bidirectional_running_case());
     suite_add_tcase(suite, bidirectional_strategies_case());
     suite_add_tcase(suite, bidirectional_film_case());
+    suite_add_tcase(suite, bidirectional_spread_case());
     suite_add_tcase(suite, bidirectional_hard_case());
     suite_add_tcase(suite, bidirectional_sums_case());
     return test_run(suite);

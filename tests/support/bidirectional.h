@@ -96,6 +96,7 @@ TCase *bidirectional_running_case(void);
 TCase *bidirectional_strategies_case(void);
 TCase *bidirectional_sums_case(void);
 TCase *bidirectional_film_case(void);
+TCase *bidirectional_spread_case(void);
 TCase *bidirectional_hard_case(void);
 TCase *mmlt_shown_case(void);
 
