@@ -379,8 +379,8 @@ static int job_run(RenderJob *job, Error *error)
 
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
 {
-    RenderCommand command = {.png = true, .frame = -1, .photons = PHOTONS_DEFAULT,
-                             .reconstruction = RECONSTRUCTION_SPLAT};
+    RenderCommand command = {
+        .png = true, .frame = -1, .photons = PHOTONS_DEFAULT, .reconstruction = RECONSTRUCTION_SPLAT};
     OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
     if (end != OPTIONS_READ)
         return options_status(end);

@@ -14,8 +14,9 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                            "algorithm: mmlt (Metropolis; default), pt (path tracing), bdpt or ibpt (bidirectional)"},
     [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "MIS weights of strategies: power (default) or balance"},
     [OPTION_SAMPLER] = {"sampler", 0, "NAME", "random numbers of a pixel: stratified (sobol; default) or independent"},
-    [OPTION_RECONSTRUCTION] = {"reconstruction", 0, "NAME",
-                               "by the pixel filter, a sample goes to one pixel (sample) or is spread (splat; default)"},
+    [OPTION_RECONSTRUCTION] =
+        {"reconstruction", 0, "NAME",
+         "by the pixel filter, a sample goes to one pixel (sample) or is spread (splat; default)"},
     [OPTION_STRATEGY] = {"strategy", 0, "s,t",
                          "show one bidirectional strategy: s vertices from the light, t from the camera"},
     [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},

@@ -114,7 +114,8 @@ void film_filter_set(Film *film, const FilmParams *params, const float *lookup)
 uint64_t film_samples_most(uint reconstruction)
 {
     /* Pixels get some samples more or less than others. */
-    return reconstruction == RECONSTRUCTION_SPLAT ? UINT32_MAX / film_sample_units(reconstruction) - 0xffffu : UINT32_MAX;
+    return reconstruction == RECONSTRUCTION_SPLAT ? UINT32_MAX / film_sample_units(reconstruction) - 0xffffu
+                                                  : UINT32_MAX;
 }
 
 void film_quantum_set(Film *film, double mean)

@@ -130,11 +130,12 @@ SHARED_FUNCTION void film_whole_add(const FilmView *film, FilmPending *pending, 
 SHARED_FUNCTION void film_spread_add(const FilmView *film, FilmPending *pending, const FilmSplat *splat)
 {
     bool sample = (splat->name & SPLAT_LIGHT) == 0u, own = film_filter_signed(film->axis_x.kind);
-    float x = splat_offset_of(splat->offset & 0xffffu, film->axis_x.radius),
-          y = splat_offset_of(splat->offset >> 16, film->axis_y.radius);
+    uint column = splat->pixel % film->width, row = splat->pixel / film->width;
+    float x = (float)column + 0.5f + splat_offset_of(splat->offset & 0xffffu, film->axis_x.radius);
+    float y = (float)row + 0.5f + splat_offset_of(splat->offset >> 16, film->axis_y.radius);
     SpreadAxis across, down;
-    spread_axis_set(&across, &film->axis_x, (float)(splat->pixel % film->width) + 0.5f + x);
-    spread_axis_set(&down, &film->axis_y, (float)(splat->pixel / film->width) + 0.5f + y);
+    spread_axis_set(&across, &film->axis_x, x);
+    spread_axis_set(&down, &film->axis_y, y);
     if (!(across.sum * down.sum > 0.0f)) { /* by rounding, at the edge of the reach */
         film_whole_add(film, pending, splat);
         return;

@@ -16,7 +16,8 @@ SHARED_FUNCTION uint splat_offset_axis(float offset, float radius)
 /* The word for a splat at film position `film` whose pixel is `pixel`. */
 SHARED_FUNCTION uint splat_offset(__global const FilmParams *params, uint pixel, Vec2 film)
 {
-    float x = film.x - ((float)(pixel % params->width) + 0.5f), y = film.y - ((float)(pixel / params->width) + 0.5f);
+    uint column = pixel % params->width, row = pixel / params->width;
+    float x = film.x - ((float)column + 0.5f), y = film.y - ((float)row + 0.5f);
     return splat_offset_axis(x, params->filter.radius_x) | splat_offset_axis(y, params->filter.radius_y) << 16;
 }
 

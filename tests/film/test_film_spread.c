@@ -202,7 +202,8 @@ END_TEST
 static double variance_left(const FilmAxis *axis)
 {
     enum { N = 40000 };
-    double low = (double)axis->begin - (double)axis->radius, wide = axis->end - axis->begin + 2.0 * (double)axis->radius;
+    double low = (double)axis->begin - (double)axis->radius,
+           wide = axis->end - axis->begin + 2.0 * (double)axis->radius;
     double spread = 0.0, drawn = 0.0;
     for (int i = 0; i < N; ++i) {
         double place = low + wide * (i + 0.5) / N, sum = 0.0;
