@@ -267,12 +267,12 @@ void film_swap_own(Film *a, Film *b)
     b->counts = counts;
 }
 
-/* Multiplies a pixel's sums of one kind. */
+/* Multiplies a pixel's sums of one kind. Full ones stay full. */
 static void sums_scale(int64_t *sums, size_t pixel, double factor)
 {
     for (size_t c = 3 * pixel; sums && c < 3 * pixel + 3; ++c)
-        if (sums[c] != 0)
-            sums[c] = film_sum_rounded((double)film_sum_shown(sums[c]) * factor);
+        if (sums[c] != 0 && sums[c] == film_sum_shown(sums[c]))
+            sums[c] = film_sum_rounded((double)sums[c] * factor);
 }
 
 typedef struct FilmNormalizing {

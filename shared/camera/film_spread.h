@@ -13,8 +13,8 @@
  * the number of parts that a pixel's samples have given it is exact. */
 #define SPREAD_PARTS 256u
 
-/* Units in which the film counts samples: divided by, pixels are not noisier where more or fewer samples happen to lie
- * nearby. */
+/* Units per sample in the film's counts. A pixel is divided by the parts that it has got, so that a constant image stays
+ * constant wherever samples lie. */
 SHARED_FUNCTION uint film_sample_units(uint reconstruction)
 {
     return reconstruction == RECONSTRUCTION_SPLAT ? SPREAD_PARTS : 1u;

@@ -3,7 +3,7 @@
 #define TWINLIGHT_FILM_ADD_CL
 
 #include "camera/film_spread.h"
-#include "layout/frame_params.h"
+#include "layout/scene_view.h"
 
 #ifdef atomic_sum_add
 
@@ -24,7 +24,7 @@ __kernel void film_add(__global const FrameParams *frame, __global const uint *t
     film.depth_kinds = frame->film.split_depths;
     film.depth_last = frame->path.max_depth;
     film.reconstruction = frame->film.reconstruction;
-    __global const float *lookup = (__global const float *)(tables + frame->scene.layout.lookup);
+    __global const float *lookup = scene_lookup(frame, tables);
     film.axis_x = film_axis_x(&frame->film, lookup);
     film.axis_y = film_axis_y(&frame->film, lookup);
     film_view_words(&film, words, (film.x1 - film.x0) * (film.y1 - film.y0));

@@ -41,6 +41,12 @@ typedef struct SceneView {
 #define SCENE_HAS(scene, feature) (((scene)->features & (feature)) != 0u)
 #endif
 
+/* The floats of `tables`: distributions, filters, coats. */
+SHARED_FUNCTION __global const float *scene_lookup(const __global FrameParams *frame, __global const uint *tables)
+{
+    return (__global const float *)(tables + frame->scene.layout.lookup);
+}
+
 SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global const uint *geometry,
                                      __global const uint *tables, __global const uint *texels)
 {
@@ -68,7 +74,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
     view.aims = (__global const Aim *)(tables + layout->aims);
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
-    view.lookup = (__global const float *)(tables + layout->lookup);
+    view.lookup = scene_lookup(frame, tables);
     view.texels = texels;
     return view;
 }

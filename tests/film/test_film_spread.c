@@ -134,8 +134,8 @@ static void samples_add(const LightFixture *f, Film *film, uint name, uint sampl
     }
 }
 
-/* Samples of equal color give an even image, however they lie, up to the border: a pixel is divided by what it got. */
-START_TEST(test_even)
+/* Samples of equal color give a constant image wherever they lie, up to the border: a pixel is divided by what it got. */
+START_TEST(test_constant)
 {
     const FilterSettings *s = &FILTER_CASES[_i].settings;
     LightFixture f;
@@ -186,6 +186,9 @@ START_TEST(test_normalized)
         TEST_NEAR((double)film_depth_sums(&film, 4, FILM_KIND_LIGHT)[3 * i] / scale, (double)light[1], 1e-6);
         TEST_NEAR((double)film_depth_sums(&film, 4, FILM_KIND_RARE)[3 * i] / scale, (double)light[1], 1e-6);
     }
+    film.sums[0] = (int64_t)SUM_FULL;
+    film_normalize(&film, 1, 1); /* full sums stay full */
+    ck_assert_int_eq(film.sums[0], (int64_t)SUM_FULL);
     teardown(&f, &film);
     setup(&f, s, RECONSTRUCTION_SAMPLE, &film);
     samples_add(&f, &film, SPLAT_SAMPLE, 1, 0, vec3(light[0], 1.0f, 1.0f));
@@ -374,7 +377,7 @@ TCase *film_spread_tcase(void)
     TCase *tcase = tcase_create("spread");
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_shares, 0, FILTER_CASE_COUNT);
-    tcase_add_loop_test(tcase, test_even, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_normalized, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_uniform, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_merge);

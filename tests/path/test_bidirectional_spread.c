@@ -77,7 +77,7 @@ END_TEST
 
 /* A lamp that fills the view, seen through panes that reflect nothing: mmlt's path tracing shows it as indirect light, of
  * few samples, each pixel divided by those that lie near it. */
-START_TEST(test_even_indirect)
+START_TEST(test_constant_indirect)
 {
     static const char *const LAMP = EDGE_FILM "Material \"thindielectric\" \"float eta\" 1.0001\n" PANE("-1")
         PANE("-2") "Material \"diffuse\"\n"
@@ -101,6 +101,6 @@ TCase *bidirectional_spread_case(void)
     TCase *tcase = tcase_create("spread");
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_edges, 0, (int)(sizeof EDGES / sizeof *EDGES));
-    tcase_add_test(tcase, test_even_indirect);
+    tcase_add_test(tcase, test_constant_indirect);
     return tcase;
 }
