@@ -11,7 +11,56 @@
     "PixelFilter \"box\"\n"                                                                                            \
     "Camera \"perspective\" \"float fov\" 60\nWorldBegin\n"
 
+/* ---- reconstruction ---------------------------------------------------------------------------------------------- */
+
+/* Splats are spread unless the filter covers one pixel alone, is too wide, or counts of samples would overflow. */
+START_TEST(test_reconstruction)
+{
+    static const struct {
+        const char *filter;
+        unsigned samples;
+        uint expected;
+    } CASES[] = {{"\"box\"", 1, RECONSTRUCTION_SAMPLE},
+                 {"\"box\" \"float xradius\" 0.6", 1, RECONSTRUCTION_SPLAT},
+                 {"\"triangle\" \"float yradius\" 8", 1, RECONSTRUCTION_SPLAT},
+                 {"\"triangle\" \"float yradius\" 8.5", 1, RECONSTRUCTION_SAMPLE},
+                 {"\"gaussian\"", 16711680, RECONSTRUCTION_SPLAT},
+                 {"\"gaussian\"", 16711681, RECONSTRUCTION_SAMPLE}};
+    char text[256];
+    Scene scene;
+    FrameParams frame;
+    snprintf(text, sizeof text, "PixelFilter %s\nCamera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n",
+             CASES[_i].filter);
+    const RenderSetup setup = {.text = text};
+    RenderOptions options = {.samples = CASES[_i].samples, .max_depth = 1, .reconstruction = RECONSTRUCTION_SPLAT};
+    fixture_scene(&setup, &scene);
+    render_frame(integrator_pt(), &scene, &options, &frame);
+    ck_assert_uint_eq(frame.film.reconstruction, CASES[_i].expected);
+    options.reconstruction = RECONSTRUCTION_SAMPLE;
+    render_frame(integrator_pt(), &scene, &options, &frame);
+    ck_assert_uint_eq(frame.film.reconstruction, RECONSTRUCTION_SAMPLE);
+    scene_destroy(&scene);
+}
+END_TEST
+
 /* ---- the order of pixels ----------------------------------------------------------------------------------------- */
+
+/* In bands, too, every pixel occurs once, whatever the last band's height. */
+START_TEST(test_pixels_in_bands)
+{
+    static const uint SIZES[][2] = {{1, 1}, {1, 7}, {5, 1}, {6, 35}, {16, 16}, {77, 60}};
+    const uint width = SIZES[_i][0], n = width * SIZES[_i][1];
+    bool *seen = calloc(n, sizeof *seen);
+    ck_assert_ptr_nonnull(seen);
+    for (uint i = 0; i < n; ++i) {
+        uint pixel = pixel_in_bands(i, width, n / width);
+        ck_assert_uint_lt(pixel, n);
+        ck_assert(!seen[pixel]);
+        seen[pixel] = true;
+    }
+    free(seen);
+}
+END_TEST
 
 /* Every pixel occurs once, and in large images neighbours are far apart in the order: a range of a tenth of the order
  * prefers no region. */
@@ -355,6 +404,8 @@ int main(void)
     tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
     tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
     tcase_add_test(determinism, test_seeds_differ);
+    tcase_add_loop_test(determinism, test_pixels_in_bands, 0, 6);
+    tcase_add_loop_test(determinism, test_reconstruction, 0, 6);
     tcase_add_loop_test(determinism, test_pixel_order, 0, 11);
     tcase_add_loop_test(determinism, test_visits, 0, 5);
     suite_add_tcase(suite, determinism);
