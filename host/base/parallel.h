@@ -4,6 +4,9 @@
 
 #include <stddef.h>
 
+/* Fewest pixels of an image whose sums take longer than it takes to start threads. */
+#define PARALLEL_PIXELS 65536u
+
 typedef void ParallelPart(void *context, size_t index);
 
 /* Calls part(context, index) once for every index below `count`, on this thread and up to threads - 1 others, and returns

@@ -23,7 +23,7 @@ size_t film_pixels(const Film *film)
 
 bool film_init(Film *film, int width, int height, const int crop[4], Error *error)
 {
-    *film = (Film){.width = width, .height = height, .quantum_exponent = QUANTUM_EXPONENT_DEFAULT};
+    *film = (Film){.width = width, .height = height, .quantum_exponent = QUANTUM_EXPONENT_DEFAULT, .threads = 1};
     memcpy(film->crop, crop, sizeof film->crop);
     if (width < 1 || height < 1 || crop[0] < 0 || crop[1] < 0 || crop[2] > width || crop[3] > height ||
         crop[0] >= crop[2] || crop[1] >= crop[3]) {
@@ -98,6 +98,7 @@ bool film_init_like(Film *film, const Film *model, Error *error)
     if (!film_init(film, model->width, model->height, model->crop, error))
         return false;
     film->quantum_exponent = model->quantum_exponent;
+    film->threads = model->threads;
     film->reconstruction = model->reconstruction;
     film->axis_x = model->axis_x;
     film->axis_y = model->axis_y;
@@ -165,48 +166,71 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
     }
 }
 
+/* Calls part(context, row) for every row of pixels, several at a time in large films. */
+static void rows_run(const Film *film, ParallelPart *part, void *context)
+{
+    int threads = film_pixels(film) < PARALLEL_PIXELS ? 1 : film->threads;
+    parallel_run((size_t)(film->crop[3] - film->crop[1]), threads, part, context);
+}
+
 /* ---- adding films ------------------------------------------------------------------------------------------------ */
 
+/* Adding a film to another. */
+typedef struct FilmAdding {
+    FilmView film, from;
+    size_t pixels;
+    bool shared; /* other threads may add to the film meanwhile */
+} FilmAdding;
+
 /* Most sums of a short pass are zero, and testing is cheaper than adding. */
-static void word_add(ulong *sum, ulong units)
+static void word_add(const FilmAdding *adding, ulong *sum, ulong units)
 {
-    if (units != 0)
+    if (units != 0 && adding->shared)
         film_sum_add(sum, units);
+    else if (units != 0 && !film_sum_full(*sum))
+        *sum = film_sum_of(*sum, units);
 }
 
 /* Adds the sums per depth, of the kinds and depths that both films have. */
-static void depths_add(const FilmView *film, const FilmView *from, size_t pixels)
+static void depths_add(const FilmAdding *adding, size_t first, size_t end)
 {
+    const FilmView *film = &adding->film, *from = &adding->from;
     uint kinds = film->depth_kinds < from->depth_kinds ? film->depth_kinds : from->depth_kinds;
     uint last = film->depth_last < from->depth_last ? film->depth_last : from->depth_last;
     for (uint depth = SPLAT_DEPTH_MIN; depth <= last; ++depth)
         for (uint kind = 0; kind < kinds; ++kind) {
-            ulong *into = film->depth_sums + film_depth_place((uint)pixels, film->depth_kinds, depth, kind);
-            const ulong *more = from->depth_sums + film_depth_place((uint)pixels, from->depth_kinds, depth, kind);
-            for (size_t i = 0; i < 3 * pixels; ++i)
-                word_add(into + i, more[i]);
+            uint pixels = (uint)adding->pixels;
+            ulong *into = film->depth_sums + film_depth_place(pixels, film->depth_kinds, depth, kind);
+            const ulong *more = from->depth_sums + film_depth_place(pixels, from->depth_kinds, depth, kind);
+            for (size_t i = 3 * first; i < 3 * end; ++i)
+                word_add(adding, into + i, more[i]);
         }
 }
 
-/* Adds pixels [0, pixels) of another film, of the sums that both have. */
-static void view_add(const FilmView *film, const FilmView *from, size_t pixels)
+/* Adds pixels [first, end), of the sums that both films have. */
+static void pixels_add(const FilmAdding *adding, size_t first, size_t end)
 {
-    for (size_t i = 0; i < pixels; ++i) {
+    const FilmView *film = &adding->film, *from = &adding->from;
+    for (size_t i = first; i < end; ++i) {
         for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
-            word_add(film->sums + c, from->sums[c]);
+            word_add(adding, film->sums + c, from->sums[c]);
             if (film->light_sums && from->light_sums)
-                word_add(film->light_sums + c, from->light_sums[c]);
+                word_add(adding, film->light_sums + c, from->light_sums[c]);
             if (film->rare_sums && from->rare_sums)
-                word_add(film->rare_sums + c, from->rare_sums[c]);
+                word_add(adding, film->rare_sums + c, from->rare_sums[c]);
         }
         if (from->counts[i] > 0)
             atomic_count_add(film->counts + i, from->counts[i]);
     }
     if (film->depth_kinds != 0u && from->depth_kinds != 0u)
-        depths_add(film, from, pixels);
-    atomic_sum_add(film->saturated, *from->saturated);
-    atomic_sum_add(film->vanished, *from->vanished);
-    atomic_sum_add(film->not_finite, *from->not_finite);
+        depths_add(adding, first, end);
+}
+
+static void counters_add(const FilmAdding *adding)
+{
+    atomic_sum_add(adding->film.saturated, *adding->from.saturated);
+    atomic_sum_add(adding->film.vanished, *adding->from.vanished);
+    atomic_sum_add(adding->film.not_finite, *adding->from.not_finite);
 }
 
 size_t film_sum_words(const Film *film)
@@ -218,10 +242,10 @@ size_t film_sum_words(const Film *film)
 
 void film_add_sums(Film *film, ulong *words)
 {
-    const FilmView view = film_view(film);
-    FilmView from = view;
-    film_view_words(&from, words, (uint)film_pixels(film));
-    view_add(&view, &from, film_pixels(film));
+    FilmAdding adding = {.film = film_view(film), .from = film_view(film), .pixels = film_pixels(film), .shared = true};
+    film_view_words(&adding.from, words, (uint)adding.pixels);
+    pixels_add(&adding, 0, adding.pixels);
+    counters_add(&adding);
 }
 
 static bool film_merge_check(const Film *film, const Film *from, Error *error)
@@ -247,12 +271,20 @@ static bool film_merge_check(const Film *film, const Film *from, Error *error)
     return true;
 }
 
+static void row_merge(void *context, size_t row)
+{
+    const FilmAdding *adding = context;
+    size_t width = adding->film.x1 - adding->film.x0;
+    pixels_add(adding, row * width, (row + 1) * width);
+}
+
 bool film_merge(Film *film, const Film *from, Error *error)
 {
     if (!film_merge_check(film, from, error))
         return false;
-    const FilmView view = film_view(film), from_view = film_view(from);
-    view_add(&view, &from_view, film_pixels(film));
+    FilmAdding adding = {.film = film_view(film), .from = film_view(from), .pixels = film_pixels(film)};
+    rows_run(film, row_merge, &adding);
+    counters_add(&adding);
     film->light_samples += from->light_samples;
     return true;
 }
@@ -301,24 +333,44 @@ static void row_normalize(void *context, size_t row)
         pixel_normalize(normalizing, pixel);
 }
 
-void film_normalize(Film *film, uint64_t samples, int threads)
+void film_normalize(Film *film, uint64_t samples)
 {
     FilmNormalizing normalizing = {film, (uint32_t)(samples * film_sample_units(film->reconstruction))};
     if (film->reconstruction == RECONSTRUCTION_SPLAT && samples > 0)
-        parallel_run((size_t)(film->crop[3] - film->crop[1]), threads, row_normalize, &normalizing);
+        rows_run(film, row_normalize, &normalizing);
+}
+
+static void sums_clear(int64_t *sums, size_t first, size_t end)
+{
+    if (sums)
+        memset(sums + 3 * first, 0, 3 * (end - first) * sizeof *sums);
+}
+
+void film_pixels_clear(Film *film, size_t first, size_t end)
+{
+    sums_clear(film->sums, first, end);
+    sums_clear(film->light_sums, first, end);
+    sums_clear(film->rare_sums, first, end);
+    for (uint depth = SPLAT_DEPTH_MIN; film->depth_kinds > 0 && depth <= film->depth_last; ++depth)
+        for (uint kind = 0; kind < film->depth_kinds; ++kind)
+            sums_clear(film_depth_sums(film, depth, kind), first, end);
+    memset(film->counts + first, 0, (end - first) * sizeof *film->counts);
+}
+
+static void row_clear(void *context, size_t row)
+{
+    Film *film = context;
+    size_t width = (size_t)(film->crop[2] - film->crop[0]);
+    film_pixels_clear(film, row * width, (row + 1) * width);
+}
+
+void film_counters_clear(Film *film)
+{
+    film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
 }
 
 void film_clear(Film *film)
 {
-    size_t pixels = film_pixels(film);
-    memset(film->sums, 0, 3 * pixels * sizeof *film->sums);
-    memset(film->counts, 0, pixels * sizeof *film->counts);
-    if (film->light_sums)
-        memset(film->light_sums, 0, 3 * pixels * sizeof *film->light_sums);
-    if (film->rare_sums)
-        memset(film->rare_sums, 0, 3 * pixels * sizeof *film->rare_sums);
-    if (film->depth_sums)
-        memset(film->depth_sums, 0,
-               film_depth_words((uint)pixels, film->depth_kinds, film->depth_last) * sizeof *film->depth_sums);
-    film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
+    rows_run(film, row_clear, film);
+    film_counters_clear(film);
 }

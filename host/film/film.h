@@ -30,6 +30,7 @@ typedef struct Film {
     uint64_t saturated; /* contributions clamped because they were too large */
     uint64_t vanished; /* contributions that are not black, but below half a unit in every channel */
     uint64_t not_finite; /* contributions that were NaN or infinite and counted as zero */
+    int threads; /* that merge, normalize or clear it: 1 unless set */
 } Film;
 
 /* All sums are zero; the quantum is 2^-30 until film_quantum_set. Fails for a crop without pixels or when out of
@@ -44,8 +45,8 @@ void film_filter_set(Film *film, const FilmParams *params, const float *lookup);
 /* Largest number of samples per pixel. */
 uint64_t film_samples_most(uint reconstruction);
 
-/* An empty film with the size, crop, filter and quantum of `model`, and with light sums if `model` has them (but no rare or
- * depth sums). */
+/* An empty film with the size, crop, filter, quantum and threads of `model`, and with light sums if `model` has them (but no
+ * rare or depth sums). */
 bool film_init_like(Film *film, const Film *model, Error *error);
 
 /* Allocates sums for splats with SPLAT_LIGHT. Only while the film is empty. */
@@ -90,10 +91,12 @@ void film_swap_own(Film *a, Film *b);
 /* For a film in which every pixel has `samples` samples, of which splats from the light are a part: divides each pixel's
  * sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes unless the
  * film spreads splats. */
-void film_normalize(Film *film, uint64_t samples, int threads);
+void film_normalize(Film *film, uint64_t samples);
 
-/* Resets all sums and counters to zero; size and quantum stay. */
+/* Resets all sums and counters to zero; size and quantum stay. Only those of pixels [first, end); only the film's own counters. */
 void film_clear(Film *film);
+void film_pixels_clear(Film *film, size_t first, size_t end);
+void film_counters_clear(Film *film);
 
 /* The value read from a sum: clamped to +-2^62 units, because larger sums depend on the order of additions. */
 int64_t film_sum_shown(int64_t sum);

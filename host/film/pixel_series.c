@@ -76,10 +76,27 @@ void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t 
     }
 }
 
+/* Sums of squared deviations of two samples add up with that of their means (Chan, Golub and LeVeque 1979). */
+PixelStatistics pixel_series_statistics(const PixelSeries *series, const PixelSeries *also, size_t value)
+{
+    size_t pixel = value / (size_t)series->channels;
+    PixelStatistics all = {(double)series->mean[value], (double)series->spread[value],
+                           pixel_series_weight(series, pixel), pixel_series_pictures(series, pixel)};
+    if (also && pixel_series_pictures(also, pixel) > 0) {
+        double weight = pixel_series_weight(also, pixel), part = weight / (all.weight + weight),
+               distance = (double)also->mean[value] - all.mean;
+        all.spread += (double)also->spread[value] + all.weight * part * distance * distance;
+        all.mean += part * distance;
+        all.weight += weight;
+        all.pictures += pixel_series_pictures(also, pixel);
+    }
+    all.spread = all.pictures > 1 ? all.spread / (all.pictures - 1) : 0.0;
+    return all;
+}
+
 double pixel_series_spread(const PixelSeries *series, size_t value)
 {
-    unsigned pictures = pixel_series_pictures(series, value / (size_t)series->channels);
-    return pictures > 1 ? (double)series->spread[value] / (pictures - 1) : 0.0;
+    return pixel_series_statistics(series, NULL, value).spread;
 }
 
 double pixel_series_variance(const PixelSeries *series, size_t value)

@@ -42,6 +42,17 @@ static inline unsigned pixel_series_pictures(const PixelSeries *series, size_t p
     return series->pictures[series->uniform ? 0 : pixel];
 }
 
+/* What the images of a series, or of two of the same values together, say of one. */
+typedef struct PixelStatistics {
+    double mean;
+    double spread; /* estimate of sigma^2; 0 before the second image */
+    double weight; /* sum of the weights */
+    unsigned pictures;
+} PixelStatistics;
+
+/* also: another series or NULL. value: pixel x channels + channel. */
+PixelStatistics pixel_series_statistics(const PixelSeries *series, const PixelSeries *also, size_t value);
+
 /* Estimate of sigma^2, the variance of a value of weight 1; 0 before the second image. value: pixel x channels +
  * channel. */
 double pixel_series_spread(const PixelSeries *series, size_t value);

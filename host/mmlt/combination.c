@@ -17,13 +17,16 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     }
     size_t tiles = combination_tile_count(combination);
     combination->threads = 1;
+    combination->exponents[0] = combination->exponents[1] = 1.0;
     combination->known = calloc(tiles, sizeof *combination->known);
     combination->rows = calloc((size_t)combination->tiles[1], sizeof *combination->rows);
     combination->ratios = malloc(tiles * sizeof *combination->ratios);
     combination->tile_sums = malloc(tiles * sizeof *combination->tile_sums);
     combination->patch_sums = malloc(combination_patch_count(combination) * sizeof *combination->patch_sums);
+    for (int i = 0; i < 2; ++i)
+        combination->earlier[i] = calloc(combination_patch_count(combination), sizeof *combination->earlier[i]);
     if (!combination->known || !combination->rows || !combination->ratios || !combination->tile_sums ||
-        !combination->patch_sums)
+        !combination->patch_sums || !combination->earlier[0] || !combination->earlier[1])
         return error_memory(error, tiles * sizeof *combination->known, "tiles");
     for (int s = 0; s < SERIES_COUNT; ++s)
         if (!pixel_series_init(&combination->light[s], combination_patch_count(combination), 1, true, error) ||
@@ -44,6 +47,8 @@ void combination_destroy(Combination *combination)
     free(combination->ratios);
     free(combination->tile_sums);
     free(combination->patch_sums);
+    free(combination->earlier[0]);
+    free(combination->earlier[1]);
     *combination = (Combination){0};
 }
 

@@ -12,7 +12,7 @@
 #ifndef TWINLIGHT_MMLT_COMBINATION_H
 #define TWINLIGHT_MMLT_COMBINATION_H
 
-#include "mmlt/combination_learn.h"
+#include "mmlt/combination_variances.h"
 
 /* Allocates for films of the crop size of `film`. Destroy it even on failure. */
 bool combination_init(Combination *combination, const Film *film, Error *error);

@@ -40,8 +40,8 @@ typedef struct CombinationTile {
 
 /* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on threads. */
 typedef struct CombinationRow {
-    double indirect_sum, direct_sum; /* of stratified path tracing (stratification_apply) ... */
-    PixelVariances indirect, direct; /* ... and its variances */
+    double indirect_sum, direct_sum; /* of stratified path tracing ... */
+    PixelVariances indirect, direct; /* ... and its variances (mmlt/combination_stratified.c) */
     size_t full; /* saturated pixels */
 } CombinationRow;
 
@@ -53,6 +53,16 @@ typedef struct Combination {
     CombinationRow *rows; /* scratch */
     double *ratios; /* scratch, one per tile */
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
+    const struct Combination
+        *also; /* the other replica, whose images are learnt from, too, until there are two own ones */
+    bool
+        one_sequence; /* path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then
+                          the means of its indirect and direct light over patches, ... */
+    float *earlier[2];
+    double
+        earlier_samples; /* ... when it had so many samples per pixel (0: not yet), and by how the means have changed since
+                               the one before ... */
+    double exponents[2]; /* ... the exponent -a of the variance of n samples, V n^-a */
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
@@ -62,10 +72,11 @@ typedef struct Combination {
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;
 
-/* Numbers of tiles and of patches, and the tile of a pixel (all numbered row by row within the crop). */
+/* Numbers of tiles and of patches, and the tiles of a pixel and of a patch (all numbered row by row within the crop). */
 size_t combination_tile_count(const Combination *combination);
 size_t combination_patch_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
+size_t combination_tile_of_patch(const Combination *combination, size_t patch);
 
 /* Calls part(context, row) for every row of tiles, several at a time in images large enough. */
 void combination_rows_run(const Combination *combination, ParallelPart *part, void *context);
@@ -103,8 +114,5 @@ void combination_learning_begin(FilmLearning *learning, Combination *combination
 
 /* Adds a row of tiles of the images to the series. */
 void combination_row_learn(const FilmLearning *learning, size_t row);
-
-/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none. */
-void combination_variances_update(Combination *combination, const Combination *other);
 
 #endif

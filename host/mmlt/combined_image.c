@@ -49,7 +49,8 @@ typedef struct EstimatorSums {
 
 typedef struct ImageAdding {
     CombinedImage *image;
-    const Film *film;
+    Film *film;
+    bool take; /* empties the film */
     EstimatorKind kind;
     FilmLearning learning;
 } ImageAdding;
@@ -117,13 +118,13 @@ static void row_add(void *context, size_t row)
     sums_add(adding, film_sums(adding), pixels);
     for (uint segments = SPLAT_DEPTH_MIN; adding->image->depths && segments <= adding->film->depth_last; ++segments)
         sums_add(adding, film_sums_of(adding, segments), pixels);
+    if (adding->take)
+        film_pixels_clear(adding->film, pixels.first, pixels.end);
 }
 
-void combined_image_add(CombinedImage *image, EstimatorKind kind, const Film *film)
+static void film_add(CombinedImage *image, EstimatorKind kind, Film *film, bool take)
 {
-    ImageAdding adding = {.image = image, .film = film, .kind = kind};
-    if (!(image->samples[kind] > 0.0))
-        return;
+    ImageAdding adding = {.image = image, .film = film, .take = take, .kind = kind};
     combination_learning_begin(&adding.learning, image->learner, kind, film, (uint64_t)image->samples[kind]);
     combination_rows_run(image->learner, row_add, &adding);
     /* A sum that is full in an estimator need not be so in the combination. */
@@ -132,6 +133,19 @@ void combined_image_add(CombinedImage *image, EstimatorKind kind, const Film *fi
     image->saturated += film->saturated;
     image->vanished += film->vanished;
     image->not_finite += film->not_finite;
+}
+
+void combined_image_add(CombinedImage *image, EstimatorKind kind, Film *film)
+{
+    if (image->samples[kind] > 0.0)
+        film_add(image, kind, film, false);
+}
+
+void combined_image_take(CombinedImage *image, EstimatorKind kind, Film *film)
+{
+    if (image->samples[kind] > 0.0)
+        film_add(image, kind, film, true);
+    film_counters_clear(film);
 }
 
 typedef struct ImageFinishing {

@@ -30,8 +30,9 @@ void combined_image_destroy(CombinedImage *image);
 void combined_image_begin(CombinedImage *image, Combination *learner, Combination *teacher,
                           const double samples[ESTIMATOR_COUNT]);
 
-/* Adds what an estimator has left in the film, and learns from it, unless it has no samples. */
-void combined_image_add(CombinedImage *image, EstimatorKind kind, const Film *film);
+/* Adds what an estimator has left in the film, and learns from it, unless it has no samples. take: empties the film, too. */
+void combined_image_add(CombinedImage *image, EstimatorKind kind, Film *film);
+void combined_image_take(CombinedImage *image, EstimatorKind kind, Film *film);
 
 /* Puts the image into the film's light_sums. Its number of samples becomes the generation's worth, by which film_merge
  * weights it. The film's `sums` and counts are to hold direct light. */

@@ -58,7 +58,6 @@ static void backend_adopt(Mmlt *mmlt)
     BackendStatistics statistics;
     mmlt->run->interface->statistics(mmlt->run->backend, &statistics);
     mmlt->plan.width = statistics.width;
-    mmlt->paths.threads = statistics.threads;
     for (int replica = 0; replica < REPLICAS; ++replica)
         mmlt->combinations[replica].threads = statistics.threads;
 }

@@ -71,6 +71,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
         if (!combination_init(&mmlt->combinations[replica], &mmlt->film, error))
             return false;
         mmlt->combinations[replica].shown = mmlt->options.shown;
+        mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;
     }
     return combined_image_init(&mmlt->combined, &mmlt->film, error);
 }
@@ -146,8 +147,7 @@ static void estimator_take(Mmlt *mmlt, EstimatorKind kind)
 {
     if (mmlt->options.chains_only)
         return;
-    combined_image_add(&mmlt->combined, kind, &mmlt->film);
-    film_clear(&mmlt->film);
+    combined_image_take(&mmlt->combined, kind, &mmlt->film);
 }
 
 static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)

@@ -6,16 +6,18 @@
 #include "chain/chain.h"
 #include "mmlt/tuning.h"
 #include "render/integrator.h"
+#include "render/layers.h"
 
 #include <math.h>
 
-/* The number of the first sample in odd generations, beyond all that even ones can make. */
-#define HALF_SAMPLES 0x40000000u
+/* The number of the second sequence's first sample, beyond all that the first can make. */
+#define SEQUENCE_SAMPLES 0x40000000u
 
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
                           Error *error)
 {
-    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame, .threads = 1};
+    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame};
+    paths->sequences = render_layers_compare_halves(run->options->layers) ? REPLICAS : 1;
     paths->frame.path.strategies = integrator_pt()->strategies;
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
@@ -35,7 +37,7 @@ void paths_estimator_destroy(PathsEstimator *paths)
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more)
 {
     uint64_t most = film_samples_most(paths->own.film->reconstruction);
-    uint64_t target = (uint64_t)fmin(paths->wanted + more, (double)most), first = (uint64_t)generation->index + 1;
+    uint64_t target = (uint64_t)fmin(rint(paths->wanted + more), (double)most), first = (uint64_t)generation->index + 1;
     if (generation->index < 2 * REPLICAS && target < first)
         target = first;
     return target > paths->done ? target - paths->done : 0;
@@ -44,7 +46,10 @@ uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *gene
 void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, double more)
 {
     paths->fresh = paths_estimator_due(paths, generation, more);
-    paths->wanted += more;
+    double all = (double)(paths->done + paths->fresh);
+    /* Later generations do not make less for what the first ones had to make, unless nothing is learnt of it. */
+    bool forced = paths->frame.partition.split_direct != 0u && paths->wanted + more < all - 0.5;
+    paths->wanted = forced ? all : paths->wanted + more;
     paths->own.samples = paths->fresh * generation->run->crop_pixels;
 }
 
@@ -61,6 +66,29 @@ static bool kernels_prepare(PathsEstimator *paths, RenderRun *run, Error *error)
     return done;
 }
 
+static uint sequence_of(const PathsEstimator *paths, const Generation *generation)
+{
+    return generation->index % paths->sequences;
+}
+
+/* The number of the first sample of the generation's sequence. */
+static uint sequence_first(const PathsEstimator *paths, const Generation *generation)
+{
+    uint sequence = sequence_of(paths, generation);
+    return generation->run->options->first_sample + sequence * SEQUENCE_SAMPLES;
+}
+
+uint paths_estimator_number(const PathsEstimator *paths, const Generation *generation)
+{
+    return sequence_first(paths, generation) + (uint)paths->of_sequence[sequence_of(paths, generation)];
+}
+
+void paths_estimator_count(PathsEstimator *paths, const Generation *generation)
+{
+    paths->done += paths->fresh;
+    paths->of_sequence[sequence_of(paths, generation)] += paths->fresh;
+}
+
 bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error)
 {
     RenderRun *run = generation->run;
@@ -71,12 +99,11 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
     paths->delivered = 0;
     frame->partition.clamp_threshold = generation->clamp_threshold;
     uint64_t items = paths->own.samples;
-    uint half = generation->index % REPLICAS;
-    uint sequence = run->options->first_sample + half * HALF_SAMPLES;
-    frame->path.sobol = run->options->independent ? 0 : 1 + sequence;
+    uint first = paths_estimator_number(paths, generation);
+    frame->path.sobol = run->options->independent ? 0 : 1 + sequence_first(paths, generation);
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
-        frame->pass.sample_index = sequence + (uint)(paths->of_half[half] + next / run->crop_pixels);
+        frame->pass.sample_index = first + (uint)(next / run->crop_pixels);
         frame->pass.first_item = (uint)(next % run->crop_pixels);
         frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
         if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
@@ -85,9 +112,8 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
         *whole = delivered == frame->pass.item_count;
     }
     if (*whole && frame->partition.split_direct != 0u)
-        film_normalize(paths->own.film, paths->fresh, paths->threads);
-    paths->done += paths->fresh;
-    paths->of_half[half] += paths->fresh;
+        film_normalize(paths->own.film, paths->fresh);
+    paths_estimator_count(paths, generation);
     paths->seconds = timing_now() - begin;
     run->chains.direct_seconds += paths->seconds;
     return true;

@@ -10,11 +10,12 @@ typedef struct PathsEstimator {
     FrameParams frame;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
-    uint64_t of_half[REPLICAS]; /* ... in even and in odd generations, the layers' halves: a stratified sequence each */
-    double wanted; /* the same according to the plan, fractions included */
+    uint sequences; /* stratified ones: 1, or one for even and one for odd generations, so that the layers' halves are
+                       independent, which costs noise; docs/TUNING.md */
+    uint64_t of_sequence[REPLICAS]; /* samples of every pixel so far */
+    double wanted; /* the same of all according to the plan, fractions included */
     uint64_t fresh; /* samples of every pixel in the generation under way */
     double seconds; /* that these took */
-    int threads; /* that make sums over images */
 } PathsEstimator;
 
 /* Makes the list. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of
@@ -24,15 +25,22 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
 void paths_estimator_destroy(PathsEstimator *paths);
 
 /* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have been
- * as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so that variances
+ * about as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so that variances
  * become known. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */
 void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, double more);
 
+/* The number of the generation's first sample of a pixel: its place in a stratified sequence, or in the second, which begins at
+ * 2^30. */
+uint paths_estimator_number(const PathsEstimator *paths, const Generation *generation);
+
 /* Runs these. *whole: set to false if stopped before the end. */
 bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error);
+
+/* Counts the generation's samples. */
+void paths_estimator_count(PathsEstimator *paths, const Generation *generation);
 
 /* Turns the film after a run that was stopped into a picture by its own: finished samples count for their pixels. */
 void paths_estimator_alone(const PathsEstimator *paths);

@@ -89,6 +89,11 @@
  * bright path is found. */
 #define PRIOR_GENERATIONS 2.0
 
+/* About how many steps of a chain stay near one tile, and how many such visits tell as much of the variance of a tile's excess
+ * and rare light as all tiles together do: with fewer, most tiles have not met the bright paths; docs/TUNING.md. */
+#define VISIT_STEPS 64.0
+#define VISITS_KNOWN 1.0
+
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
  * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0

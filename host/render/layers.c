@@ -14,6 +14,11 @@ static bool wants(const RenderLayers *layers, Layer layer)
     return (layers->wanted & LAYER_BIT(layer)) != 0;
 }
 
+bool render_layers_compare_halves(const RenderLayers *layers)
+{
+    return layers && (wants(layers, LAYER_HALVES) || wants(layers, LAYER_VARIANCE));
+}
+
 #define LAYER_OF(NAME, ...) [AOV_##NAME] = LAYER_##NAME,
 static const Layer LAYER_OF_AOV[AOV_COUNT] = {AOV_LIST(LAYER_OF)};
 #undef LAYER_OF

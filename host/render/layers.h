@@ -45,6 +45,9 @@ typedef struct RenderLayers {
     unsigned aov_samples; /* samples per pixel so far */
 } RenderLayers;
 
+/* Whether the layers compare the image's halves, whose errors must then be independent. layers: may be NULL. */
+bool render_layers_compare_halves(const RenderLayers *layers);
+
 /* Allocates the layers in `wanted` for a film like `film`. Call render_layers_destroy even on failure. */
 bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);

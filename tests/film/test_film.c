@@ -173,6 +173,51 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
+/* Large films are merged and cleared by several threads; some sums are full, and stay so. Parts of a film are cleared, too. */
+START_TEST(test_threads)
+{
+    enum { WIDTH = 300, HEIGHT = 250, PIXELS = WIDTH * HEIGHT };
+    const int whole[4] = {0, 0, WIDTH, HEIGHT};
+    Error error = {0};
+    Film films[2], sum[2];
+    for (int i = 0; i < 2; ++i) {
+        films[i] = film_make(WIDTH, HEIGHT, whole);
+        sum[i] = film_make(WIDTH, HEIGHT, whole);
+        ck_assert_int_eq(sum[i].threads, 1);
+        ck_assert(film_light_reserve(&films[i], &error) && film_light_reserve(&sum[i], &error));
+        for (size_t c = 0; c < 3 * PIXELS; ++c) {
+            films[i].sums[c] = (int64_t)(c * (size_t)(i + 3) % 1009) - 500;
+            films[i].light_sums[c] = c % 97 == 0 ? INT64_MAX : c % 89 == 0 && i == 0 ? -INT64_MAX : (int64_t)c;
+            films[i].counts[c / 3] = (uint32_t)(c % 11);
+        }
+    }
+    sum[1].threads = 3;
+    for (int i = 0; i < 2; ++i)
+        ck_assert(film_merge(&sum[i], &films[0], &error) && film_merge(&sum[i], &films[1], &error));
+    for (size_t c = 0; c < 3 * PIXELS; ++c) {
+        bool full = c % 97 == 0 || c % 89 == 0;
+        TEST_TRUE(sum[1].sums[c] == films[0].sums[c] + films[1].sums[c]);
+        TEST_TRUE(sum[1].light_sums[c] == (full ? films[0].light_sums[c] : (int64_t)(2 * c)));
+        TEST_TRUE(sum[1].counts[c / 3] == films[0].counts[c / 3] + films[1].counts[c / 3]);
+        TEST_TRUE(sum[0].sums[c] == sum[1].sums[c] && sum[0].light_sums[c] == sum[1].light_sums[c]);
+    }
+    film_pixels_clear(&sum[0], 5, 8);
+    film_clear(&sum[1]);
+    for (size_t c = 0; c < 3 * PIXELS; ++c) {
+        bool cleared = c >= 15 && c < 24;
+        TEST_TRUE(sum[0].light_sums[c] == (cleared                      ? 0
+                                           : c % 97 == 0 || c % 89 == 0 ? films[0].light_sums[c]
+                                                                        : (int64_t)(2 * c)));
+        TEST_TRUE(sum[0].sums[c] == (cleared ? 0 : films[0].sums[c] + films[1].sums[c]));
+        TEST_TRUE(sum[1].sums[c] == 0 && sum[1].light_sums[c] == 0 && sum[1].counts[c / 3] == 0);
+    }
+    for (int i = 0; i < 2; ++i) {
+        film_destroy(&films[i]);
+        film_destroy(&sum[i]);
+    }
+}
+END_TEST
+
 /* Splats of rare paths go to the total sums and to sums of their own; a film initialised like this one lacks the
  * latter, and merging leaves them unchanged. */
 START_TEST(test_rare)
@@ -563,6 +608,7 @@ int main(void)
     tcase_add_test(tcase, test_billion_additions_made);
     tcase_add_test(tcase, test_order_does_not_matter);
     tcase_add_test(tcase, test_merge_equals_one_film);
+    tcase_add_test(tcase, test_threads);
     tcase_add_test(tcase, test_rare);
     tcase_add_test(tcase, test_depths);
     tcase_add_test(tcase, test_sums_of_a_device);

@@ -175,7 +175,8 @@ START_TEST(test_normalized)
     samples_add(&f, &film, SPLAT_SAMPLE, samples, 0, vec3(light[0], 1.0f, 1.0f));
     samples_add(&f, &film, SPLAT_LIGHT | SPLAT_RARE | splat_depth(3, 4), samples, 0, vec3(light[1], 1.0f, 1.0f));
     samples_add(&f, &film, SPLAT_LIGHT | splat_depth(3, 3), samples, 0, vec3(light[2], 1.0f, 1.0f));
-    film_normalize(&film, samples, 1 + _i % 3);
+    film.threads = 1 + _i % 3;
+    film_normalize(&film, samples);
     const double scale = 0x1p30 * samples;
     for (int i = 0; i < PIXELS; ++i) {
         ck_assert_uint_eq(film.counts[i], samples * SPREAD_PARTS);
@@ -187,13 +188,13 @@ START_TEST(test_normalized)
         TEST_NEAR((double)film_depth_sums(&film, 4, FILM_KIND_RARE)[3 * i] / scale, (double)light[1], 1e-6);
     }
     film.sums[0] = (int64_t)SUM_FULL;
-    film_normalize(&film, 1, 1); /* full sums stay full */
+    film_normalize(&film, 1); /* full sums stay full */
     ck_assert_int_eq(film.sums[0], (int64_t)SUM_FULL);
     teardown(&f, &film);
     setup(&f, s, RECONSTRUCTION_SAMPLE, &film);
     samples_add(&f, &film, SPLAT_SAMPLE, 1, 0, vec3(light[0], 1.0f, 1.0f));
     int64_t before = film.sums[0];
-    film_normalize(&film, 5, 1);
+    film_normalize(&film, 5);
     ck_assert_int_eq(film.sums[0], before);
     ck_assert_uint_eq(film.counts[0], 1);
     teardown(&f, &film);

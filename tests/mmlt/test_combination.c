@@ -96,8 +96,9 @@ static double generation(Estimators *estimators)
 }
 
 /* Path tracing whose samples cancel each other's errors over the generations of a replica (_i 1): the replicas' means
- * differ less than their generations say, and so path tracing gets most of the weight. If all samples are independent
- * (_i 0), replicas change nothing: test_weights. */
+ * differ less than their generations say, and so path tracing gets most of the weight. The same if they do so over those of
+ * both, which are one sequence (_i 2): its mean changes less. If all samples are independent (_i 0, and 3 for one sequence),
+ * nothing changes: test_weights. */
 START_TEST(test_stratified)
 {
     Estimators replicas[2];
@@ -105,14 +106,16 @@ START_TEST(test_stratified)
     for (int r = 0; r < 2; ++r) {
         estimators_init(&replicas[r]);
         replicas[r].draws = (uint)r << 30;
+        replicas[r].combination.one_sequence = _i >= 2;
     }
     for (int g = 0; g < 80; ++g) {
         Estimators *own = &replicas[g % 2];
         estimator_set(own, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
         estimator_set(own, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
         estimator_set(own, ESTIMATOR_PATHS, 2.0, 1.0, 2.0);
-        for (size_t i = 0; i < PIXELS && _i == 1; ++i) {
-            double *last = &errors[g % 2][i], now = g / 2 % 2 == 0 ? 2.0 * noise(own) / sqrt(2.0) : -*last;
+        for (size_t i = 0; i < PIXELS && (_i == 1 || _i == 2); ++i) {
+            double *last = _i == 1 ? &errors[g % 2][i] : &errors[0][i];
+            double now = g / (_i == 1 ? 2 : 1) % 2 == 0 ? 2.0 * noise(own) / sqrt(2.0) : -*last;
             *last = now;
             for (size_t c = 0; c < 3; ++c)
                 own->films[ESTIMATOR_PATHS].light_sums[3 * i + c] = llrint((1.0 + now) * 2.0 * 0x1p30);
@@ -121,13 +124,89 @@ START_TEST(test_stratified)
         films_combine(&own->combination, &replicas[1 - g % 2].combination, films);
     }
     double weight = replicas[0].combination.weight[ESTIMATOR_PATHS];
-    printf("stratified %d: weight of path tracing %.3f\n", _i, weight);
-    if (_i == 1)
-        ck_assert_double_gt(weight, 0.7);
+    printf("stratified %d: weight of path tracing %.3f, exponents %.3f and %.3f\n", _i, weight,
+           replicas[0].combination.exponents[0], replicas[1].combination.exponents[0]);
+    /* After an odd number of generations of 2 samples the last one's error is left: variance 8 / samples^2 in units of a
+     * sample's, which is 4 / samples^1.83 at 60 of them; after an even number there is none. */
+    const double *exponent = replicas[0].combination.exponents;
+    if (_i == 2) {
+        ck_assert_double_eq_tol(exponent[0], 1.8, 0.2);
+        ck_assert_double_gt(replicas[1].combination.exponents[0], 2.9);
+    } else {
+        ck_assert_double_lt(exponent[0], 1.15);
+    }
+    if (_i == 1 || _i == 2)
+        ck_assert_double_gt(weight, _i == 1 ? 0.7 : 0.5);
     else
         ck_assert_double_eq_tol(weight, 0.5 / 8.5, 0.02);
     for (int r = 0; r < 2; ++r)
         estimators_destroy(&replicas[r]);
+}
+END_TEST
+
+/* After the first generation of both replicas the second knows variances, from both images. Then each goes by its own: the noise
+ * of path tracing is ten times less in the later generations of the first replica, which only its own variances show. */
+START_TEST(test_first_pair)
+{
+    Estimators replicas[2];
+    double spread = 0.0;
+    for (int r = 0; r < 2; ++r) {
+        estimators_init(&replicas[r]);
+        replicas[r].draws = (uint)r << 30;
+    }
+    for (int g = 0; g < 6; ++g) {
+        Estimators *own = &replicas[g % 2];
+        estimator_set(own, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(own, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
+        estimator_set(own, ESTIMATOR_PATHS, 2.0, 1.0, g < 2 || g % 2 == 1 ? 2.0 : 0.2);
+        Film *const films[ESTIMATOR_COUNT] = {&own->films[0], &own->films[1], &own->films[2]};
+        films_combine(&own->combination, &replicas[1 - g % 2].combination, films);
+        const Combination *known = &own->combination;
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            ck_assert_int_eq(known->ready[s], g > 0);
+        if (g != 1)
+            continue;
+        for (size_t i = 0; i < combination_tile_count(known); ++i)
+            spread += known->known[i].spread[ESTIMATOR_PATHS] / (double)combination_tile_count(known);
+        /* 64 pixels of variance 4, of which one degree of freedom in 64 patches tells a third more or less, the largest of
+         * neighbours counts, and an image has PIXELS times the samples of a pixel. */
+        printf("first pair: %.2f times the variance\n", spread / (64.0 * 4.0 * (double)PIXELS));
+        ck_assert_double_gt(spread, 0.7 * 64.0 * 4.0 * (double)PIXELS);
+        ck_assert_double_lt(spread, 2.5 * 64.0 * 4.0 * (double)PIXELS);
+    }
+    double own = replicas[0].combination.known[5].spread[ESTIMATOR_PATHS],
+           other = replicas[1].combination.known[5].spread[ESTIMATOR_PATHS];
+    printf("then: %.3g and %.3g\n", own, other);
+    ck_assert_double_lt(own, 0.8 * other);
+    for (int r = 0; r < 2; ++r)
+        estimators_destroy(&replicas[r]);
+}
+END_TEST
+
+/* Chains that come to a tile less than once in all generations, and have found excess in only one so far: the others have no
+ * less variance (_i 0). With many visits the tile is an exception (_i 1). */
+START_TEST(test_visits_few)
+{
+    Estimators estimators;
+    const double steps = _i == 0 ? 0.01 : 1000.0;
+    estimators_init(&estimators);
+    for (int g = 0; g < 20; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, steps, 1.0, 0.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.01);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 0.01);
+        for (size_t c = 0; g == 10 && c < 3; ++c)
+            estimators.films[ESTIMATOR_CHAINS].sums[c] += llrint(100.0 * steps * 0x1p30);
+        generation(&estimators);
+    }
+    const CombinationTile *known = estimators.combination.known;
+    double own = known[0].spread[SERIES_EXCESS], elsewhere = known[15].spread[SERIES_EXCESS];
+    printf("%g steps per pixel: variance of excess where chains found some %.3g, elsewhere %.3g\n", steps, own,
+           elsewhere);
+    if (_i == 0)
+        ck_assert_double_gt(elsewhere, own / 64.0);
+    else
+        ck_assert_double_lt(elsewhere, own / 64.0);
+    estimators_destroy(&estimators);
 }
 END_TEST
 
@@ -486,7 +565,9 @@ int main(void)
     Suite *suite = suite_create("combination");
     TCase *tcase = tcase_create("combination");
     tcase_add_test(tcase, test_weights);
-    tcase_add_loop_test(tcase, test_stratified, 0, 2);
+    tcase_add_loop_test(tcase, test_stratified, 0, 4);
+    tcase_add_test(tcase, test_first_pair);
+    tcase_add_loop_test(tcase, test_visits_few, 0, 2);
     tcase_add_test(tcase, test_correlated);
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
     tcase_add_loop_test(tcase, test_absent, 0, 6);

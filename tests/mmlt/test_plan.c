@@ -1,6 +1,7 @@
 /* Sizes of generations, and of their pools and path tracing, without renderings. */
 #include "support/test_util.h"
 
+#include "mmlt/paths_estimator.h"
 #include "mmlt/plan.h"
 #include "mmlt/tuning.h"
 
@@ -167,6 +168,37 @@ START_TEST(test_published)
 }
 END_TEST
 
+/* The first generations of both replicas have a sample of every pixel each, though a tenth is wanted; those that follow have as
+ * many as are wanted, to half a sample, and make up for none of these. Numbers of samples are one sequence or two. */
+START_TEST(test_paths)
+{
+    const RenderOptions options = {.first_sample = 7};
+    RenderRun run = {.options = &options, .crop_pixels = 10};
+    Film film = {.reconstruction = RECONSTRUCTION_SPLAT};
+    PathsEstimator paths = {.own = {.film = &film}, .sequences = (uint)_i};
+    paths.frame.partition.split_direct = 1;
+    const double more[12] = {0.1, 0.1, 0.1, 0.1, 0.6, 0.6, 0.3, 0.3, 0.9, 2.2, 0.0, 0.4};
+    uint next[2] = {7u, 7u + 0x40000000u};
+    double wanted = 4.0;
+    uint64_t all = 0;
+    for (uint g = 0; g < 12; ++g) {
+        const Generation generation = {.run = &run, .index = g};
+        paths_estimator_plan(&paths, &generation, more[g]);
+        ck_assert_uint_eq(paths.own.samples, 10 * paths.fresh);
+        all += paths.fresh;
+        wanted += g < 4 ? 0.0 : more[g];
+        if (g < 4)
+            ck_assert_uint_eq(paths.fresh, 1);
+        else
+            ck_assert_double_le(fabs(wanted - (double)all), 0.5 + 1e-9);
+        ck_assert_uint_eq(paths_estimator_number(&paths, &generation), next[_i == 2 ? g % 2 : 0]);
+        next[_i == 2 ? g % 2 : 0] += (uint)paths.fresh;
+        paths_estimator_count(&paths, &generation);
+    }
+    ck_assert_uint_eq(paths.done, all);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("plan");
@@ -178,6 +210,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_width, 0, 2);
     tcase_add_test(tcase, test_pools);
     tcase_add_test(tcase, test_published);
+    tcase_add_loop_test(tcase, test_paths, 1, 3);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }

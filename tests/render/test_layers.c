@@ -39,6 +39,32 @@ START_TEST(test_series)
 }
 END_TEST
 
+/* Two series say together what one of all their images does. */
+START_TEST(test_series_together)
+{
+    const float values[5] = {1.0f, 7.0f, -3.0f, 4.0f, 2.5f};
+    const double weights[5] = {1.0, 0.5, 20.0, 3.0, 7.0};
+    PixelSeries all, parts[2];
+    Error error = {0};
+    ck_assert(pixel_series_init(&all, 1, 1, true, &error));
+    for (int i = 0; i < 2; ++i)
+        ck_assert(pixel_series_init(&parts[i], 1, 1, true, &error));
+    for (int g = 0; g < 5; ++g) {
+        pixel_series_add(&all, &values[g], NULL, weights[g]);
+        pixel_series_add(&parts[g < _i ? 0 : 1], &values[g], NULL, weights[g]);
+    }
+    PixelStatistics one = pixel_series_statistics(&all, NULL, 0),
+                    both = pixel_series_statistics(&parts[0], &parts[1], 0);
+    ck_assert_uint_eq(both.pictures, 5);
+    ck_assert_double_eq_tol(both.weight, one.weight, 1e-5);
+    ck_assert_double_eq_tol(both.mean, one.mean, 1e-5);
+    ck_assert_double_eq_tol(both.spread, one.spread, 1e-4 * one.spread);
+    pixel_series_destroy(&all);
+    for (int i = 0; i < 2; ++i)
+        pixel_series_destroy(&parts[i]);
+}
+END_TEST
+
 /* ---- specks ------------------------------------------------------------------------------------------------------ */
 
 START_TEST(test_despeckle)
@@ -220,6 +246,28 @@ START_TEST(test_halves)
 }
 END_TEST
 
+/* Halves are compared only if their errors are independent: their path tracing is then of two stratified sequences, and of one
+ * if none are wanted, which is less noise. So layers of halves and of variance change the image; others do not. */
+START_TEST(test_sequences)
+{
+    const Layer wanted[] = {LAYER_HALVES, LAYER_VARIANCE, LAYER_DIRECT, LAYER_ALBEDO};
+    char path[512];
+    RenderLayers layers = {.wanted = LAYER_BIT(wanted[_i])};
+    RenderedImage image, plain;
+    RenderSetup setup = {
+        .path = path, .width = 24, .height = 18, .samples = 40, .max_depth = 2, .integrator = integrator_mmlt()};
+    snprintf(path, sizeof path, "%s/scenes/cornell.pbrt", test_source_folder());
+    fixture_render(&setup, &plain);
+    setup.layers = &layers;
+    fixture_render(&setup, &image);
+    bool equal = memcmp(image.film.sums, plain.film.sums, 3 * film_pixels(&image.film) * sizeof(int64_t)) == 0;
+    ck_assert_int_eq(equal, _i >= 2);
+    render_layers_destroy(&layers);
+    fixture_destroy(&image);
+    fixture_destroy(&plain);
+}
+END_TEST
+
 /* Layers by depth add up to the indirect layer, up to the rounding of individual sums; also for chains alone. The image
  * equals the one without such layers, up to rounding of paths that contribute at several depths. */
 START_TEST(test_by_depth)
@@ -300,6 +348,7 @@ int main(void)
     TCase *tcase = tcase_create("layers");
     tcase_set_timeout(tcase, 120.0);
     tcase_add_test(tcase, test_series);
+    tcase_add_loop_test(tcase, test_series_together, 0, 6); /* 0: the first is empty, 5: the second */
     tcase_add_test(tcase, test_despeckle);
     tcase_add_loop_test(tcase, test_variables, 0, 3);
     tcase_add_loop_test(tcase, test_alpha, 0, 2);
@@ -307,6 +356,7 @@ int main(void)
     tcase_add_test(tcase, test_direct_edge);
     tcase_add_test(tcase, test_first);
     tcase_add_test(tcase, test_halves);
+    tcase_add_loop_test(tcase, test_sequences, 0, 4);
     tcase_add_loop_test(tcase, test_by_depth, 0, 2);
     tcase_add_test(tcase, test_variance);
     suite_add_tcase(suite, tcase);

@@ -1,0 +1,252 @@
+/* The variances of the estimators, from what a combination has learnt. */
+#include "mmlt/combination_variances.h"
+
+#include "base/sample_statistics.h"
+#include "mmlt/combination_stratified.h"
+#include "mmlt/tuning.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A series' sums of a tile, and its light of a patch. */
+static PixelStatistics tile_statistics(const Combination *combination, int s, size_t tile)
+{
+    return pixel_series_statistics(&combination->sums[s], combination->also ? &combination->also->sums[s] : NULL, tile);
+}
+
+static PixelStatistics patch_statistics(const Combination *combination, int s, size_t patch)
+{
+    return pixel_series_statistics(&combination->light[s], combination->also ? &combination->also->light[s] : NULL,
+                                   patch);
+}
+
+/* Degrees of freedom of the series' variances: the number of its pictures less one. */
+static double freedom_of(const Combination *combination, int s)
+{
+    return fmax((double)tile_statistics(combination, s, 0).pictures - 1.0, 0.0);
+}
+
+/* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
+ * known. */
+static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
+{
+    PixelStatistics light = tile_statistics(combination, s, tile);
+    return light.pictures > 1 ? light.mean - deviations * sqrt(light.spread / light.weight) : 0.0;
+}
+
+/* The largest such bound over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus
+ * excess. */
+static double light_bound_best(const Combination *combination, size_t tile, double deviations)
+{
+    double chains = light_bound(combination, ESTIMATOR_CHAINS, tile, deviations),
+           pool = light_bound(combination, ESTIMATOR_POOL, tile, deviations);
+    return fmax(light_bound(combination, ESTIMATOR_PATHS, tile, deviations) +
+                    light_bound(combination, SERIES_RARE, tile, deviations),
+                fmax(chains, pool) + light_bound(combination, SERIES_EXCESS, tile, deviations));
+}
+
+/* The part of a tile's pixels that a patch has. */
+#define PATCH_PART ((double)(PATCH_SIDE * PATCH_SIDE) / (TILE_SIDE * TILE_SIDE))
+
+/* Squared luminance of a patch, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
+ * few steps per pixel, their mean of a patch is pulled toward that of its tile: otherwise the few patches they have
+ * visited would count as bright, and the chains' relative variance as small. */
+static double light_square(const Combination *combination, size_t patch, const CombinationTile *tile, double dark)
+{
+    double steps = pixel_series_weight(&combination->light[ESTIMATOR_CHAINS], patch) /
+                   ((double)combination->size[0] * (double)combination->size[1]);
+    double chains = (double)combination->light[ESTIMATOR_CHAINS].mean[patch] +
+                    (double)combination->light[SERIES_EXCESS].mean[patch];
+    double light = (double)combination->direct.mean[patch] +
+                   (steps * chains + LIGHT_STEPS * tile->indirect * PATCH_PART) / (steps + LIGHT_STEPS);
+    light = fmin(fabs(light), LIGHT_OVER_TILE * tile->light * PATCH_PART);
+    return light * light + dark;
+}
+
+static void row_light(void *context, size_t row)
+{
+    Combination *combination = context;
+    RowRange patches = combination_row_patches(combination, row), tiles = combination_row_tiles(combination, row);
+    memset(&combination->known[tiles.first], 0, (tiles.end - tiles.first) * sizeof *combination->known);
+    for (size_t i = patches.first; i < patches.end; ++i)
+        combination->known[combination_tile_of_patch(combination, i)].light +=
+            fabs((double)combination->direct.mean[i]);
+    for (size_t i = tiles.first; i < tiles.end; ++i) {
+        combination->known[i].indirect = light_bound_best(combination, i, 0.0);
+        combination->known[i].light += combination->known[i].indirect;
+    }
+}
+
+/* A combination, and DARK_PART of the squared mean luminance of a patch. */
+typedef struct TilesSum {
+    Combination *combination;
+    double dark;
+} TilesSum;
+
+static void row_spreads(void *context, size_t row)
+{
+    const TilesSum *sum = context;
+    Combination *combination = sum->combination;
+    RowRange patches = combination_row_patches(combination, row);
+    for (size_t i = patches.first; i < patches.end; ++i) {
+        CombinationTile *tile = &combination->known[combination_tile_of_patch(combination, i)];
+        double tile_mean = tile->light * PATCH_PART;
+        double weight = (tile_mean * tile_mean + sum->dark) / light_square(combination, i, tile, sum->dark);
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            tile->spread[s] += weight * patch_statistics(combination, s, i).spread;
+        tile->direct += weight * pixel_series_statistics(&combination->direct,
+                                                         combination->also ? &combination->also->direct : NULL, i)
+                                     .spread;
+    }
+}
+
+/* Sums the tiles' variances, each patch's weighted by the squared luminance of its tile over its own. */
+static void tiles_sum(Combination *combination)
+{
+    combination_rows_run(combination, row_light, combination);
+    double patch = combination_mean_light(combination) * PATCH_PART;
+    TilesSum sum = {combination, DARK_PART * patch * patch};
+    combination_rows_run(combination, row_spreads, &sum);
+}
+
+/* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
+static double ratio_median(const Combination *combination, int s, double *ratios)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        if (combination->known[i].indirect > 0.0)
+            ratios[count++] = combination->known[i].spread[s] / combination->known[i].indirect;
+    sample_sort(ratios, count);
+    return count > 0 ? ratios[count / 2] : 0.0;
+}
+
+/* If another series has significantly more light in the tile than series s, then s finds that light about once in all
+ * its samples or less: adds the variance of one such event. */
+static double missing_spread(const Combination *combination, int s, size_t tile)
+{
+    const double deviations = MISSING_DEVIATIONS;
+    PixelStatistics light = tile_statistics(combination, s, tile);
+    double other, own = light.mean;
+    if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
+        other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
+    } else if (s == SERIES_PATHS_RARE) {
+        other = light_bound(combination, SERIES_RARE, tile, deviations);
+    } else {
+        other = light_bound_best(combination, tile, deviations);
+        if (s == SERIES_EXCESS)
+            own += fmax(tile_statistics(combination, ESTIMATOR_CHAINS, tile).mean,
+                        tile_statistics(combination, ESTIMATOR_POOL, tile).mean);
+        else
+            own += tile_statistics(combination, SERIES_RARE, tile).mean;
+    }
+    double missing = fmax(other - own, 0.0);
+    return missing * missing * light.weight;
+}
+
+/* An estimator's variance over light in the 3 x 3 tiles around. */
+static double ratio_around(const Combination *combination, int s, size_t tile)
+{
+    int columns = combination->tiles[0], rows = combination->tiles[1], x = (int)(tile % (size_t)columns),
+        y = (int)(tile / (size_t)columns);
+    double spread = 0.0, light = 0.0;
+    for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < rows; ++j)
+        for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < columns; ++i) {
+            const CombinationTile *near = &combination->known[(size_t)j * (size_t)columns + (size_t)i];
+            spread += near->spread[s];
+            light += near->indirect;
+        }
+    return light > 0.0 ? spread / light : 0.0;
+}
+
+/* Raises a tile's variance to that of the 3 x 3 tiles around it: if one of them has found a rare bright path, the
+ * others may just not have found it yet; docs/TUNING.md. */
+static void spreads_share(Combination *combination, int s, double *ratios)
+{
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        ratios[i] = ratio_around(combination, s, i);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        CombinationTile *tile = &combination->known[i];
+        tile->spread[s] = fmax(tile->spread[s], ratios[i] * tile->indirect);
+    }
+}
+
+/* Samples of path tracing are stratified across generations (mmlt/paths_estimator.h): part of their variance is left. */
+static void stratification_apply(Combination *combination, const Combination *other)
+{
+    StratifiedParts left = combination_stratified(combination, other);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        combination->known[i].spread[ESTIMATOR_PATHS] *= left.indirect;
+        combination->known[i].direct *= left.direct;
+    }
+}
+
+/* What a tile's variance is relative to. */
+static double relative_square(const CombinationTile *tile, double mean_light)
+{
+    return fmax(tile->light * tile->light + DARK_PART * mean_light * mean_light, SPREAD_MIN);
+}
+
+/* A series' variance relative to light, of all tiles together. */
+static double relative_variance(const Combination *combination, int s)
+{
+    double sum = 0.0, light = combination_mean_light(combination);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i)
+        sum += combination->known[i].spread[s] / relative_square(&combination->known[i], light);
+    return sum;
+}
+
+/* Chains visit a place with density light^(1 - EXPONENT) and leave light^EXPONENT at each visit: their variance is in
+ * proportion to light^(1 + EXPONENT). */
+static double chains_shape(const CombinationTile *tile)
+{
+    return tile->indirect * pow(fmax(tile->light, 0.0), EXPONENT);
+}
+
+/* The variance of all tiles together over that. */
+static double chains_ratio(const Combination *combination, int s)
+{
+    double spread = 0.0, shape = 0.0;
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        spread += combination->known[i].spread[s];
+        shape += chains_shape(&combination->known[i]);
+    }
+    return shape > 0.0 ? spread / shape : 0.0;
+}
+
+/* Weight of that mean in a tile's variance, in generations that have `known` degrees of freedom. Excess and rare light are few
+ * bright paths: where chains rarely come, most tiles have not met them and state too small a variance, and the median of all is
+ * as small. */
+static double mean_weight(const Combination *combination, int s, double known)
+{
+    if (s != SERIES_EXCESS && s != SERIES_RARE)
+        return 0.0;
+    double steps = tile_statistics(combination, s, 0).weight / (double)combination_tile_count(combination);
+    return steps > 0.0 ? known * VISITS_KNOWN * VISIT_STEPS / steps : 0.0;
+}
+
+/* Moves the variances of all tiles toward what is usual, and adds that of missing light. */
+static void spreads_settle(Combination *combination, int s)
+{
+    double *ratios = combination->ratios, mean = chains_ratio(combination, s), known = freedom_of(combination, s),
+           few = mean_weight(combination, s, known);
+    spreads_share(combination, s, ratios);
+    double usual = ratio_median(combination, s, ratios);
+    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+        CombinationTile *tile = &combination->known[i];
+        double prior = PRIOR_GENERATIONS * usual * tile->indirect + few * mean * chains_shape(tile);
+        tile->spread[s] = (known * tile->spread[s] + prior) / (known + PRIOR_GENERATIONS + few) +
+                          (s == SERIES_RARE ? 0.0 : missing_spread(combination, s, i));
+    }
+    combination->ready[s] = known >= 1.0;
+}
+
+void combination_variances_update(Combination *combination, const Combination *other)
+{
+    combination->also = other != combination && pixel_series_pictures(&combination->direct, 0) < 2 ? other : NULL;
+    tiles_sum(combination);
+    stratification_apply(combination, other);
+    for (int s = 0; s < SERIES_COUNT; ++s)
+        spreads_settle(combination, s);
+    combination->rare_chains = relative_variance(combination, SERIES_RARE);
+    combination->rare_paths = relative_variance(combination, SERIES_PATHS_RARE);
+}
