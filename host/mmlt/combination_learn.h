@@ -53,16 +53,14 @@ typedef struct Combination {
     CombinationRow *rows; /* scratch */
     double *ratios; /* scratch, one per tile */
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
-    const struct Combination
-        *also; /* the other replica, whose images are learnt from, too, until there are two own ones */
-    bool
-        one_sequence; /* path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then
-                          the means of its indirect and direct light over patches, ... */
+    /* The other replica, whose images are learnt from, too, until there are two own ones. */
+    const struct Combination *also;
+    /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of its
+     * indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent a of the
+     * variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */
+    bool one_sequence;
     float *earlier[2];
-    double
-        earlier_samples; /* ... when it had so many samples per pixel (0: not yet), and by how the means have changed since
-                               the one before ... */
-    double exponents[2]; /* ... the exponent -a of the variance of n samples, V n^-a */
+    double earlier_samples, exponents[2];
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */

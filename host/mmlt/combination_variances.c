@@ -213,9 +213,9 @@ static double chains_ratio(const Combination *combination, int s)
     return shape > 0.0 ? spread / shape : 0.0;
 }
 
-/* Weight of that mean in a tile's variance, in generations that have `known` degrees of freedom. Excess and rare light are few
- * bright paths: where chains rarely come, most tiles have not met them and state too small a variance, and the median of all is
- * as small. */
+/* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Excess and rare
+ * light are few bright paths: where chains rarely come, most tiles have not met them and state too small a variance, and the
+ * median of all is as small. */
 static double mean_weight(const Combination *combination, int s, double known)
 {
     if (s != SERIES_EXCESS && s != SERIES_RARE)

@@ -13,7 +13,7 @@ typedef struct PathsEstimator {
     uint sequences; /* stratified ones: 1, or one for even and one for odd generations, so that the layers' halves are
                        independent, which costs noise; docs/TUNING.md */
     uint64_t of_sequence[REPLICAS]; /* samples of every pixel so far */
-    double wanted; /* the same of all according to the plan, fractions included */
+    double wanted; /* the same of all according to the plan, fractions included, and what it did not ask for (`due`) */
     uint64_t fresh; /* samples of every pixel in the generation under way */
     double seconds; /* that these took */
 } PathsEstimator;
@@ -24,9 +24,9 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                           Error *error);
 void paths_estimator_destroy(PathsEstimator *paths);
 
-/* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have been
- * about as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so that variances
- * become known. */
+/* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have
+ * been about as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so
+ * that variances become known. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */
