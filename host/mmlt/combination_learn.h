@@ -53,8 +53,6 @@ typedef struct Combination {
     CombinationRow *rows; /* scratch */
     double *ratios; /* scratch, one per tile */
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
-    /* The other replica, whose images are learnt from, too, until there are two own ones. */
-    const struct Combination *also;
     /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of its
      * indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent a of the
      * variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */

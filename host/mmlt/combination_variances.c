@@ -8,30 +8,20 @@
 #include <math.h>
 #include <string.h>
 
-/* A series' sums of a tile, and its light of a patch. */
-static PixelStatistics tile_statistics(const Combination *combination, int s, size_t tile)
-{
-    return pixel_series_statistics(&combination->sums[s], combination->also ? &combination->also->sums[s] : NULL, tile);
-}
-
-static PixelStatistics patch_statistics(const Combination *combination, int s, size_t patch)
-{
-    return pixel_series_statistics(&combination->light[s], combination->also ? &combination->also->light[s] : NULL,
-                                   patch);
-}
-
 /* Degrees of freedom of the series' variances: the number of its pictures less one. */
 static double freedom_of(const Combination *combination, int s)
 {
-    return fmax((double)tile_statistics(combination, s, 0).pictures - 1.0, 0.0);
+    return fmax((double)pixel_series_pictures(&combination->light[s], 0) - 1.0, 0.0);
 }
 
 /* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
  * known. */
 static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
 {
-    PixelStatistics light = tile_statistics(combination, s, tile);
-    return light.pictures > 1 ? light.mean - deviations * sqrt(light.spread / light.weight) : 0.0;
+    if (!(freedom_of(combination, s) >= 1.0))
+        return 0.0;
+    double error = sqrt(pixel_series_variance(&combination->sums[s], tile));
+    return (double)combination->sums[s].mean[tile] - deviations * error;
 }
 
 /* The largest such bound over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus
@@ -93,10 +83,8 @@ static void row_spreads(void *context, size_t row)
         double tile_mean = tile->light * PATCH_PART;
         double weight = (tile_mean * tile_mean + sum->dark) / light_square(combination, i, tile, sum->dark);
         for (int s = 0; s < SERIES_COUNT; ++s)
-            tile->spread[s] += weight * patch_statistics(combination, s, i).spread;
-        tile->direct += weight * pixel_series_statistics(&combination->direct,
-                                                         combination->also ? &combination->also->direct : NULL, i)
-                                     .spread;
+            tile->spread[s] += weight * pixel_series_spread(&combination->light[s], i);
+        tile->direct += weight * pixel_series_spread(&combination->direct, i);
     }
 }
 
@@ -125,8 +113,8 @@ static double ratio_median(const Combination *combination, int s, double *ratios
 static double missing_spread(const Combination *combination, int s, size_t tile)
 {
     const double deviations = MISSING_DEVIATIONS;
-    PixelStatistics light = tile_statistics(combination, s, tile);
-    double other, own = light.mean;
+    const PixelSeries *sums = combination->sums;
+    double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
         other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
     } else if (s == SERIES_PATHS_RARE) {
@@ -134,13 +122,12 @@ static double missing_spread(const Combination *combination, int s, size_t tile)
     } else {
         other = light_bound_best(combination, tile, deviations);
         if (s == SERIES_EXCESS)
-            own += fmax(tile_statistics(combination, ESTIMATOR_CHAINS, tile).mean,
-                        tile_statistics(combination, ESTIMATOR_POOL, tile).mean);
+            own += fmax((double)sums[ESTIMATOR_CHAINS].mean[tile], (double)sums[ESTIMATOR_POOL].mean[tile]);
         else
-            own += tile_statistics(combination, SERIES_RARE, tile).mean;
+            own += (double)sums[SERIES_RARE].mean[tile];
     }
     double missing = fmax(other - own, 0.0);
-    return missing * missing * light.weight;
+    return missing * missing * pixel_series_weight(&sums[s], tile);
 }
 
 /* An estimator's variance over light in the 3 x 3 tiles around. */
@@ -220,7 +207,7 @@ static double mean_weight(const Combination *combination, int s, double known)
 {
     if (s != SERIES_EXCESS && s != SERIES_RARE)
         return 0.0;
-    double steps = tile_statistics(combination, s, 0).weight / (double)combination_tile_count(combination);
+    double steps = pixel_series_weight(&combination->sums[s], 0) / (double)combination_tile_count(combination);
     return steps > 0.0 ? known * VISITS_KNOWN * VISIT_STEPS / steps : 0.0;
 }
 
@@ -242,7 +229,6 @@ static void spreads_settle(Combination *combination, int s)
 
 void combination_variances_update(Combination *combination, const Combination *other)
 {
-    combination->also = other != combination && pixel_series_pictures(&combination->direct, 0) < 2 ? other : NULL;
     tiles_sum(combination);
     stratification_apply(combination, other);
     for (int s = 0; s < SERIES_COUNT; ++s)

@@ -144,45 +144,6 @@ START_TEST(test_stratified)
 }
 END_TEST
 
-/* After the first generation of both replicas the second knows variances, from both images. Then each goes by its own: the noise
- * of path tracing is ten times less in the later generations of the first replica, which only its own variances show. */
-START_TEST(test_first_pair)
-{
-    Estimators replicas[2];
-    double spread = 0.0;
-    for (int r = 0; r < 2; ++r) {
-        estimators_init(&replicas[r]);
-        replicas[r].draws = (uint)r << 30;
-    }
-    for (int g = 0; g < 6; ++g) {
-        Estimators *own = &replicas[g % 2];
-        estimator_set(own, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
-        estimator_set(own, ESTIMATOR_POOL, 1.0, 1.0, 0.5);
-        estimator_set(own, ESTIMATOR_PATHS, 2.0, 1.0, g < 2 || g % 2 == 1 ? 2.0 : 0.2);
-        Film *const films[ESTIMATOR_COUNT] = {&own->films[0], &own->films[1], &own->films[2]};
-        films_combine(&own->combination, &replicas[1 - g % 2].combination, films);
-        const Combination *known = &own->combination;
-        for (int s = 0; s < SERIES_COUNT; ++s)
-            ck_assert_int_eq(known->ready[s], g > 0);
-        if (g != 1)
-            continue;
-        for (size_t i = 0; i < combination_tile_count(known); ++i)
-            spread += known->known[i].spread[ESTIMATOR_PATHS] / (double)combination_tile_count(known);
-        /* 64 pixels of variance 4, of which one degree of freedom in 64 patches tells a third more or less, the largest of
-         * neighbours counts, and an image has PIXELS times the samples of a pixel. */
-        printf("first pair: %.2f times the variance\n", spread / (64.0 * 4.0 * (double)PIXELS));
-        ck_assert_double_gt(spread, 0.7 * 64.0 * 4.0 * (double)PIXELS);
-        ck_assert_double_lt(spread, 2.5 * 64.0 * 4.0 * (double)PIXELS);
-    }
-    double own = replicas[0].combination.known[5].spread[ESTIMATOR_PATHS],
-           other = replicas[1].combination.known[5].spread[ESTIMATOR_PATHS];
-    printf("then: %.3g and %.3g\n", own, other);
-    ck_assert_double_lt(own, 0.8 * other);
-    for (int r = 0; r < 2; ++r)
-        estimators_destroy(&replicas[r]);
-}
-END_TEST
-
 /* Chains that come to a tile less than once in all generations, and have found excess in only one so far: the others have no
  * less variance (_i 0). With many visits the tile is an exception (_i 1). */
 START_TEST(test_visits_few)
@@ -566,7 +527,6 @@ int main(void)
     TCase *tcase = tcase_create("combination");
     tcase_add_test(tcase, test_weights);
     tcase_add_loop_test(tcase, test_stratified, 0, 4);
-    tcase_add_test(tcase, test_first_pair);
     tcase_add_loop_test(tcase, test_visits_few, 0, 2);
     tcase_add_test(tcase, test_correlated);
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
