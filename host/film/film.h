@@ -93,7 +93,8 @@ void film_swap_own(Film *a, Film *b);
  * film spreads splats. */
 void film_normalize(Film *film, uint64_t samples);
 
-/* Resets all sums and counters to zero; size and quantum stay. Only those of pixels [first, end); only the film's own counters. */
+/* Resets all sums and counters to zero; size and quantum stay. The next two: only the sums and counts of pixels [first, end),
+ * and only what the film counts as a whole. */
 void film_clear(Film *film);
 void film_pixels_clear(Film *film, size_t first, size_t end);
 void film_counters_clear(Film *film);

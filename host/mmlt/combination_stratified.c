@@ -12,21 +12,7 @@ typedef struct Comparison {
     double shrink; /* 1 / samples of all earlier paths - 1 / samples of all paths */
 } Comparison;
 
-static double samples_of(const Combination *combination, const Combination *other)
-{
-    return pixel_series_weight(&combination->direct, 0) + pixel_series_weight(&other->direct, 0);
-}
-
 /* ---- two sequences ----------------------------------------------------------------------------------------------- */
-
-static void row_light(void *context, size_t row)
-{
-    const Comparison *comparison = context;
-    const Combination *a = comparison->combination, *b = comparison->other;
-    PixelWindow window = combination_row_window(a, row);
-    a->rows[row].indirect_sum = pixel_series_sum(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], window);
-    a->rows[row].direct_sum = pixel_series_sum(&a->direct, &b->direct, window);
-}
 
 static void row_replicas(void *context, size_t row)
 {
@@ -90,6 +76,15 @@ static double exponent_of(double part, double few, double many)
 
 /* ---- both -------------------------------------------------------------------------------------------------------- */
 
+static void row_light(void *context, size_t row)
+{
+    const Comparison *comparison = context;
+    const Combination *a = comparison->combination, *b = comparison->other;
+    PixelWindow window = combination_row_window(a, row);
+    a->rows[row].indirect_sum = pixel_series_sum(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], window);
+    a->rows[row].direct_sum = pixel_series_sum(&a->direct, &b->direct, window);
+}
+
 /* Runs a comparison of every row. Returns the parts of the stated variances that are found. */
 static StratifiedParts rows_compare(Comparison *comparison, ParallelPart *row_compare)
 {
@@ -113,6 +108,11 @@ static StratifiedParts rows_compare(Comparison *comparison, ParallelPart *row_co
 
 /* Fewest samples per pixel of which a mean is kept to be compared with a later one. */
 #define EARLIER_LEAST 4.0
+
+static double samples_of(const Combination *combination, const Combination *other)
+{
+    return pixel_series_weight(&combination->direct, 0) + pixel_series_weight(&other->direct, 0);
+}
 
 static StratifiedParts sequence_left(Combination *combination, const Combination *other)
 {

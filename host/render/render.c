@@ -189,8 +189,9 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
     if (from_light && !film_light_reserve(film, error))
         return false;
-    run.interface->statistics(run.backend, &result->backend);
-    film->threads = result->backend.threads;
+    BackendStatistics statistics;
+    run.interface->statistics(run.backend, &statistics);
+    film->threads = statistics.threads;
     run.start = timing_now();
     run.last_save = run.start - options->save_every; /* the first image is due as soon as there is one */
     RenderLayers *layers = options->layers;
