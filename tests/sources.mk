@@ -4,6 +4,7 @@ LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_hos
 
 if HAVE_CHECK
 check_PROGRAMS += \
+	tests/test_archive \
 	tests/test_light_guide \
 	tests/test_analytic \
 	tests/test_bench \
@@ -16,6 +17,7 @@ check_PROGRAMS += \
 	tests/test_chain_population \
 	tests/test_chain_seeds \
 	tests/test_chain_statistics \
+	tests/test_checkpoint \
 	tests/test_compare \
 	tests/test_emit \
 	tests/test_film \
@@ -52,7 +54,7 @@ EFFORT = 8
 # Builds a copy with a BSDF and an integrator more: minutes.
 dist_check_SCRIPTS += tests/test_recipes.sh
 LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
-	tests/test_scenes tests/command/test_hostile.sh
+	tests/test_scenes tests/command/test_checkpoint.sh tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
 endif
@@ -125,12 +127,14 @@ tests_libfixtures_la_SOURCES = \
 	tests/support/walk_kernels.c \
 	$(OPENCL_PROBE)
 
+tests_test_archive_SOURCES = tests/base/test_archive.c
 tests_test_light_guide_SOURCES = tests/light/test_light_guide.c
 tests_test_bench_SOURCES = tests/bench/test_bench.c
 tests_test_caustic_SOURCES = tests/path/test_caustic.c
 tests_test_chain_population_SOURCES = tests/mmlt/test_chain_population.c
 tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
 tests_test_chain_statistics_SOURCES = tests/mmlt/test_chain_statistics.c
+tests_test_checkpoint_SOURCES = tests/render/test_checkpoint.c
 tests_test_compare_SOURCES = tests/compare/test_compare.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
@@ -270,6 +274,7 @@ script_tests = \
 	tests/check_parameters.sh \
 	tests/check_opencl.sh \
 	tests/bench/test_bench.sh \
+	tests/command/test_checkpoint.sh \
 	tests/command/test_cli.sh \
 	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \

@@ -1,4 +1,6 @@
 libtwinlight_host_la_SOURCES += \
+	host/base/archive.c host/base/archive.h \
+	host/base/archive_file.c host/base/archive_file.h \
 	host/base/arena.c host/base/arena.h \
 	host/base/array.c host/base/array.h \
 	host/base/build_info.c host/base/build_info.h \

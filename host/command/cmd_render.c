@@ -17,6 +17,7 @@
 #include "mmlt/chain_list.h"
 #include "mmlt/scheme.h"
 #include "pbrt/import.h"
+#include "render/checkpoint.h"
 #include "render/progress.h"
 #include "render/render.h"
 #include "render/report.h"
@@ -75,7 +76,8 @@ static bool frame_check(const RenderJob *job, Error *error)
 static bool names_fill(RenderJob *job, Error *error)
 {
     RenderCommand *command = job->command;
-    const char **names[] = {&command->output, &command->png_path, &command->stats, &command->trace, &command->dump_bad};
+    const char **names[] = {&command->output,   &command->png_path,   &command->stats, &command->trace,
+                            &command->dump_bad, &command->checkpoint, &command->resume};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (!*names[i] || !frame_name_has(*names[i]))
             continue;
@@ -107,11 +109,23 @@ static const char *image_name(RenderJob *job, Error *error)
     return command->frame < 0 ? film : frame_name_fill(&job->names, film, command->frame, error);
 }
 
+/* A file to resume is written to as well, unless --checkpoint names another. */
+static CheckpointOptions checkpoint_options(const RenderCommand *command)
+{
+    const char *file = command->checkpoint ? command->checkpoint : command->resume;
+    return (CheckpointOptions){.file = file,
+                               .every =
+                                   command->checkpoint_every > 0.0 ? command->checkpoint_every : CHECKPOINT_SECONDS,
+                               .resume = command->resume,
+                               .anew = command->checkpoint && command->resume && path_same(file, command->resume)};
+}
+
 static bool outputs_name(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
     RenderOutput *output = &job->output;
     const char *image = image_name(job, error);
+    const CheckpointOptions checkpoint = checkpoint_options(command);
     const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
     if (!image || !render_output_name(output, image, command->png, command->png_path, error))
         return false;
@@ -130,9 +144,11 @@ static bool outputs_name(RenderJob *job, Error *error)
                                  {"the PNG", output->png[0] ? output->png : NULL, true},
                                  {"the statistics", stats, true},
                                  {"the trace", command->trace, true},
-                                 {"the list of chains", command->dump_bad, true}};
-    return output_files_check(files, sizeof files / sizeof files[0],
-                              "give each its own name, with --output, --png, --stats, --trace and --dump-bad", error);
+                                 {"the list of chains", command->dump_bad, true},
+                                 {"the checkpoint", checkpoint.file, true}};
+    return output_files_check(
+        files, sizeof files / sizeof files[0],
+        "give each its own name, with --output, --png, --stats, --trace, --dump-bad and --checkpoint", error);
 }
 
 static RenderOptions job_options(RenderJob *job)
@@ -155,6 +171,7 @@ static RenderOptions job_options(RenderJob *job)
         .seed = command->seed,
         .photons = command->photons,
         .save_every = command->save_every,
+        .checkpoint = checkpoint_options(command),
         .stop = interrupt_flag(),
     };
     if (options.samples == 0 && options.seconds == 0.0)
@@ -352,6 +369,9 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_USAGE;
     if (command->output && !output_check(command->output, error))
         return EXIT_FAILED; /* checked before loading the scene, which may take long */
+    const CheckpointOptions checkpoint = checkpoint_options(command);
+    if (!checkpoint_files_check(&checkpoint, error))
+        return EXIT_FAILED;
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;
     if (!render_settings_apply(command, job->integrator, &job->scene, error))

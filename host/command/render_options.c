@@ -54,6 +54,10 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
+    [OPTION_CHECKPOINT] = {"checkpoint", 0, "FILE", "write what is needed to go on after an interruption"},
+    [OPTION_CHECKPOINT_EVERY] = {"checkpoint-every", 0, "TIME", "how often, besides at the end (default: 10m)"},
+    [OPTION_RESUME] = {"resume", 0, "FILE",
+                       "go on from a checkpoint of the same scene and options, up to --samples or for --time more"},
     [OPTION_LAYERS] =
         {"layers", 0, "NAME,...",
          "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
@@ -245,6 +249,12 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return option_seconds("time", value, &command->seconds, error);
     case OPTION_SAVE_EVERY:
         return option_seconds("save-every", value, &command->save_every, error);
+    case OPTION_CHECKPOINT:
+        return path_set(&command->checkpoint, option, value, NULL, error);
+    case OPTION_CHECKPOINT_EVERY:
+        return option_seconds("checkpoint-every", value, &command->checkpoint_every, error);
+    case OPTION_RESUME:
+        return path_set(&command->resume, option, value, NULL, error);
     case OPTION_RESOLUTION:
         return option_resolution("resolution", value, command->resolution, error);
     case OPTION_CROP:
@@ -291,6 +301,8 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->png_path         ? "png"
                          : command->seconds > 0.0    ? "time"
                          : command->save_every > 0.0 ? "save-every"
+                         : command->checkpoint       ? "checkpoint"
+                         : command->resume           ? "resume"
                          : command->stats            ? "stats"
                          : command->trace            ? "trace"
                          : command->dump_bad         ? "dump-bad"

@@ -44,6 +44,8 @@ typedef struct RenderCommand {
     bool has_crop;
     int crop[4];
     double save_every;
+    const char *checkpoint, *resume; /* files; NULL: none */
+    double checkpoint_every; /* seconds; 0: not given */
     const char *stats; /* "-": standard output */
     int frame; /* number for file names (base/frame_name.h); -1: not given */
     const char *trace;
@@ -87,6 +89,9 @@ typedef enum RenderOption {
     OPTION_RESOLUTION,
     OPTION_CROP,
     OPTION_SAVE_EVERY,
+    OPTION_CHECKPOINT,
+    OPTION_CHECKPOINT_EVERY,
+    OPTION_RESUME,
     OPTION_LAYERS,
     OPTION_DESPECKLE,
     OPTION_FRAME,

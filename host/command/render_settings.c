@@ -5,6 +5,21 @@
 #include <math.h>
 #include <string.h>
 
+static bool checkpoint_check(const RenderCommand *command, Error *error)
+{
+    bool written = command->checkpoint || command->resume;
+    if (command->checkpoint_every > 0.0 && !written) {
+        error_set(error, "--checkpoint-every without --checkpoint: there is no file to write to");
+        return error_fix(error, "add --checkpoint=FILE, or leave --checkpoint-every out");
+    }
+    if (command->dump_bad && written) {
+        error_set(error, "--dump-bad cannot be used with --%s, after which a part of the list would be missing",
+                  command->checkpoint ? "checkpoint" : "resume");
+        return error_fix(error, "leave one of the two out");
+    }
+    return true;
+}
+
 bool render_settings_check(const RenderCommand *command, const Integrator *integrator, Error *error)
 {
     const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
@@ -29,6 +44,8 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
                          "making large steps");
         return error_fix(error, "add --mlt=scheme=paper, or leave large-step out");
     }
+    if (!checkpoint_check(command, error))
+        return false;
     unsigned s = command->strategy[0], t = command->strategy[1];
     if (!command->only_strategy || strategy_taken(integrator->strategies, s, s + t - 1))
         return true;

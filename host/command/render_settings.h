@@ -5,7 +5,7 @@
 
 #include "command/render_options.h"
 
-/* Checks --strategy, --heuristic, --unweighted and the options of chains. */
+/* Checks --strategy, --heuristic, --unweighted, the options of chains and those of checkpoints. */
 bool render_settings_check(const RenderCommand *command, const Integrator *integrator, Error *error);
 
 /* Sets *wanted to the image's layers (LAYER_BIT). Fails if the integrator does not have one that was asked for. */

@@ -4,7 +4,7 @@
 #ifndef TWINLIGHT_FILM_FILM_H
 #define TWINLIGHT_FILM_FILM_H
 
-#include "base/error.h"
+#include "base/archive.h"
 #include "camera/film_axis.h"
 #include "layout/state.h"
 
@@ -98,6 +98,9 @@ void film_normalize(Film *film, uint64_t samples);
 void film_clear(Film *film);
 void film_pixels_clear(Film *film, size_t first, size_t end);
 void film_counters_clear(Film *film);
+
+/* Saves sums and counts, or restores them into a film with the same size, crop, quantum, reconstruction and kinds of sums. */
+void film_archive(Archive *archive, Film *film);
 
 /* The value read from a sum: clamped to +-2^62 units, because larger sums depend on the order of additions. */
 int64_t film_sum_shown(int64_t sum);

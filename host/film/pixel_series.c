@@ -27,6 +27,17 @@ void pixel_series_destroy(PixelSeries *series)
     *series = (PixelSeries){0};
 }
 
+void pixel_series_archive(Archive *archive, PixelSeries *series)
+{
+    size_t values = series->pixels * (size_t)series->channels, weights = series->uniform ? 1 : series->pixels;
+    archive_same(archive, values, "the values of a series of images");
+    archive_same(archive, weights, "the weights of a series of images");
+    archive_bytes(archive, series->mean, values * sizeof *series->mean);
+    archive_bytes(archive, series->spread, values * sizeof *series->spread);
+    archive_bytes(archive, series->weight, weights * sizeof *series->weight);
+    archive_bytes(archive, series->pictures, weights * sizeof *series->pictures);
+}
+
 /* Adds to the sum of a pixel's weights, and counts the image. */
 static double weight_add(PixelSeries *series, size_t pixel, double weight)
 {

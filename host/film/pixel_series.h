@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_FILM_PIXEL_SERIES_H
 #define TWINLIGHT_FILM_PIXEL_SERIES_H
 
-#include "base/error.h"
+#include "base/archive.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,6 +22,9 @@ typedef struct PixelSeries {
 /* An empty series; fails when out of memory. */
 bool pixel_series_init(PixelSeries *series, size_t pixels, int channels, bool uniform, Error *error);
 void pixel_series_destroy(PixelSeries *series);
+
+/* Saves the images so far, or restores them into a series of the same size. */
+void pixel_series_archive(Archive *archive, PixelSeries *series);
 
 /* Adds an image. `weights`: per pixel, 0 where it was not sampled; NULL: all 1, and only that if uniform. They are
  * multiplied by `weight` > 0. */

@@ -25,6 +25,30 @@ void chain_population_destroy(ChainPopulation *population)
     *population = (ChainPopulation){0};
 }
 
+/* Makes room for the words of `count` chains that are restored. */
+static bool words_reserve(Archive *archive, ChainPopulation *population)
+{
+    size_t bytes = (size_t)population->count * population->fields * sizeof *population->words;
+    free(population->words);
+    population->words = bytes > 0 ? malloc(bytes) : NULL;
+    if (population->words || bytes == 0)
+        return true;
+    population->count = 0;
+    archive_fail(archive, "out of memory: %zu bytes for chains", bytes);
+    return false;
+}
+
+void chain_population_archive(Archive *archive, ChainPopulation *population, uint most)
+{
+    archive_same(archive, population->fields, "the words of a chain");
+    archive_count(archive, &population->count, 0, most, "chains");
+    ARCHIVE_FIELD(archive, population->samples);
+    ARCHIVE_FIELD(archive, population->brightness);
+    if (archive->failed || (!archive->saves && !words_reserve(archive, population)))
+        return;
+    archive_bytes(archive, population->words, (size_t)population->count * population->fields * sizeof(uint));
+}
+
 static uint word_of(const ChainPopulation *population, uint field, uint i)
 {
     return population->words[(size_t)field * population->count + i];

@@ -14,7 +14,7 @@
 #ifndef TWINLIGHT_MMLT_CHAIN_POPULATION_H
 #define TWINLIGHT_MMLT_CHAIN_POPULATION_H
 
-#include "base/error.h"
+#include "base/archive.h"
 #include "math/platform.h"
 #include "mmlt/chain_seeds.h"
 #include "render/chain_statistics.h"
@@ -30,6 +30,9 @@ typedef struct ChainPopulation {
 /* An empty population. fields: words per chain, chain_pass_fields (mmlt/chain_list.h). */
 void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
+
+/* Saves the chains, or restores them into a population with as many words per chain. most: chains that there may be. */
+void chain_population_archive(Archive *archive, ChainPopulation *population, uint most);
 
 /* The samples of a pool. */
 typedef struct PoolSamples {

@@ -35,6 +35,20 @@ bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint s
     return true;
 }
 
+void chains_estimator_archive(Archive *archive, ChainsEstimator *chains, uint most)
+{
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        chain_population_archive(archive, &chains->populations[replica], most);
+    ARCHIVE_FIELD(archive, chains->groups);
+}
+
+void chains_estimator_continue(ChainsEstimator *chains, const Generation *generation)
+{
+    const ChainPopulation *population = &chains->populations[generation->replica];
+    chains->own.list.pass_words = population->words;
+    chains->own.list.pass_stride = population->count;
+}
+
 bool chains_estimator_alive(const ChainsEstimator *chains, const Generation *generation)
 {
     return chains->populations[generation->replica].brightness > 0.0;
@@ -54,8 +68,7 @@ bool chains_estimator_start(ChainsEstimator *chains, const Generation *generatio
         .order = order};
     if (!chain_population_renew(population, &samples, change, threshold, &resampling, &starts, error))
         return false;
-    chains->own.list.pass_words = population->words;
-    chains->own.list.pass_stride = count;
+    chains_estimator_continue(chains, generation);
     chain_statistics_starts(&generation->run->chains, &starts);
     return true;
 }

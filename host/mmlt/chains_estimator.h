@@ -25,6 +25,12 @@ void chains_estimator_destroy(ChainsEstimator *chains);
 bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint steps, const Guide *guide, uint groups,
                            Error *error);
 
+/* Saves what the next generation needs, or restores it. most: chains that a population may have. */
+void chains_estimator_archive(Archive *archive, ChainsEstimator *chains, uint most);
+
+/* The replica's chains go on where the latest pass, or what was restored, left them, without chains_estimator_start. */
+void chains_estimator_continue(ChainsEstimator *chains, const Generation *generation);
+
 /* Resamples `count` chains from the replica's population and the latest pool. change, order: as for
  * chain_population_renew. */
 bool chains_estimator_start(ChainsEstimator *chains, const Generation *generation, const PoolEstimator *pool,

@@ -52,6 +52,27 @@ void combination_destroy(Combination *combination)
     *combination = (Combination){0};
 }
 
+void combination_archive(Archive *archive, Combination *combination)
+{
+    for (int s = 0; s < SERIES_COUNT; ++s) {
+        pixel_series_archive(archive, &combination->light[s]);
+        pixel_series_archive(archive, &combination->sums[s]);
+    }
+    pixel_series_archive(archive, &combination->direct);
+    archive_bytes(archive, combination->known, combination_tile_count(combination) * sizeof *combination->known);
+    for (int i = 0; i < 2; ++i)
+        archive_bytes(archive, combination->earlier[i],
+                      combination_patch_count(combination) * sizeof *combination->earlier[i]);
+    ARCHIVE_FIELD(archive, combination->earlier_samples);
+    ARCHIVE_FIELD(archive, combination->exponents);
+    ARCHIVE_FIELD(archive, combination->ready);
+    ARCHIVE_FIELD(archive, combination->rare_chains);
+    ARCHIVE_FIELD(archive, combination->rare_paths);
+    ARCHIVE_FIELD(archive, combination->best);
+    ARCHIVE_FIELD(archive, combination->weight);
+    ARCHIVE_FIELD(archive, combination->paths_rare);
+}
+
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
 /* The optimal combination for a tile, given the samples of each estimator. */

@@ -18,6 +18,9 @@
 bool combination_init(Combination *combination, const Film *film, Error *error);
 void combination_destroy(Combination *combination);
 
+/* Saves what is known, or restores it into a combination for films of the same size. */
+void combination_archive(Archive *archive, Combination *combination);
+
 /* Sets the weights of a generation of `samples` of each estimator, from what is known: CombinationTile.weight and
  * paths_rare of every tile, and their means. Returns the weight of the generation's picture in that of all, at least 1:
  * its worth, in samples of path tracing. */

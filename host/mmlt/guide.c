@@ -10,6 +10,14 @@ void mmlt_guide_init(MmltGuide *guide, const Guide *lights)
     mmlt_guide_show(guide, 0);
 }
 
+void mmlt_guide_archive(Archive *archive, MmltGuide *guide)
+{
+    ARCHIVE_FIELD(archive, guide->importance);
+    ARCHIVE_FIELD(archive, guide->visits);
+    ARCHIVE_FIELD(archive, guide->visited);
+    ARCHIVE_FIELD(archive, guide->visited_all);
+}
+
 void mmlt_guide_show(MmltGuide *guide, int replica)
 {
     memcpy(guide->shown.importance, guide->importance[replica], sizeof guide->shown.importance);

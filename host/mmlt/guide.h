@@ -17,6 +17,9 @@ typedef struct MmltGuide {
 /* lights: the scene's light guides. All cells alike at first. */
 void mmlt_guide_init(MmltGuide *guide, const Guide *lights);
 
+/* Saves what both replicas know, or restores it. */
+void mmlt_guide_archive(Archive *archive, MmltGuide *guide);
+
 /* Sets `shown` for passes of a generation of this replica. */
 void mmlt_guide_show(MmltGuide *guide, int replica);
 

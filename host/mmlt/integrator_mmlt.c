@@ -6,7 +6,7 @@
  * whatever their number and length, for chains that start with density proportional to f keep it (sampling-importance
  * resampling, Rubin 1987). Sizes, weights, clamping thresholds and target importance follow from earlier generations,
  * and the picture is a ratio of sums over all of them: it is consistent, not unbiased. */
-#include "mmlt/mmlt.h"
+#include "mmlt/mmlt_archive.h"
 
 #include "base/timing.h"
 #include "mmlt/tuning.h"
@@ -18,26 +18,59 @@
 /* Number of bits in BD_LIGHT_DELTA. */
 #define MMLT_DEPTH_LIMIT 31
 
-static bool generations_run(Mmlt *mmlt, Error *error)
+/* Whether another generation follows, of the planned size or of one that fits into the time that is left. */
+static bool generation_follows(Mmlt *mmlt)
+{
+    const RenderRun *run = mmlt->run;
+    double limit = run->options->seconds, left = limit - (timing_now() - run->start);
+    if (*render_run_stop(run))
+        return false;
+    return !(limit > 0.0) || plan_fit(&mmlt->plan, mmlt->seconds, mmlt_least_seconds(mmlt), left, limit);
+}
+
+/* Runs a generation and plans the next one. */
+static bool generation_next(Mmlt *mmlt, Error *error)
 {
     RenderRun *run = mmlt->run;
     Plan *plan = &mmlt->plan;
+    double begin = timing_now();
+    if (!mmlt_generation_run(mmlt, plan->chains, error) ||
+        !render_layers_sample(run, mmlt->paths.done * run->crop_pixels, error))
+        return false;
+    mmlt->seconds = timing_now() - begin;
+    render_run_report(run, plan->timed ? 0.0 : (double)plan->done / (double)plan->total);
+    if (!mmlt->whole)
+        return true;
+    plan_next(plan, mmlt->generation.index, mmlt->seconds, render_run_seconds(run));
+    return mmlt_keep(mmlt, error);
+}
+
+static bool generations_run(Mmlt *mmlt, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    const Plan *plan = &mmlt->plan;
     while (plan->done < plan->total) {
-        double begin = timing_now();
-        if (!mmlt_generation_run(mmlt, plan->chains, error) ||
-            !render_layers_sample(run, mmlt->paths.done * run->crop_pixels, error))
+        if (!generation_next(mmlt, error))
             return false;
-        double now = timing_now();
-        render_run_report(run, plan->timed ? 0.0 : (double)plan->done / (double)plan->total);
-        if (*render_run_stop(run))
-            break;
-        plan_next(plan, mmlt->generation.index, now - begin, timing_now() - run->start);
-        double limit = run->options->seconds;
-        if (limit > 0.0 &&
-            !plan_fit(plan, now - begin, mmlt_least_seconds(mmlt), limit - (timing_now() - run->start), limit))
+        if (!generation_follows(mmlt))
             break;
         render_run_save_if_due(run);
+        checkpoint_save_if_due(run, mmlt_state(mmlt));
     }
+    return true;
+}
+
+/* Goes on from a checkpoint, if one is resumed; false in *follows if there is nothing left to do. */
+static bool generations_resume(Mmlt *mmlt, bool *follows, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    *follows = true;
+    if (!run->resumed)
+        return true;
+    if (!checkpoint_restore(run, mmlt_state(mmlt), error) || !mmlt_keep(mmlt, error) ||
+        !render_layers_sample(run, mmlt->paths.done * run->crop_pixels, error))
+        return false;
+    *follows = generation_follows(mmlt);
     return true;
 }
 
@@ -65,9 +98,10 @@ static void backend_adopt(Mmlt *mmlt)
 static bool mmlt_render(RenderRun *run, Error *error)
 {
     Mmlt mmlt;
-    bool done = mmlt_init(&mmlt, run, error);
+    bool follows, done = mmlt_init(&mmlt, run, error);
     backend_adopt(&mmlt);
-    done = done && generations_run(&mmlt, error);
+    done = done && generations_resume(&mmlt, &follows, error) && (!follows || generations_run(&mmlt, error)) &&
+           checkpoint_end(run, mmlt_state(&mmlt), error);
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         run->chains.weights[s] = mmlt.combinations[0].weight[s];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)

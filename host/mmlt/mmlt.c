@@ -98,6 +98,7 @@ void mmlt_destroy(Mmlt *mmlt)
         combination_destroy(&mmlt->combinations[replica]);
     combined_image_destroy(&mmlt->combined);
     film_destroy(&mmlt->film);
+    archive_memory_destroy(&mmlt->kept);
 }
 
 /* ---- passes ------------------------------------------------------------------------------------------------------ */
@@ -242,7 +243,7 @@ static void films_combine(Mmlt *mmlt)
         combined_image_add(&mmlt->combined, ESTIMATOR_PATHS, &mmlt->film);
     combined_image_finish(&mmlt->combined, &mmlt->film);
     mmlt_guide_count(&mmlt->guide, generation->replica, own, (double)mmlt->pool.own.samples);
-    if (*render_run_stop(mmlt->run)) /* no generation follows */
+    if (*render_run_stop(mmlt->run) && !mmlt->run->checkpoint) /* no generation follows */
         return;
     combination_variances_update(own, &mmlt->combinations[generation->other]);
     plan_learn(&mmlt->plan, generation->index, own); /* the other replica is next, and learns from this one */
@@ -287,6 +288,7 @@ bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
             return false;
         generation_count(mmlt, count, (uint64_t)work);
     }
+    mmlt->whole = whole;
     mmlt->generation = generation_at(mmlt->run, mmlt->scheme, mmlt->generation.index + 1);
     return true;
 }

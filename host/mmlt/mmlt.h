@@ -23,6 +23,10 @@ typedef struct Mmlt {
     MmltGuide guide;
     Plan plan;
     Generation generation; /* under way */
+    double seconds; /* that the latest generation took */
+    bool whole; /* the latest generation was not stopped before its end */
+    ArchiveMemory
+        kept; /* the state between generations for a checkpoint (mmlt/mmlt_archive.h); empty before the first */
 } Mmlt;
 
 /* Makes all parts and fills in default options; plans the first generation. run->film must have its quantum. *mmlt must

@@ -34,6 +34,16 @@ void paths_estimator_destroy(PathsEstimator *paths)
     step_list_destroy(&paths->own.list);
 }
 
+void paths_estimator_archive(Archive *archive, PathsEstimator *paths)
+{
+    archive_same(archive, paths->sequences, "stratified sequences");
+    ARCHIVE_FIELD(archive, paths->done);
+    ARCHIVE_FIELD(archive, paths->of_sequence);
+    ARCHIVE_FIELD(archive, paths->wanted);
+    ARCHIVE_FIELD(archive, paths->fresh);
+    ARCHIVE_FIELD(archive, paths->seconds);
+}
+
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more)
 {
     uint64_t most = film_samples_most(paths->own.film->reconstruction);

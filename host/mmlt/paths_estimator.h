@@ -24,6 +24,9 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                           Error *error);
 void paths_estimator_destroy(PathsEstimator *paths);
 
+/* Saves what the next generation needs, or restores it. */
+void paths_estimator_archive(Archive *archive, PathsEstimator *paths);
+
 /* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have
  * been about as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so
  * that variances become known. */

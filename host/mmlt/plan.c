@@ -52,6 +52,16 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
     plan->chains = left < plan->chains ? (uint)left : plan->chains;
 }
 
+void plan_archive(Archive *archive, Plan *plan)
+{
+    ARCHIVE_FIELD(archive, plan->rates.paths);
+    ARCHIVE_FIELD(archive, plan->rates.pool);
+    ARCHIVE_FIELD(archive, plan->done);
+    ARCHIVE_FIELD(archive, plan->last);
+    archive_count(archive, &plan->chains, 1, plan->options->chains, "chains of a generation");
+    ARCHIVE_FIELD(archive, plan->planned);
+}
+
 void plan_learn(Plan *plan, uint index, Combination *combination)
 {
     StepRates rates = combination_rates(combination);

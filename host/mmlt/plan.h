@@ -24,6 +24,9 @@ typedef struct Plan {
  * limit. options, scheme: must outlive the plan. */
 void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples);
 
+/* Saves what was learnt and done, or restores it: not the limit, which may be another one. */
+void plan_archive(Archive *archive, Plan *plan);
+
 /* Adopts the best rates by what is known after generation `index`; no change until variances are known, nor between the two
  * generations of a pair. */
 void plan_learn(Plan *plan, uint index, Combination *combination);

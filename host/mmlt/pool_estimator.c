@@ -24,6 +24,20 @@ void pool_estimator_destroy(PoolEstimator *pool)
     free(pool->words);
 }
 
+void pool_estimator_archive(Archive *archive, PoolEstimator *pool)
+{
+    ARCHIVE_FIELD(archive, pool->next_sample);
+    ARCHIVE_FIELD(archive, pool->sample);
+    ARCHIVE_FIELD(archive, pool->pixel);
+    ARCHIVE_FIELD(archive, pool->lights_first);
+    ARCHIVE_FIELD(archive, pool->brightness);
+    ARCHIVE_FIELD(archive, pool->next);
+    ARCHIVE_FIELD(archive, pool->turns);
+    ARCHIVE_FIELD(archive, pool->pilot_brightness);
+    ARCHIVE_FIELD(archive, pool->brightness_sum);
+    ARCHIVE_FIELD(archive, pool->own.samples);
+}
+
 bool pool_estimator_list(PoolEstimator *pool, const RenderRun *run, Error *error)
 {
     FrameParams frame = run->frame;

@@ -31,6 +31,9 @@ typedef struct PoolEstimator {
 void pool_estimator_init(PoolEstimator *pool, const RenderRun *run, Film *film, bool chains_only, const Guide *guide);
 void pool_estimator_destroy(PoolEstimator *pool);
 
+/* Saves what the next pool and the next generation need, or restores it: not the latest pool's words. */
+void pool_estimator_archive(Archive *archive, PoolEstimator *pool);
+
 /* Makes the list, for paths of run->frame. */
 bool pool_estimator_list(PoolEstimator *pool, const RenderRun *run, Error *error);
 

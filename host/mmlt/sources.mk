@@ -16,6 +16,7 @@ libtwinlight_host_la_SOURCES += \
 	host/mmlt/importance.c host/mmlt/importance.h \
 	host/mmlt/integrator_mmlt.c \
 	host/mmlt/mmlt.c host/mmlt/mmlt.h \
+	host/mmlt/mmlt_archive.c host/mmlt/mmlt_archive.h \
 	host/mmlt/paths_estimator.c host/mmlt/paths_estimator.h \
 	host/mmlt/plan.c host/mmlt/plan.h \
 	host/mmlt/pool_estimator.c host/mmlt/pool_estimator.h \

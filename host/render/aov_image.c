@@ -25,6 +25,14 @@ void aov_image_destroy(AovImage *image)
     *image = (AovImage){0};
 }
 
+void aov_image_archive(Archive *archive, AovImage *image)
+{
+    size_t pixels = (size_t)(image->film.x1 - image->film.x0) * (image->film.y1 - image->film.y0);
+    archive_same(archive, pixels * image->channels, "the values of a layer");
+    archive_bytes(archive, image->sums, pixels * image->channels * sizeof *image->sums);
+    archive_bytes(archive, image->counts, pixels * sizeof *image->counts);
+}
+
 static void sample_add(AovImage *image, uint pixel, Vec3 value)
 {
     const float values[3] = {value.x, value.y, value.z};

@@ -20,6 +20,9 @@ typedef struct AovImage {
 bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error);
 void aov_image_destroy(AovImage *image);
 
+/* Saves the samples so far, or restores them into an image of the same size. */
+void aov_image_archive(Archive *archive, AovImage *image);
+
 /* Adds the splats of a pass of several variables (SPLAT_FILM_SHIFT): `images`, of which `number` exist. A sample that is not finite
  * counts as zero. Any number of threads may add those of different pixels concurrently. */
 void aov_images_add(AovImage *images, uint number, const uint *splats, uint count, uint stride);

@@ -21,7 +21,8 @@ typedef struct Integrator {
     /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
      * is set. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
-    /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h); may be NULL. */
+    /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h), and restores and saves its own
+     * state (checkpoint_restore, checkpoint_save_if_due, checkpoint_end in render/checkpoint.h); may be NULL. */
     bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 

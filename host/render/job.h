@@ -35,6 +35,14 @@ typedef struct ChainOptions {
 /* Largest number of photons that can be asked for. */
 #define PHOTONS_MOST_ALLOWED 1048576u
 
+/* --checkpoint, --checkpoint-every, --resume (render/checkpoint.h). */
+typedef struct CheckpointOptions {
+    const char *file; /* where checkpoints are written; NULL: nowhere */
+    double every; /* seconds between two */
+    const char *resume; /* the checkpoint to go on from; NULL: none */
+    bool anew; /* if there is no such file, the rendering starts anew */
+} CheckpointOptions;
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */
@@ -54,6 +62,7 @@ typedef struct RenderOptions {
     /* in: .wanted; out: the layers, to be destroyed by the caller; NULL: none */
     struct RenderLayers *layers;
     double save_every; /* seconds between calls of `save`; 0: never */
+    CheckpointOptions checkpoint;
     /* set to 1 by a signal handler: return at once with the samples finished so far; NULL: never */
     const atomic_int *stop;
 } RenderOptions;
@@ -63,6 +72,8 @@ typedef struct RenderProgress {
     double fraction; /* of the budget, 0 ... 1 */
     uint64_t samples; /* paths; MMLT: work in samples of path tracing */
     uint64_t rays;
+    double fraction_before; /* what of `fraction` and `samples` is of earlier runs (--resume) */
+    uint64_t samples_before;
 } RenderProgress;
 
 typedef struct RenderCallbacks {

@@ -95,6 +95,29 @@ void render_layers_destroy(RenderLayers *layers)
     *layers = (RenderLayers){0};
 }
 
+static void variance_archive(Archive *archive, RenderLayers *layers)
+{
+    size_t tiles = tiles_along(layers->size[0]) * tiles_along(layers->size[1]);
+    for (int i = 0; i < 2; ++i) {
+        pixel_series_archive(archive, &layers->own[i]);
+        pixel_series_archive(archive, &layers->light[i]);
+        archive_bytes(archive, layers->stratified[i], tiles * sizeof *layers->stratified[i]);
+    }
+}
+
+void render_layers_archive(Archive *archive, RenderLayers *layers)
+{
+    archive_same(archive, layers->wanted, "the layers");
+    for (int i = 0; i < 2 && wants(layers, LAYER_HALVES); ++i)
+        film_archive(archive, &layers->halves[i]);
+    if (wants(layers, LAYER_VARIANCE))
+        variance_archive(archive, layers);
+    for (uint aov = 0; aov < AOV_COUNT; ++aov)
+        if (wants(layers, LAYER_OF_AOV[aov]))
+            aov_image_archive(archive, &layers->aovs[aov]);
+    ARCHIVE_FIELD(archive, layers->aov_samples);
+}
+
 /* ---- halves and variance ----------------------------------------------------------------------------------------- */
 
 static void stratified_set(const RenderLayers *layers, const PixelSeries halves[2], float *stratified)
@@ -195,7 +218,7 @@ static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *erro
     frame.pass.sample_index = run->options->first_sample + layers->aov_samples;
     frame.pass.first_item = 0;
     frame.pass.item_count = (uint)run->crop_pixels;
-    return run->interface->run(run->backend, &frame, list, &sink, render_run_stop(run), NULL, error);
+    return run->interface->run(run->backend, &frame, list, &sink, render_run_stop_between(run), NULL, error);
 }
 
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
@@ -205,7 +228,7 @@ bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
     uint aovs = 0, count = 0;
     StepList list;
     wanted = wanted < AOV_SAMPLES ? wanted : AOV_SAMPLES;
-    if (!layers || layers->aov_samples >= wanted || (layers->wanted & LAYERS_AOV) == 0)
+    if (!layers || layers->aov_samples >= wanted || (layers->wanted & LAYERS_AOV) == 0 || *render_run_stop(run))
         return true;
     for (uint aov = 0; aov < AOV_COUNT; ++aov)
         if (wants(layers, LAYER_OF_AOV[aov])) {

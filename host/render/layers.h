@@ -52,6 +52,9 @@ bool render_layers_compare_halves(const RenderLayers *layers);
 bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 
+/* Saves the layers, or restores them into layers made for the same film. */
+void render_layers_archive(Archive *archive, RenderLayers *layers);
+
 /* Adds an independent part of the picture to half 0 or 1 and to the variances. */
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error);
 

@@ -49,12 +49,13 @@ void progress_line(const RenderProgress *now, int columns, char *text, size_t si
 {
     char elapsed[24], remaining[32] = "?", samples[24], rays[24], figures[160];
     progress_time(now->elapsed, elapsed, sizeof elapsed);
-    double left = now->fraction > 0.0 ? now->elapsed * (1.0 - now->fraction) / now->fraction : 0.0;
-    bool finishing = now->fraction >= 1.0 || (now->fraction > 0.0 && left < 0.05);
-    if (now->fraction > 0.0)
+    double fresh = now->fraction - now->fraction_before;
+    double left = fresh > 0.0 ? now->elapsed * (1.0 - now->fraction) / fresh : 0.0;
+    bool finishing = now->fraction >= 1.0 || (fresh > 0.0 && left < 0.05);
+    if (fresh > 0.0)
         progress_time(left, remaining, sizeof remaining);
     double per_second = now->elapsed > 0.0 ? 1.0 / now->elapsed : 0.0;
-    progress_rate((double)now->samples * per_second, samples, sizeof samples);
+    progress_rate((double)(now->samples - now->samples_before) * per_second, samples, sizeof samples);
     progress_rate((double)now->rays * per_second, rays, sizeof rays);
     /* at most 99 %: the rendering is not done while this line is shown */
     snprintf(figures, sizeof figures, "%3.0f %%  %s, %s%s  %ssamples/s  %srays/s",

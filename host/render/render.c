@@ -6,6 +6,7 @@
 #include "backend/step_recorder.h"
 #include "base/timing.h"
 #include "layout/diagnostics.h"
+#include "render/checkpoint.h"
 #include "render/film_pilot.h"
 #include "render/photon_map.h"
 
@@ -44,7 +45,8 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     run->frame.pass.item_count = items;
     run->frame.film.exponent = run->film->quantum_exponent;
     const SplatSink sink = render_run_sink(run->film);
-    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop(run), &delivered, error)) {
+    if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop_between(run), &delivered,
+                             error)) {
         run->done += delivered; /* these are in the film all the same */
         return false;
     }
@@ -56,16 +58,26 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
 /* Size of the next pass, in items, from the speed so far. */
 static uint pass_items(const PassLoop *loop, double elapsed)
 {
-    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)loop->run->done / elapsed : PASS_ITEMS_MIN;
+    uint64_t fresh = loop->run->done - loop->run->past.done;
+    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)fresh / elapsed : PASS_ITEMS_MIN;
     uint items = wanted < PASS_ITEMS_MIN ? PASS_ITEMS_MIN : wanted > PASS_ITEMS_MAX ? PASS_ITEMS_MAX : (uint)wanted;
     uint64_t left = loop->total - loop->next;
     return left < items ? (uint)left : items;
+}
+
+static void loop_archive(void *context, Archive *archive)
+{
+    PassLoop *loop = context;
+    ARCHIVE_FIELD(archive, loop->next);
 }
 
 static bool passes_run(PassLoop *loop, Error *error)
 {
     RenderRun *run = loop->run;
     const RenderOptions *options = run->options;
+    const CheckpointState state = {loop_archive, loop};
+    if (!checkpoint_restore(run, state, error) || !render_layers_sample(run, run->done, error))
+        return false;
     while (loop->next < loop->total) {
         double elapsed = timing_now() - run->start;
         /* Even with --time every pixel gets one sample: no holes in the image. */
@@ -78,8 +90,9 @@ static bool passes_run(PassLoop *loop, Error *error)
         if (!render_layers_sample(run, run->done, error))
             return false;
         render_run_save_if_due(run);
+        checkpoint_save_if_due(run, state);
     }
-    return true;
+    return checkpoint_end(run, state, error);
 }
 
 static bool samples_render(const Integrator *integrator, RenderRun *run, Error *error)
@@ -102,8 +115,10 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     uint64_t counters[DIAGNOSTIC_COUNT] = {0};
     result->samples = run->done;
     result->samples_per_pixel = (double)run->done / (double)run->crop_pixels;
-    result->seconds = timing_now() - run->start;
+    result->seconds = render_run_seconds(run);
     run->interface->statistics(run->backend, &result->backend);
+    result->backend.closest_rays += run->past.closest_rays;
+    result->backend.shadow_rays += run->past.shadow_rays;
     run->interface->diagnostics(run->backend, counters);
     result->chains = run->chains;
     result->stopped = *render_run_stop(run);
@@ -111,7 +126,7 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     result->diagnostic_count = 0;
     for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
         result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
-        result->diagnostics[result->diagnostic_count++] = counters[i];
+        result->diagnostics[result->diagnostic_count++] = counters[i] + run->past.diagnostics[i];
     }
 }
 
@@ -163,8 +178,9 @@ unsigned render_photons(const Integrator *integrator, const RenderOptions *optio
 
 bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
-    uint count = render_photons(integrator, run->options, run->crop_pixels);
-    if (!photon_map_make(run, scene, count, &run->photons, error))
+    if (!run->resumed)
+        run->past.photons = render_photons(integrator, run->options, run->crop_pixels);
+    if (!photon_map_make(run, scene, run->past.photons, &run->photons, error))
         return false;
     run->photons.params.everywhere = integrator->strategies == STRATEGIES_PT;
     run->frame.photons = run->photons.params;
@@ -195,11 +211,14 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     run.start = timing_now();
     run.last_save = run.start - options->save_every; /* the first image is due as soon as there is one */
     RenderLayers *layers = options->layers;
-    bool done = (task->keep_quantum || film_pilot_run(&run, integrator, scene, error)) &&
+    Checkpoint checkpoint;
+    bool done = checkpoint_begin(&checkpoint, &run, integrator, scene, error) &&
+                (task->keep_quantum || run.resumed || film_pilot_run(&run, integrator, scene, error)) &&
                 render_photons_make(&run, integrator, scene, error) &&
                 (!layers || render_layers_init(layers, layers->wanted, film, error)) &&
                 (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     photon_map_destroy(&run.photons);
+    checkpoint_destroy(&checkpoint);
     return done;
 }

@@ -15,10 +15,21 @@ static void film_sums(void *context, ulong *words)
     film_add_sums(context, words);
 }
 
+static const atomic_int NEVER = 0;
+
 const atomic_int *render_run_stop(const RenderRun *run)
 {
-    static const atomic_int never = 0;
-    return run->options->stop ? run->options->stop : &never;
+    return run->options->stop ? run->options->stop : &NEVER;
+}
+
+const atomic_int *render_run_stop_between(const RenderRun *run)
+{
+    return run->checkpoint ? &NEVER : render_run_stop(run);
+}
+
+double render_run_seconds(const RenderRun *run)
+{
+    return run->past.seconds + timing_now() - run->start;
 }
 
 SplatSink render_run_sink(Film *film)
@@ -37,7 +48,10 @@ void render_run_report(const RenderRun *run, double fraction)
     RenderProgress progress = {.elapsed = elapsed,
                                .fraction = fmin(1.0, fmax(fraction, by_time)),
                                .samples = run->done,
-                               .rays = statistics.closest_rays + statistics.shadow_rays};
+                               .rays = statistics.closest_rays + statistics.shadow_rays,
+                               .samples_before = run->past.done};
+    if (run->done > 0 && fraction > by_time)
+        progress.fraction_before = progress.fraction * (double)run->past.done / (double)run->done;
     run->callbacks->progress(run->callbacks->context, &progress);
 }
 

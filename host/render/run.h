@@ -3,8 +3,19 @@
 #define TWINLIGHT_RENDER_RUN_H
 
 #include "backend/backend.h"
+#include "layout/diagnostics.h"
 #include "render/chain_statistics.h"
 #include "render/job.h"
+
+/* What the runs before this one have done, of which a checkpoint was resumed. */
+typedef struct RenderPast {
+    uint64_t done; /* as RenderRun.done */
+    double seconds;
+    unsigned samples; /* RenderOptions.samples of the latest */
+    unsigned photons; /* asked for by the first, or by this one if it is that */
+    uint64_t closest_rays, shadow_rays;
+    uint64_t diagnostics[DIAGNOSTIC_COUNT];
+} RenderPast;
 
 typedef struct RenderRun {
     const BackendInterface *interface;
@@ -17,6 +28,9 @@ typedef struct RenderRun {
     Film *film;
     uint64_t crop_pixels;
     uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */
+    struct Checkpoint *checkpoint; /* NULL: none is written or resumed (render/checkpoint.h) */
+    bool resumed;
+    RenderPast past; /* zeros, but for photons, unless resumed */
     double start, last_save;
     bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;
@@ -24,6 +38,12 @@ typedef struct RenderRun {
 
 /* The flag that becomes 1 if the rendering is to end at once (options->stop); a constant 0 if there is none. */
 const atomic_int *render_run_stop(const RenderRun *run);
+
+/* The same for passes that are finished before a stop where a checkpoint follows: the constant 0 then. */
+const atomic_int *render_run_stop_between(const RenderRun *run);
+
+/* Seconds of rendering so far, those of earlier runs included. */
+double render_run_seconds(const RenderRun *run);
 
 /* A sink that adds splats to the film. Passes that use it must set frame.film.exponent to the film's
  * quantum_exponent. */

@@ -2,7 +2,9 @@ libtwinlight_host_la_SOURCES += \
 	host/render/aov_image.c host/render/aov_image.h \
 	host/render/bd_fields.c host/render/bd_fields.h \
 	host/render/chain_statistics.c host/render/chain_statistics.h \
+	host/render/checkpoint.c host/render/checkpoint.h \
 	host/render/film_pilot.c host/render/film_pilot.h \
+	host/render/identity.c host/render/identity.h \
 	host/render/integrator.c host/render/integrator.h \
 	host/render/integrator_bdpt.c \
 	host/render/integrator_ibpt.c \

@@ -296,6 +296,11 @@ START_TEST(test_progress_line_fits_its_terminal)
     const RenderProgress over = {.elapsed = 100.0, .fraction = 1.0, .samples = 100, .rays = 100};
     progress_line(&over, 0, text, sizeof text);
     ck_assert_str_eq(text, " 99 %  1:40, finishing  1.00 samples/s  1.00 rays/s");
+    /* Half of what there is to do was done by earlier runs: rate and time left are this one's. */
+    const RenderProgress resumed = {
+        .elapsed = 100.0, .fraction = 0.75, .samples = 300, .rays = 100, .fraction_before = 0.5, .samples_before = 200};
+    progress_line(&resumed, 0, text, sizeof text);
+    ck_assert_str_eq(text, " 75 %  1:40, 1:40 left  1.00 samples/s  1.00 rays/s");
     const RenderProgress start = {0};
     progress_line(&start, 0, text, sizeof text);
     ck_assert_str_eq(text, "  0 %  0.0 s, ? left  0.00 samples/s  0.00 rays/s");

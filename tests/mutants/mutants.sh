@@ -214,6 +214,8 @@ likely() {
     host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
     host/mmlt/plan.c) echo test_plan test_combination:known ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;
+    host/base/archive* | host/render/checkpoint.c | host/render/identity.c | host/render/run.c | host/mmlt/mmlt_archive.c)
+        echo test_archive test_checkpoint command/test_checkpoint.sh ;;
     host/*) echo test_combination test_pool test_layers ;;
     esac
 }
@@ -223,7 +225,7 @@ others() {
         echo test_bidirectional test_numerics test_render test_scenes test_mmlt command/test_cli.sh ;;
     shared/camera/film_sum.h)
         echo test_combination test_render test_group test_verify command/test_cli.sh test_numerics test_bidirectional test_mmlt ;;
-    *) echo test_mmlt test_layers test_light_guide test_numerics test_scenes command/test_cli.sh ;;
+    *) echo test_mmlt test_checkpoint test_layers test_light_guide test_numerics test_scenes command/test_cli.sh ;;
     esac
 }
 # Those that take more samples or have more cases in `make check-long`.

@@ -1,0 +1,48 @@
+/* Saves and restores the state of a computation. One function per kind of object names its fields in order: an archive
+ * that saves copies them, one that restores overwrites them. So what is saved is what is restored.
+ *
+ * A failure sticks: the archive keeps the first error, and later calls do nothing. Numbers have the size and byte order
+ * of the machine. */
+#ifndef TWINLIGHT_BASE_ARCHIVE_H
+#define TWINLIGHT_BASE_ARCHIVE_H
+
+#include "base/error.h"
+
+#include <stdint.h>
+
+typedef struct Archive {
+    bool saves; /* otherwise it restores */
+    bool failed;
+    Error error; /* if failed */
+    /* Takes or fills in `size` bytes. */
+    bool (*transfer)(void *context, void *bytes, size_t size, Error *error);
+    void *context;
+} Archive;
+
+/* Saves or restores `size` bytes. */
+void archive_bytes(Archive *archive, void *bytes, size_t size);
+
+/* The same for a variable or an array of known size, without pointers. */
+#define ARCHIVE_FIELD(archive, field) archive_bytes(archive, &(field), sizeof(field))
+
+/* For what is known when restoring: fails, naming `what`, unless the value is the saved one. */
+void archive_same(Archive *archive, uint64_t value, const char *what);
+
+/* For a count that decides what memory is taken or which entries are read. Restoring fails, naming `what`, and leaves the
+ * count as it is unless least <= count <= most. */
+void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t most, const char *what);
+
+/* Fails with this message unless it has failed before. */
+void archive_fail(Archive *archive, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* A growing buffer, empty when zeroed. */
+typedef struct ArchiveMemory {
+    unsigned char *bytes;
+    size_t size, capacity;
+} ArchiveMemory;
+
+/* An archive that appends to the buffer. */
+Archive archive_to_memory(ArchiveMemory *memory);
+void archive_memory_destroy(ArchiveMemory *memory);
+
+#endif

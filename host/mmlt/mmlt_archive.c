@@ -1,0 +1,58 @@
+#include "mmlt/mmlt_archive.h"
+
+/* Saves or restores what the next generation depends on. */
+static void mmlt_archive(Archive *archive, Mmlt *mmlt)
+{
+    uint index = mmlt->generation.index;
+    ARCHIVE_FIELD(archive, index);
+    plan_archive(archive, &mmlt->plan);
+    paths_estimator_archive(archive, &mmlt->paths);
+    pool_estimator_archive(archive, &mmlt->pool);
+    chains_estimator_archive(archive, &mmlt->chains, mmlt->options.chains);
+    mmlt_guide_archive(archive, &mmlt->guide);
+    for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica)
+        combination_archive(archive, &mmlt->combinations[replica]);
+    ARCHIVE_FIELD(archive, mmlt->run->chains);
+    ARCHIVE_FIELD(archive, mmlt->seconds);
+    if (!archive->saves)
+        mmlt->generation = generation_at(mmlt->run, mmlt->scheme, index);
+}
+
+/* Chains that never restart run on, all of them. */
+static void chains_continue(Archive *archive, Mmlt *mmlt)
+{
+    chains_estimator_continue(&mmlt->chains, &mmlt->generation);
+    if (chains_estimator_alive(&mmlt->chains, &mmlt->generation) &&
+        mmlt->chains.own.list.pass_stride != mmlt->plan.chains)
+        archive_fail(archive, "chains that run on are missing");
+}
+
+/* Saves the copy, restores the state itself. */
+static void state_archive(void *context, Archive *archive)
+{
+    Mmlt *mmlt = context;
+    if (archive->saves) {
+        archive_bytes(archive, mmlt->kept.bytes, mmlt->kept.size);
+        return;
+    }
+    mmlt_archive(archive, mmlt);
+    if (!mmlt->scheme->renews)
+        chains_continue(archive, mmlt);
+}
+
+CheckpointState mmlt_state(Mmlt *mmlt)
+{
+    return (CheckpointState){mmlt->kept.size > 0 || mmlt->run->resumed ? state_archive : NULL, mmlt};
+}
+
+bool mmlt_keep(Mmlt *mmlt, Error *error)
+{
+    if (!mmlt->run->checkpoint)
+        return true;
+    mmlt->kept.size = 0;
+    Archive archive = archive_to_memory(&mmlt->kept);
+    mmlt_archive(&archive, mmlt);
+    if (archive.failed)
+        *error = archive.error;
+    return !archive.failed;
+}
