@@ -54,14 +54,14 @@ static void switch_add(Identity *identity, const char *name, bool on)
     line_add(identity, "%s=%s\n", name, on ? "on" : "off");
 }
 
-/* Bit i stands for name i, with `between` between two; `none` for no bit at all. */
-static void names_add(Identity *identity, const char *name, unsigned bits, const char *const *names,
+/* The names whose bits are set, bit i for name i of `count`, with `between` between two; `none` for no bit at all. */
+static void names_add(Identity *identity, const char *name, unsigned bits, const char *const *names, unsigned count,
                       const char *between, const char *none)
 {
     line_add(identity, "%s=%s", name, bits == 0 ? none : "");
-    for (unsigned i = 0, left = bits; left != 0; ++i, left >>= 1)
-        if ((left & 1u) != 0)
-            line_add(identity, "%s%s", names[i], left > 1u ? between : "");
+    for (unsigned i = 0; i < count; ++i)
+        if ((bits >> i & 1u) != 0)
+            line_add(identity, "%s%s", names[i], bits >> i > 1u ? between : "");
     line_add(identity, "\n");
 }
 
@@ -70,7 +70,7 @@ static void layers_add(Identity *identity, const RenderLayers *layers)
 #define TEXT(NAME, name, text, ...) text,
     static const char *const NAMES[LAYER_COUNT] = {LAYER_LIST(TEXT)};
 #undef TEXT
-    names_add(identity, "layers", layers ? layers->wanted : 0, NAMES, ",", "none");
+    names_add(identity, "layers", layers ? layers->wanted : 0, NAMES, LAYER_COUNT, ",", "none");
 }
 
 static void chains_add(Identity *identity, const ChainOptions *options)
@@ -81,7 +81,7 @@ static void chains_add(Identity *identity, const ChainOptions *options)
     number_add(identity, "mlt=steps", options->steps);
     number_add(identity, "mlt=pool", options->pool);
     number_add(identity, "mlt=large-step", options->large_step);
-    names_add(identity, "mlt=mutations", options->mutations & 7u, MUTATIONS, "+", "default");
+    names_add(identity, "mlt=mutations", options->mutations & 7u, MUTATIONS, 3, "+", "default");
     line_add(identity, "mlt=sort=%s\n", ORDERS[options->order]);
     switch_add(identity, "mlt=group", !options->ungrouped);
     switch_add(identity, "mlt=shift", !options->shiftless);
