@@ -270,7 +270,7 @@ static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
     pool_estimator_count(&mmlt->pool, generation);
     if (chains_needed(mmlt) && chains_estimator_alive(&mmlt->chains, generation))
         chains_estimator_count(&mmlt->chains, generation, &mmlt->pool, count);
-    plan_count(&mmlt->plan, work);
+    plan_count(&mmlt->plan, work, paths_estimator_owed(&mmlt->paths));
     mmlt->run->done = mmlt->plan.done;
 }
 

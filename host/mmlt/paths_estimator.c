@@ -48,7 +48,7 @@ uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *gene
 {
     uint64_t most = film_samples_most(paths->own.film->reconstruction);
     uint64_t target = (uint64_t)fmin(rint(paths->wanted + more), (double)most), first = (uint64_t)generation->index + 1;
-    if (generation->index < 2 * REPLICAS && target < first)
+    if (generation->index < PATHS_FORCED && target < first)
         target = first;
     return target > paths->done ? target - paths->done : 0;
 }

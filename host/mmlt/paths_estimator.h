@@ -28,12 +28,17 @@ void paths_estimator_destroy(PathsEstimator *paths);
 void paths_estimator_archive(Archive *archive, PathsEstimator *paths);
 
 /* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have
- * been about as many as wanted. In the first two generations of either replica generation g ends with at least g + 1, so
- * that variances become known. */
+ * been about as many as wanted. Generation g < PATHS_FORCED ends with at least g + 1. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */
 void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, double more);
+
+/* The samples of every pixel that are wanted, but not yet done: what rounding has left. */
+static inline double paths_estimator_owed(const PathsEstimator *paths)
+{
+    return paths->wanted - (double)paths->done;
+}
 
 /* The number of the generation's first sample of a pixel: its place in a stratified sequence, or in the second, which begins at
  * 2^30. */

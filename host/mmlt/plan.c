@@ -9,20 +9,35 @@ static double steps_of(const Plan *plan, uint chains)
     return (double)((uint64_t)chains * plan->options->steps);
 }
 
-/* The work of a chain in a generation, with its part of the pool and of path tracing. */
-static double chain_work(const Plan *plan)
+/* The work of a chain in a generation, with its part of the pool, and `paths` samples of path tracing per step. */
+static double chain_work_with(const Plan *plan, double paths)
 {
     double steps = (double)plan->options->steps;
     const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = steps,
                                              [ESTIMATOR_POOL] = plan->scheme->renews ? steps * plan->rates.pool : 0.0,
-                                             [ESTIMATOR_PATHS] = steps * plan->rates.paths};
+                                             [ESTIMATOR_PATHS] = steps * paths};
     return estimators_work(samples);
 }
 
-/* How many chains the remaining work is enough for, rounded up. */
-static uint64_t chains_left(const Plan *plan)
+static double chain_work(const Plan *plan)
 {
-    return (uint64_t)ceil((double)(plan->total - plan->done) / chain_work(plan));
+    return chain_work_with(plan, plan->rates.paths);
+}
+
+/* Chains that the remaining work is enough for, with their part of path tracing. */
+static double chains_left(const Plan *plan)
+{
+    return (double)(plan->total - plan->done) / chain_work(plan);
+}
+
+/* The same for the generations from `index` on, of which the first ones have path tracing at any rate: without it, if what is
+ * left of it is no whole sample of every pixel. */
+static double chains_left_from(const Plan *plan, uint index)
+{
+    double chains = chains_left(plan);
+    bool paths = index < PATHS_FORCED || rint(plan->owed + chains * (double)plan->options->steps * plan->rates.paths /
+                                                               (double)plan->pixels) >= 1.0;
+    return paths ? chains : (double)(plan->total - plan->done) / chain_work_with(plan, 0.0);
 }
 
 /* Chains that go with one path tracing sample of every pixel, unless that exceeds WHOLE_SAMPLE_PART of the work so far:
@@ -44,7 +59,7 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
                    .timed = samples == 0,
                    .chains = options->chains};
     plan->planned = chain_work(plan);
-    uint64_t left = chains_left(plan);
+    uint64_t left = (uint64_t)ceil(chains_left(plan));
     if (scheme->grows) {
         left = (left + 1) / 2;
         plan->chains = plan->chains < CHAINS_FIRST ? plan->chains : CHAINS_FIRST;
@@ -69,10 +84,11 @@ void plan_learn(Plan *plan, uint index, Combination *combination)
         plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
 }
 
-void plan_count(Plan *plan, uint64_t work)
+void plan_count(Plan *plan, uint64_t work, double owed)
 {
     plan->last = work;
     plan->done += work;
+    plan->owed = owed;
 }
 
 /* How many times longer a generation of `next` chains takes than one of plan->chains, which with a limit of work does
@@ -116,7 +132,8 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
     }
     plan->planned = chain_work(plan);
     next = next < most ? next : most;
-    uint64_t left = index % 2 == 0 ? (chains_left(plan) + 1) / 2 : chains_left(plan);
+    uint64_t left = (uint64_t)ceil(chains_left_from(plan, index));
+    left = index % 2 == 0 ? (left + 1) / 2 : left;
     plan->chains = left < next ? (uint)left : next;
 }
 

@@ -15,6 +15,8 @@ typedef struct Plan {
     uint64_t total; /* estimators_work that is wanted */
     bool timed; /* `total` is no limit: the time is */
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
+    double
+        owed; /* samples of path tracing per pixel that are due, but fewer than a whole one: those of later generations */
     uint width; /* of the backend (BackendStatistics.width); 0 until set */
     uint chains; /* in the next generation */
     double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */
@@ -31,8 +33,8 @@ void plan_archive(Archive *archive, Plan *plan);
  * generations of a pair. */
 void plan_learn(Plan *plan, uint index, Combination *combination);
 
-/* Counts a generation's work. */
-void plan_count(Plan *plan, uint64_t work);
+/* Counts a generation's work. owed: Plan.owed after it. */
+void plan_count(Plan *plan, uint64_t work, double owed);
 
 /* Plans the size of generation `index`. Both of a pair, one for each replica, have the same, also the last
  * one before a limit of work. With a limit of work the

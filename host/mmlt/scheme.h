@@ -10,6 +10,9 @@
  * past does affect its weights: the picture is consistent but not unbiased. */
 #define REPLICAS 2
 
+/* The first generations, two of each replica, have path tracing whatever the plan, so that variances become known. */
+#define PATHS_FORCED (2u * REPLICAS)
+
 typedef struct MmltScheme {
     int replicas; /* renderings with independent errors that take turns */
     bool renews; /* every generation draws a pool and starts chains from it; else only the first does */

@@ -22,6 +22,20 @@ static uint64_t work_of(const Plan *plan)
     return (uint64_t)estimators_work(samples);
 }
 
+/* The work of generation `index`, whose path tracing is whole samples of every pixel, of which *owed are due; sets *owed to
+ * what remains due. */
+static uint64_t rounded_work(const Plan *plan, uint index, double *owed)
+{
+    double wanted = *owed + plan_paths_samples(plan, plan->chains), whole = fmax(rint(wanted), 0.0);
+    if (index < PATHS_FORCED && whole < 1.0)
+        wanted = whole = 1.0;
+    const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)plan->chains * plan->options->steps,
+                                             [ESTIMATOR_POOL] = plan_pool_samples(plan, plan->chains),
+                                             [ESTIMATOR_PATHS] = whole * PIXELS};
+    *owed = wanted - whole;
+    return (uint64_t)estimators_work(samples);
+}
+
 /* Generations begin small, come in pairs of one size (the last pair but for what its first generation did too much), are
  * at most as large as chains are allowed and as a fraction of the work so far, and end where --samples says, whatever the
  * clock says. */
@@ -32,8 +46,9 @@ START_TEST(test_sizes)
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PLANS[_i].samples);
     ck_assert_uint_le(plan.chains, CHAINS_FIRST);
     uint pair = 0, index = 0;
+    double owed = 0.0;
     while (plan.done < plan.total && index < GENERATIONS_MOST) {
-        uint64_t work = work_of(&plan), left = plan.total - plan.done;
+        uint64_t work = rounded_work(&plan, index, &owed), left = plan.total - plan.done;
         ck_assert_uint_gt(plan.chains, 0);
         ck_assert_uint_le(plan.chains, options.chains);
         if (index % 2 == 0)
@@ -44,12 +59,34 @@ START_TEST(test_sizes)
             ck_assert_uint_ge(8 * plan.chains + 8, 7 * pair);
         if (index >= 4 && index % 2 == 0 && plan.chains > CHAINS_FIRST)
             ck_assert_double_le((double)work, 1.1 * WHOLE_SAMPLE_PART * (double)plan.done);
-        plan_count(&plan, work);
+        plan_count(&plan, work, owed);
         plan_next(&plan, ++index, 1e9, 1.0); /* a clock by which no generation would grow */
     }
     printf("%u samples: %u generations, the last pair of %u chains, %.3f times the work wanted\n", PLANS[_i].samples,
            index, pair, (double)plan.done / (double)plan.total);
     ck_assert_uint_ge(plan.done, plan.total);
+    ck_assert_double_lt((double)plan.done / (double)plan.total, 1.5);
+}
+END_TEST
+
+/* The end of a rendering of mostly path tracing, of which less than a whole sample is left. */
+START_TEST(test_end)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    const unsigned samples = 12 + (unsigned)_i;
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, samples);
+    double owed = 0.0;
+    uint index = 0, late = 0;
+    while (plan.done < plan.total && index < GENERATIONS_MOST) {
+        late += plan.total - plan.done < PIXELS;
+        plan_count(&plan, rounded_work(&plan, index, &owed), owed);
+        plan.rates.paths = 4.0;
+        plan_next(&plan, ++index, 1e9, 1.0);
+    }
+    printf("%u samples: %u generations, %u of them in the last sample, %.3f times the work wanted\n", samples, index,
+           late, (double)plan.done / (double)plan.total);
+    ck_assert_uint_le(late, 3);
     ck_assert_double_lt((double)plan.done / (double)plan.total, 1.5);
 }
 END_TEST
@@ -62,14 +99,14 @@ START_TEST(test_rates)
     Plan plan;
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
     for (uint index = 0; index < 6; ++index) {
-        plan_count(&plan, work_of(&plan));
+        plan_count(&plan, work_of(&plan), 0.0);
         plan_next(&plan, index + 1, 1e9, 1.0); /* a clock by which no generation would grow */
     }
     uint64_t before = work_of(&plan), most = (uint64_t)(WHOLE_SAMPLE_PART * (double)plan.done);
-    plan_count(&plan, before);
+    plan_count(&plan, before, 0.0);
     plan_next(&plan, 7, 1e9, 1.0);
     plan.rates.paths *= 20.0;
-    plan_count(&plan, before);
+    plan_count(&plan, before, 0.0);
     plan_next(&plan, 8, 1e9, 1.0);
     uint64_t after = work_of(&plan);
     printf("work of a generation: %llu, then %llu, the part %llu\n", (unsigned long long)before,
@@ -108,7 +145,7 @@ START_TEST(test_width)
     Plan plan;
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, _i == 0 ? 0 : 1000000);
     plan.width = 64 * CHAINS_FIRST;
-    plan_count(&plan, 1000);
+    plan_count(&plan, 1000, 0.0);
     for (uint i = 0; i < sizeof NEXT / sizeof NEXT[0]; ++i) {
         plan_next(&plan, 2 * i + 2, NEXT[i].part * GENERATION_PART, 1.0);
         ck_assert_uint_eq(plan.chains, CHAINS_FIRST * (_i == 0 ? NEXT[i].chains : 1));
@@ -122,7 +159,7 @@ START_TEST(test_last)
     const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
     Plan plan;
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
-    plan_count(&plan, work_of(&plan));
+    plan_count(&plan, work_of(&plan), 0.0);
     plan.chains = 10 * CHAINS_FIRST; /* ten times the work of the latest generation */
     ck_assert(plan_fit(&plan, 0.1, 0.0, 1.1, 10.0));
     ck_assert_uint_eq(plan.chains, 10 * CHAINS_FIRST);
@@ -162,7 +199,7 @@ START_TEST(test_published)
     plan_init(&plan, &options, mmlt_scheme(true), PIXELS, 1000);
     for (uint index = 1; index < 8; ++index) {
         ck_assert_uint_eq(plan.chains, PAPER_CHAINS_DEFAULT);
-        plan_count(&plan, 1000);
+        plan_count(&plan, 1000, 0.0);
         plan_next(&plan, index, 0.0, 1.0);
     }
 }
@@ -206,6 +243,7 @@ int main(void)
     tcase_add_test(tcase, test_last);
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_rates);
+    tcase_add_loop_test(tcase, test_end, 0, 6);
     tcase_add_test(tcase, test_clock);
     tcase_add_loop_test(tcase, test_width, 0, 2);
     tcase_add_test(tcase, test_pools);
