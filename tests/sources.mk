@@ -20,6 +20,7 @@ check_PROGRAMS += \
 	tests/test_checkpoint \
 	tests/test_compare \
 	tests/test_emit \
+	tests/test_error \
 	tests/test_film \
 	tests/test_geometry \
 	tests/test_mmlt \
@@ -136,6 +137,7 @@ tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
 tests_test_chain_statistics_SOURCES = tests/mmlt/test_chain_statistics.c
 tests_test_checkpoint_SOURCES = tests/render/test_checkpoint.c
 tests_test_compare_SOURCES = tests/compare/test_compare.c
+tests_test_error_SOURCES = tests/render/test_error.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c

@@ -67,6 +67,22 @@ bool option_number(const char *option, const char *text, double low, double high
     return true;
 }
 
+bool option_part(const char *option, const char *text, double low, double high, double *value, Error *error)
+{
+    const char *end = text;
+    bool read = read_number(&end, value), percent = *end == '%';
+    if (!read || end[percent ? 1 : 0]) {
+        error_set(error, "--%s=%s: neither a number nor a percentage", option, text);
+        return error_fix(error, "give one from %g to %g, or %g%% to %g%%", low, high, 100.0 * low, 100.0 * high);
+    }
+    *value = percent ? *value / 100.0 : *value;
+    if (!(*value >= low && *value <= high)) {
+        error_set(error, "--%s=%s: out of range", option, text);
+        return error_fix(error, "give a number from %g to %g, or %g%% to %g%%", low, high, 100.0 * low, 100.0 * high);
+    }
+    return true;
+}
+
 bool option_seconds(const char *option, const char *text, double *seconds, Error *error)
 {
     const double YEAR = 365.0 * 24.0 * 3600.0;

@@ -13,6 +13,9 @@ bool option_whole(const char *option, const char *text, uint64_t low, uint64_t h
 /* A decimal number with optional fraction and exponent, low <= value <= high. */
 bool option_number(const char *option, const char *text, double low, double high, double *value, Error *error);
 
+/* A number as above, or in percent: 2% is 0.02. */
+bool option_part(const char *option, const char *text, double low, double high, double *value, Error *error);
+
 /* A positive duration of at most a year with its unit (30s, 10m, 2h, 1.5h), in seconds. */
 bool option_seconds(const char *option, const char *text, double *seconds, Error *error);
 

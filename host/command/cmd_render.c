@@ -161,7 +161,8 @@ static RenderOptions job_options(RenderJob *job)
         .max_depth = settings->max_depth,
         .chains = command->chains,
         .bad_chains = job->bad_chains.stream,
-        .layers = job->layers.wanted != 0 ? &job->layers : NULL,
+        .error = command->error,
+        .layers = job->layers.wanted != 0 || command->error.goal > 0.0 ? &job->layers : NULL,
         .balance = command->balance,
         .reconstruction = command->reconstruction,
         .independent = command->sampler && strcmp(command->sampler, "independent") == 0,
@@ -174,7 +175,8 @@ static RenderOptions job_options(RenderJob *job)
         .checkpoint = checkpoint_options(command),
         .stop = interrupt_flag(),
     };
-    if (options.samples == 0 && options.seconds == 0.0)
+    options.error.scale = (double)settings->film_scale;
+    if (options.samples == 0 && options.seconds == 0.0 && !(options.error.goal > 0.0))
         options.samples = (unsigned)settings->samples;
     return options;
 }
@@ -206,6 +208,7 @@ static void job_progress(void *context, const RenderProgress *progress)
 {
     RenderJob *job = context;
     job->samples_done = progress->samples;
+    job->output.error = progress->error;
     progress_update(&job->progress, progress);
 }
 
@@ -246,6 +249,20 @@ static bool film_render(RenderJob *job, Error *error)
 
 /* ---- after rendering -------------------------------------------------------------------------------------------- */
 
+/* What --error has estimated. */
+static void goal_report(const RenderJob *job)
+{
+    const ErrorWatch *watch = &job->result.error;
+    const double percent = 100.0;
+    if (watch->work == 0)
+        log_message(LOG_WARNING, "the rendering ended before its error could be estimated; --error had no effect");
+    else
+        log_message(job->result.error_reached ? LOG_INFO : LOG_WARNING, "estimated error %.3g %% +- %.2g %%%s%.3g %%",
+                    percent * watch->estimate, percent * watch->deviation,
+                    job->result.error_reached ? ": below --error=" : ", not yet below --error=",
+                    percent * job->command->error.goal);
+}
+
 static void summary_report(const RenderJob *job)
 {
     const RenderResult *result = &job->result;
@@ -256,6 +273,8 @@ static void summary_report(const RenderJob *job)
     progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
     log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
                 result->samples_per_pixel, seconds, samples, rays);
+    if (job->command->error.goal > 0.0)
+        goal_report(job);
     if (job->left)
         log_message(LOG_WARNING, "%s is left unchanged: no sample is finished yet", job->output.exr);
     else
@@ -275,6 +294,7 @@ static bool stats_output(const RenderJob *job, Error *error)
         .exr = job->output.exr,
         .png = job->output.png,
         .result = &job->result,
+        .error = &command->error,
         .load = job->load,
         .build = job->build,
         .render = job->rendering,
@@ -319,6 +339,7 @@ static bool film_write(RenderJob *job, Error *error)
     job->left = job->result.samples == 0 && access(job->output.exr, F_OK) == 0;
     if (job->left)
         return true;
+    job->output.error = job->result.error.estimate;
     bool written = render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
     progress_end(&job->progress);
     return written;

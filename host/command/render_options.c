@@ -22,6 +22,11 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel; with mmlt as much work (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until either is reached"},
+    [OPTION_ERROR] = {"error", 0, "E",
+                      "render until the estimated relative error (square root of relMSE) is below 2% or 0.02"},
+    [OPTION_ERROR_PERCENTILE] = {"error-percentile", 0, "P",
+                                 "with --error: of all pixels but the worst, as in 99 (default: root mean square)"},
+    [OPTION_ERROR_OF] = {"error-of", 0, "WHAT", "with --error: of pixels (default) or of blocks of 8 x 8 pixels"},
     [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all of them together"},
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
                        "OpenCL devices, by number or part of a name as in twinlight devices (default: 0)"},
@@ -161,6 +166,16 @@ static bool heuristic_set(RenderCommand *command, const char *value, Error *erro
     return error_fix(error, "use power or balance");
 }
 
+static bool error_of_set(RenderCommand *command, const char *value, Error *error)
+{
+    command->error_of = value;
+    command->error.blocks = strcmp(value, "blocks") == 0;
+    if (command->error.blocks || strcmp(value, "pixels") == 0)
+        return true;
+    error_set(error, "--error-of=%s: the error is not of these", value);
+    return error_fix(error, "use pixels or blocks");
+}
+
 static bool film_set(RenderCommand *command, const char *value, Error *error)
 {
     command->film = value;
@@ -247,6 +262,12 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return true;
     case OPTION_TIME:
         return option_seconds("time", value, &command->seconds, error);
+    case OPTION_ERROR:
+        return option_part("error", value, 1e-6, 10.0, &command->error.goal, error);
+    case OPTION_ERROR_PERCENTILE:
+        return option_number("error-percentile", value, 1.0, 99.99, &command->error.percentile, error);
+    case OPTION_ERROR_OF:
+        return error_of_set(command, value, error);
     case OPTION_SAVE_EVERY:
         return option_seconds("save-every", value, &command->save_every, error);
     case OPTION_CHECKPOINT:
@@ -300,6 +321,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
     const char *option = command->output             ? "output"
                          : command->png_path         ? "png"
                          : command->seconds > 0.0    ? "time"
+                         : command->error.goal > 0.0 ? "error"
                          : command->save_every > 0.0 ? "save-every"
                          : command->checkpoint       ? "checkpoint"
                          : command->resume           ? "resume"

@@ -36,6 +36,8 @@ typedef struct RenderCommand {
     FilmPlace film_place;
     uint64_t samples;
     double seconds;
+    ErrorGoal error;
+    const char *error_of; /* as given */
     int threads;
     uint64_t seed;
     unsigned photons;
@@ -63,6 +65,9 @@ typedef enum RenderOption {
     OPTION_UNWEIGHTED,
     OPTION_SAMPLES,
     OPTION_TIME,
+    OPTION_ERROR,
+    OPTION_ERROR_PERCENTILE,
+    OPTION_ERROR_OF,
     OPTION_BACKEND,
     OPTION_DEVICE,
     OPTION_BATCH,

@@ -81,7 +81,7 @@ static bool exr_output_write(const RenderOutput *output, const ExrLane *lanes, c
 {
     const RenderLayers *layers = output->picture.layers;
     /* No time, machine or thread count: equal pictures make equal files. */
-    const ExrAttribute attributes[] = {
+    ExrAttribute attributes[] = {
         exr_text("integrator", output->integrator),
         exr_whole("maxDepth", (uint64_t)output->max_depth),
         exr_text("renderer", PACKAGE_NAME " " PACKAGE_VERSION),
@@ -90,16 +90,21 @@ static bool exr_output_write(const RenderOutput *output, const ExrLane *lanes, c
         exr_whole("seed", output->seed),
         exr_matrix("worldToCamera", output->world_to_camera),
         exr_matrix("worldToNDC", output->world_to_ndc),
-        exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world"),
+        {0},
+        {0},
     };
-    /* The last attribute only goes with the layer "depth". */
-    bool depth = layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0;
+    size_t attribute_count = sizeof attributes / sizeof attributes[0] - 2;
+    if (layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0)
+        attributes[attribute_count++] =
+            exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world");
+    if (output->error > 0.0)
+        attributes[attribute_count++] = exr_real("estimatedError", output->error);
     ExrPicture picture = {.channels = lanes->channels,
                           .channel_count = channel_count,
                           .width = film->width,
                           .height = film->height,
                           .attributes = attributes,
-                          .attribute_count = sizeof attributes / sizeof attributes[0] - (depth ? 0 : 1),
+                          .attribute_count = attribute_count,
                           .band = writing_band,
                           .lanes = lanes,
                           .lane_count = output->memory.lane_count};

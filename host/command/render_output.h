@@ -20,6 +20,7 @@ typedef struct RenderOutput {
     /* For the EXR header. */
     const char *scene_file;
     const char *integrator;
+    double error; /* estimated, for the header; 0: not known */
     uint64_t seed;
     int max_depth;
     float world_to_camera[16], world_to_ndc[16]; /* camera_matrices */

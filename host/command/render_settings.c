@@ -20,6 +20,19 @@ static bool checkpoint_check(const RenderCommand *command, Error *error)
     return true;
 }
 
+static bool goal_check(const RenderCommand *command, Error *error)
+{
+    const char *option = command->error_of ? "error-of" : command->error.percentile > 0.0 ? "error-percentile" : NULL;
+    if (option && !(command->error.goal > 0.0)) {
+        error_set(error, "--%s without --error: there is no error to be reached", option);
+        return error_fix(error, "add --error=E, e.g. --error=2%%, or leave --%s out", option);
+    }
+    if (!(command->error.goal > 0.0) || !command->chains.paper)
+        return true;
+    error_set(error, "--error: the scheme \"paper\" of mmlt has no independent halves to estimate an error from");
+    return error_fix(error, "leave --mlt=scheme=paper out, or use --time or --samples");
+}
+
 bool render_settings_check(const RenderCommand *command, const Integrator *integrator, Error *error)
 {
     const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
@@ -44,7 +57,7 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
                          "making large steps");
         return error_fix(error, "add --mlt=scheme=paper, or leave large-step out");
     }
-    if (!checkpoint_check(command, error))
+    if (!checkpoint_check(command, error) || !goal_check(command, error))
         return false;
     unsigned s = command->strategy[0], t = command->strategy[1];
     if (!command->only_strategy || strategy_taken(integrator->strategies, s, s + t - 1))

@@ -8,7 +8,7 @@
 
 #define RELATIVE_FLOOR 0.01 /* keeps the relative error of dark values finite */
 #define TRIMMED_SHARE 1000 /* one in this many pixels is left out */
-#define TILE 8 /* pixels a side, about what an eye or a denoiser averages over */
+#define TILE METRICS_TILE
 
 typedef struct Pixel {
     double image[3], reference[3];

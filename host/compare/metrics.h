@@ -17,6 +17,9 @@
 
 #include <stddef.h>
 
+/* Pixels a side of a tile, about what an eye or a denoiser averages over. */
+#define METRICS_TILE 8
+
 typedef struct Metrics {
     double mse;
     double rel_mse;

@@ -10,6 +10,7 @@
 
 #include "base/timing.h"
 #include "mmlt/tuning.h"
+#include "render/error_watch.h"
 #include "render/integrator.h"
 #include "render/layers.h"
 
@@ -23,7 +24,7 @@ static bool generation_follows(Mmlt *mmlt)
 {
     const RenderRun *run = mmlt->run;
     double limit = run->options->seconds, left = limit - (timing_now() - run->start);
-    if (*render_run_stop(run))
+    if (*render_run_stop(run) || error_watch_reached(run))
         return false;
     return !(limit > 0.0) || plan_fit(&mmlt->plan, mmlt->seconds, mmlt_least_seconds(mmlt), left, limit);
 }
@@ -42,6 +43,10 @@ static bool generation_next(Mmlt *mmlt, Error *error)
     if (!mmlt->whole)
         return true;
     plan_next(plan, mmlt->generation.index, mmlt->seconds, render_run_seconds(run));
+    /* After as many generations of one replica as of the other, and enough for both to know variances. */
+    if (mmlt->generation.index >= PATHS_FORCED && mmlt->generation.index % REPLICAS == 0 && error_watch_due(run) &&
+        !error_watch_look(run, error))
+        return false;
     return mmlt_keep(mmlt, error);
 }
 

@@ -82,6 +82,8 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
     plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
+    if (run->options->error.goal > 0.0) /* what is rendered until it is reached is not to depend on the clock */
+        mmlt->plan.timed = false;
     if (!generation_film_init(mmlt, error) || !estimators_init(mmlt, error) ||
         (!mmlt->options.chains_only && !combinations_init(mmlt, error)))
         return false;

@@ -10,9 +10,6 @@
 
 #include <math.h>
 
-/* The number of the second sequence's first sample, beyond all that the first can make. */
-#define SEQUENCE_SAMPLES 0x40000000u
-
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
                           Error *error)
 {

@@ -138,6 +138,7 @@ static void run_archive(RenderRun *run, CheckpointState state, Archive *archive)
     head_archive(archive, &run->checkpoint->identity);
     ARCHIVE_FIELD(archive, run->film->quantum_exponent);
     totals_archive(archive, &totals);
+    ARCHIVE_FIELD(archive, run->error);
     image_archive(archive, run, state);
 }
 
@@ -160,6 +161,9 @@ static bool checkpoint_write(RenderRun *run, CheckpointState state, Error *error
     ArchiveWriter writer;
     BackendStatistics statistics;
     run->interface->statistics(run->backend, &statistics);
+    checkpoint->last = begin;
+    if (!render_run_gather(run, error))
+        return false;
     bool good = archive_writer_begin(&writer, run->options->checkpoint.file, statistics.threads, error);
     if (good)
         run_archive(run, state, &writer.archive);
@@ -285,6 +289,7 @@ static bool past_restore(RenderRun *run, Error *error)
     if (exponent < -2048 || exponent > 2048)
         archive_fail(archive, "the film's quantum is out of range");
     totals_archive(archive, &run->past);
+    ARCHIVE_FIELD(archive, run->error);
     if (archive->failed)
         return failure_set(run->checkpoint, error);
     run->film->quantum_exponent = exponent;

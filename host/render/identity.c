@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Changes with what the archives of a rendering's state hold. */
-#define LAYOUT 1
+#define LAYOUT 2
 
 #ifdef KERNELS_IN_DOUBLE
 #define PRECISION " (double)"
@@ -120,6 +120,7 @@ void identity_make(Identity *identity, const Integrator *integrator, const Scene
     line_add(identity, "crop=%u,%u,%u,%u\n", film->crop_x0, film->crop_y0, film->crop_x1, film->crop_y1);
     paths_add(identity, options, frame);
     layers_add(identity, options->layers);
+    switch_add(identity, "error", options->error.goal > 0.0);
     if (integrator->render)
         chains_add(identity, &options->chains);
     line_add(identity, "scene=%016llx\n", (unsigned long long)scene_hash(scene));

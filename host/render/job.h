@@ -43,10 +43,19 @@ typedef struct CheckpointOptions {
     bool anew; /* if there is no such file, the rendering starts anew */
 } CheckpointOptions;
 
+/* --error, --error-percentile, --error-of (render/error_watch.h). */
+typedef struct ErrorGoal {
+    double goal; /* largest relative error of the picture when it is done; 0: none */
+    double percentile; /* of the pixels or tiles in order of their errors; 0: root mean square */
+    bool blocks; /* of the means of tiles, not of pixels */
+    double scale; /* of the picture that is written */
+} ErrorGoal;
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
     unsigned samples; /* per pixel; 0: no limit but `seconds` */
     double seconds; /* 0: no limit but `samples` */
+    ErrorGoal error; /* a further limit; needs `layers` */
     int max_depth; /* segments, >= 1 */
     uint64_t seed;
     unsigned photons; /* of caustics, at most (path/photon.h); 0: none; PHOTONS_DEFAULT */
@@ -74,6 +83,7 @@ typedef struct RenderProgress {
     uint64_t rays;
     double fraction_before; /* what of `fraction` and `samples` is of earlier runs (--resume) */
     uint64_t samples_before;
+    double error; /* estimated relative error, if there is a goal; 0 before the first estimate */
 } RenderProgress;
 
 typedef struct RenderCallbacks {

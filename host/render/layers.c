@@ -14,9 +14,14 @@ static bool wants(const RenderLayers *layers, Layer layer)
     return (layers->wanted & LAYER_BIT(layer)) != 0;
 }
 
+static bool has_halves(const RenderLayers *layers)
+{
+    return layers->keep_halves || wants(layers, LAYER_HALVES);
+}
+
 bool render_layers_compare_halves(const RenderLayers *layers)
 {
-    return layers && (wants(layers, LAYER_HALVES) || wants(layers, LAYER_VARIANCE));
+    return layers && (has_halves(layers) || wants(layers, LAYER_VARIANCE));
 }
 
 #define LAYER_OF(NAME, ...) [AOV_##NAME] = LAYER_##NAME,
@@ -75,10 +80,10 @@ static bool aovs_init(RenderLayers *layers, const Film *film, Error *error)
     return true;
 }
 
-bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error)
+bool render_layers_init(RenderLayers *layers, unsigned wanted, bool keep_halves, const Film *film, Error *error)
 {
-    *layers = (RenderLayers){.wanted = wanted};
-    return (!wants(layers, LAYER_HALVES) || halves_init(layers, film, error)) &&
+    *layers = (RenderLayers){.wanted = wanted, .keep_halves = keep_halves};
+    return (!has_halves(layers) || halves_init(layers, film, error)) &&
            (!wants(layers, LAYER_VARIANCE) || variance_init(layers, film, error)) && aovs_init(layers, film, error);
 }
 
@@ -108,7 +113,8 @@ static void variance_archive(Archive *archive, RenderLayers *layers)
 void render_layers_archive(Archive *archive, RenderLayers *layers)
 {
     archive_same(archive, layers->wanted, "the layers");
-    for (int i = 0; i < 2 && wants(layers, LAYER_HALVES); ++i)
+    archive_same(archive, has_halves(layers), "the halves");
+    for (int i = 0; i < 2 && has_halves(layers); ++i)
         film_archive(archive, &layers->halves[i]);
     if (wants(layers, LAYER_VARIANCE))
         variance_archive(archive, layers);
@@ -164,7 +170,7 @@ static double variance_of(const PixelSeries halves[2], size_t value)
 
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error)
 {
-    return (!wants(layers, LAYER_HALVES) || film_merge(&layers->halves[half], part, error)) &&
+    return (!has_halves(layers) || film_merge(&layers->halves[half], part, error)) &&
            (!wants(layers, LAYER_VARIANCE) || variance_add(layers, part, half, error));
 }
 

@@ -37,6 +37,7 @@ typedef enum Layer { LAYER_LIST(LAYER_ENUMERATE) LAYER_COUNT } Layer;
 
 typedef struct RenderLayers {
     unsigned wanted; /* LAYER_BIT of each */
+    bool keep_halves; /* even if they are not wanted: their difference is */
     Film halves[2];
     PixelSeries own[2], light[2]; /* for the variance of FILM_OWN and of FILM_LIGHT: of both halves */
     size_t size[2]; /* of the crop */
@@ -45,11 +46,12 @@ typedef struct RenderLayers {
     unsigned aov_samples; /* samples per pixel so far */
 } RenderLayers;
 
-/* Whether the layers compare the image's halves, whose errors must then be independent. layers: may be NULL. */
+/* Whether the image's halves are compared, by its layers or for its error; their errors must then be independent. layers:
+ * may be NULL. */
 bool render_layers_compare_halves(const RenderLayers *layers);
 
-/* Allocates the layers in `wanted` for a film like `film`. Call render_layers_destroy even on failure. */
-bool render_layers_init(RenderLayers *layers, unsigned wanted, const Film *film, Error *error);
+/* Allocates the layers in `wanted`, and the halves if they are to be kept, for a film like `film`. Call render_layers_destroy even on failure. */
+bool render_layers_init(RenderLayers *layers, unsigned wanted, bool keep_halves, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 
 /* Saves the layers, or restores them into layers made for the same film. */

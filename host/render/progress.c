@@ -47,7 +47,7 @@ void progress_rate(double rate, char *text, size_t size)
 
 void progress_line(const RenderProgress *now, int columns, char *text, size_t size)
 {
-    char elapsed[24], remaining[32] = "?", samples[24], rays[24], figures[160];
+    char elapsed[24], remaining[32] = "?", samples[24], rays[24], found[32] = "", figures[192];
     progress_time(now->elapsed, elapsed, sizeof elapsed);
     double fresh = now->fraction - now->fraction_before;
     double left = fresh > 0.0 ? now->elapsed * (1.0 - now->fraction) / fresh : 0.0;
@@ -57,9 +57,11 @@ void progress_line(const RenderProgress *now, int columns, char *text, size_t si
     double per_second = now->elapsed > 0.0 ? 1.0 / now->elapsed : 0.0;
     progress_rate((double)(now->samples - now->samples_before) * per_second, samples, sizeof samples);
     progress_rate((double)now->rays * per_second, rays, sizeof rays);
+    if (now->error > 0.0)
+        snprintf(found, sizeof found, "error %.3g %%, ", 100.0 * now->error);
     /* at most 99 %: the rendering is not done while this line is shown */
-    snprintf(figures, sizeof figures, "%3.0f %%  %s, %s%s  %ssamples/s  %srays/s",
-             fmin(99.0, floor(100.0 * now->fraction)), elapsed, finishing ? "finishing" : remaining,
+    snprintf(figures, sizeof figures, "%3.0f %%  %s%s, %s%s  %ssamples/s  %srays/s",
+             fmin(99.0, floor(100.0 * now->fraction)), found, elapsed, finishing ? "finishing" : remaining,
              finishing ? "" : " left", samples, rays);
 
     int width = columns - (int)strlen(figures) - 4; /* brackets, a blank, and a free last column */

@@ -7,6 +7,7 @@
 #include "base/timing.h"
 #include "layout/diagnostics.h"
 #include "render/checkpoint.h"
+#include "render/error_watch.h"
 #include "render/film_pilot.h"
 #include "render/photon_map.h"
 
@@ -35,16 +36,51 @@ typedef struct PassLoop {
     uint64_t next, total; /* items; without a limit, all sample numbers */
 } PassLoop;
 
-/* Runs a pass of `items` items. */
-static bool pass_run(PassLoop *loop, uint items, Error *error)
+/* Samples of pixels that follow each other: a pass does them or the first of them. */
+typedef struct SampleSpan {
+    uint half; /* whose samples they are, if there are halves */
+    uint64_t sample; /* in its sequence */
+    uint64_t pixel; /* in the order of pixels */
+    uint64_t items; /* how many */
+} SampleSpan;
+
+/* Halves take turns: between two looks at the error (error_watch.h) half of the samples are made of one, then of the other. */
+static SampleSpan span_of_halves(const PassLoop *loop)
+{
+    uint64_t pixels = loop->run->crop_pixels, begin = 0, end = error_watch_next(0);
+    while (end * pixels <= loop->next) {
+        begin = end;
+        end = error_watch_next(begin);
+    }
+    end = end * pixels < loop->total ? end : loop->total / pixels;
+    uint64_t first = (end - begin + 1) / 2 * pixels, done = loop->next - begin * pixels;
+    SampleSpan span = {.half = done >= first, .items = done >= first ? (end - begin) * pixels - done : first - done};
+    done -= span.half ? first : 0;
+    span.sample = begin / 2 + done / pixels;
+    span.pixel = done % pixels;
+    return span;
+}
+
+static SampleSpan span_next(const PassLoop *loop)
+{
+    uint64_t pixels = loop->run->crop_pixels;
+    if (loop->run->halves)
+        return span_of_halves(loop);
+    return (SampleSpan){.sample = loop->next / pixels, .pixel = loop->next % pixels, .items = loop->total - loop->next};
+}
+
+/* Runs a pass of the first `items` items of a span. */
+static bool pass_run(PassLoop *loop, const SampleSpan *span, uint items, Error *error)
 {
     RenderRun *run = loop->run;
     uint64_t delivered = 0;
-    run->frame.pass.sample_index = run->options->first_sample + (uint)(loop->next / run->crop_pixels);
-    run->frame.pass.first_item = (uint)(loop->next % run->crop_pixels);
+    uint sequence = span->half * SEQUENCE_SAMPLES;
+    run->frame.pass.sample_index = run->options->first_sample + sequence + (uint)span->sample;
+    run->frame.pass.first_item = (uint)span->pixel;
     run->frame.pass.item_count = items;
+    run->frame.path.sobol = run->frame.path.sobol > 0 ? 1 + sequence : 0;
     run->frame.film.exponent = run->film->quantum_exponent;
-    const SplatSink sink = render_run_sink(run->film);
+    const SplatSink sink = render_run_sink(run->halves ? &run->halves[span->half] : run->film);
     if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop_between(run), &delivered,
                              error)) {
         run->done += delivered; /* these are in the film all the same */
@@ -55,13 +91,12 @@ static bool pass_run(PassLoop *loop, uint items, Error *error)
     return true;
 }
 
-/* Size of the next pass, in items, from the speed so far. */
-static uint pass_items(const PassLoop *loop, double elapsed)
+/* Size of the next pass, in items, from the speed so far; at most `left`. */
+static uint pass_items(const PassLoop *loop, double elapsed, uint64_t left)
 {
     uint64_t fresh = loop->run->done - loop->run->past.done;
     double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)fresh / elapsed : PASS_ITEMS_MIN;
     uint items = wanted < PASS_ITEMS_MIN ? PASS_ITEMS_MIN : wanted > PASS_ITEMS_MAX ? PASS_ITEMS_MAX : (uint)wanted;
-    uint64_t left = loop->total - loop->next;
     return left < items ? (uint)left : items;
 }
 
@@ -69,6 +104,27 @@ static void loop_archive(void *context, Archive *archive)
 {
     PassLoop *loop = context;
     ARCHIVE_FIELD(archive, loop->next);
+}
+
+/* Looks at the error after the samples between two looks, or the last ones. */
+static bool look_if_due(const PassLoop *loop, Error *error)
+{
+    RenderRun *run = loop->run;
+    if (!run->halves || loop->next % run->crop_pixels != 0 || loop->next < ERROR_LOOK_FIRST * run->crop_pixels)
+        return true;
+    uint64_t samples = loop->next / run->crop_pixels, look = error_watch_next(0);
+    while (look < samples)
+        look = error_watch_next(look);
+    return (look != samples && loop->next < loop->total) || error_watch_look(run, error);
+}
+
+/* Whether the rendering is to end before the next pass. */
+static bool passes_end(const PassLoop *loop, double elapsed)
+{
+    const RenderRun *run = loop->run;
+    /* Even with --time every pixel gets one sample: no holes in the image. */
+    bool spent = run->options->seconds > 0.0 && elapsed >= run->options->seconds && loop->next >= run->crop_pixels;
+    return spent || *render_run_stop(run) || error_watch_reached(run);
 }
 
 static bool passes_run(PassLoop *loop, Error *error)
@@ -80,11 +136,10 @@ static bool passes_run(PassLoop *loop, Error *error)
         return false;
     while (loop->next < loop->total) {
         double elapsed = timing_now() - run->start;
-        /* Even with --time every pixel gets one sample: no holes in the image. */
-        bool spent = options->seconds > 0.0 && elapsed >= options->seconds && loop->next >= run->crop_pixels;
-        if (spent || *render_run_stop(run))
+        if (passes_end(loop, elapsed))
             break;
-        if (!pass_run(loop, pass_items(loop, elapsed), error))
+        const SampleSpan span = span_next(loop);
+        if (!pass_run(loop, &span, pass_items(loop, elapsed, span.items), error) || !look_if_due(loop, error))
             return false;
         render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
         if (!render_layers_sample(run, run->done, error))
@@ -105,7 +160,13 @@ static bool samples_render(const Integrator *integrator, RenderRun *run, Error *
     if (!integrator->list(&run->frame, &loop.list, error))
         return false;
     loop.list.photons = &run->photons;
-    bool done = passes_run(&loop, error);
+    if (options->error.goal > 0.0)
+        run->halves = options->layers->halves;
+    Error gathering = {0};
+    bool done = passes_run(&loop, error), gathered = render_run_gather(run, &gathering);
+    if (done && !gathered)
+        *error = gathering;
+    done = done && gathered;
     step_list_destroy(&loop.list);
     return done;
 }
@@ -121,6 +182,8 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     result->backend.shadow_rays += run->past.shadow_rays;
     run->interface->diagnostics(run->backend, counters);
     result->chains = run->chains;
+    result->error = run->error;
+    result->error_reached = error_watch_reached(run);
     result->stopped = *render_run_stop(run);
     result->photons = run->photons.params.count;
     result->diagnostic_count = 0;
@@ -215,7 +278,7 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     bool done = checkpoint_begin(&checkpoint, &run, integrator, scene, error) &&
                 (task->keep_quantum || run.resumed || film_pilot_run(&run, integrator, scene, error)) &&
                 render_photons_make(&run, integrator, scene, error) &&
-                (!layers || render_layers_init(layers, layers->wanted, film, error)) &&
+                (!layers || render_layers_init(layers, layers->wanted, options->error.goal > 0.0, film, error)) &&
                 (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     photon_map_destroy(&run.photons);

@@ -21,6 +21,8 @@ typedef struct RenderResult {
     uint photons;
     BackendStatistics backend;
     ChainStatistics chains;
+    ErrorWatch error;
+    bool error_reached; /* the goal of options->error */
     int diagnostic_count;
     const char *diagnostic_names[DIAGNOSTIC_NAMES_MAX];
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];

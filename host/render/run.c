@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/timing.h"
+#include "render/error_watch.h"
 
 #include <math.h>
 
@@ -37,6 +38,14 @@ SplatSink render_run_sink(Film *film)
     return (SplatSink){.splats = film_splats, .sums = film_sums, .sum_words = film_sum_words(film), .context = film};
 }
 
+bool render_run_gather(RenderRun *run, Error *error)
+{
+    if (!run->halves)
+        return true;
+    film_clear(run->film);
+    return film_merge(run->film, &run->halves[0], error) && film_merge(run->film, &run->halves[1], error);
+}
+
 void render_run_report(const RenderRun *run, double fraction)
 {
     if (!run->callbacks || !run->callbacks->progress)
@@ -45,11 +54,13 @@ void render_run_report(const RenderRun *run, double fraction)
     run->interface->statistics(run->backend, &statistics);
     double elapsed = timing_now() - run->start;
     double by_time = run->options->seconds > 0.0 ? elapsed / run->options->seconds : 0.0;
+    fraction = fmax(fraction, error_watch_fraction(run));
     RenderProgress progress = {.elapsed = elapsed,
                                .fraction = fmin(1.0, fmax(fraction, by_time)),
                                .samples = run->done,
                                .rays = statistics.closest_rays + statistics.shadow_rays,
-                               .samples_before = run->past.done};
+                               .samples_before = run->past.done,
+                               .error = run->error.estimate};
     if (run->done > 0 && fraction > by_time)
         progress.fraction_before = progress.fraction * (double)run->past.done / (double)run->done;
     run->callbacks->progress(run->callbacks->context, &progress);
@@ -61,7 +72,7 @@ void render_run_save_if_due(RenderRun *run)
     if (!run->callbacks || !run->callbacks->save || run->options->save_every <= 0.0 ||
         timing_now() - run->last_save < run->options->save_every)
         return;
-    bool saved = run->callbacks->save(run->callbacks->context, run->film, &error);
+    bool saved = render_run_gather(run, &error) && run->callbacks->save(run->callbacks->context, run->film, &error);
     /* One warning per series of failures. */
     if (!saved && !run->save_failed)
         log_message(LOG_WARNING, "%s; rendering continues, and saving will be tried again", error_text(&error));

@@ -17,6 +17,15 @@ typedef struct RenderPast {
     uint64_t diagnostics[DIAGNOSTIC_COUNT];
 } RenderPast;
 
+/* The number of the second sequence's first sample of a pixel, beyond all that the first can make. */
+#define SEQUENCE_SAMPLES 0x40000000u
+
+/* The latest estimate of the picture's error (render/error_watch.h). */
+typedef struct ErrorWatch {
+    double estimate, deviation; /* relative; its standard error */
+    uint64_t work; /* RenderRun.done then; 0: there was none */
+} ErrorWatch;
+
 typedef struct RenderRun {
     const BackendInterface *interface;
     Backend *backend;
@@ -26,6 +35,7 @@ typedef struct RenderRun {
     const Guide *guide; /* the scene's */
     PhotonMap photons;
     Film *film;
+    Film *halves; /* two films of which `film` is the sum, by render_run_gather; NULL: it is added to itself */
     uint64_t crop_pixels;
     uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */
     struct Checkpoint *checkpoint; /* NULL: none is written or resumed (render/checkpoint.h) */
@@ -34,6 +44,7 @@ typedef struct RenderRun {
     double start, last_save;
     bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;
+    ErrorWatch error;
 } RenderRun;
 
 /* The flag that becomes 1 if the rendering is to end at once (options->stop); a constant 0 if there is none. */
@@ -48,6 +59,9 @@ double render_run_seconds(const RenderRun *run);
 /* A sink that adds splats to the film. Passes that use it must set frame.film.exponent to the film's
  * quantum_exponent. */
 SplatSink render_run_sink(Film *film);
+
+/* Brings the film up to date with its halves, if it has any. */
+bool render_run_gather(RenderRun *run, Error *error);
 
 /* Calls `progress`. fraction: of the samples wanted; 0 if their number is not limited. */
 void render_run_report(const RenderRun *run, double fraction);

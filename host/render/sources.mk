@@ -3,7 +3,9 @@ libtwinlight_host_la_SOURCES += \
 	host/render/bd_fields.c host/render/bd_fields.h \
 	host/render/chain_statistics.c host/render/chain_statistics.h \
 	host/render/checkpoint.c host/render/checkpoint.h \
+	host/render/error_watch.c host/render/error_watch.h \
 	host/render/film_pilot.c host/render/film_pilot.h \
+	host/render/halves_error.c host/render/halves_error.h \
 	host/render/identity.c host/render/identity.h \
 	host/render/integrator.c host/render/integrator.h \
 	host/render/integrator_bdpt.c \

@@ -148,6 +148,25 @@ static void stats_diagnostics(JsonWriter *json, const RenderStats *stats)
     json_object_end(json);
 }
 
+static void stats_error(JsonWriter *json, const RenderStats *stats)
+{
+    const RenderResult *result = stats->result;
+    const ErrorGoal *goal = stats->error;
+    json_object_begin(json, "error");
+    json_number(json, "goal", goal->goal);
+    json_string(json, "of", goal->blocks ? "blocks" : "pixels");
+    if (goal->percentile > 0.0)
+        json_number(json, "percentile", goal->percentile);
+    if (result->error.work > 0) {
+        json_number(json, "estimate", result->error.estimate);
+        json_number(json, "standard_error", result->error.deviation);
+        json_number(json, "samples_per_pixel",
+                    (double)result->error.work * result->samples_per_pixel / (double)result->samples);
+    }
+    json_bool(json, "reached", result->error_reached);
+    json_object_end(json);
+}
+
 static void stats_print(FILE *stream, const RenderStats *stats)
 {
     const RenderResult *result = stats->result;
@@ -167,6 +186,8 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
     json_unsigned(&json, "photons", result->photons);
     json_bool(&json, "stopped", result->stopped);
+    if (stats->error->goal > 0.0)
+        stats_error(&json, stats);
     stats_seconds(&json, stats);
     stats_rays(&json, result);
     if (result->chains.steps > 0)

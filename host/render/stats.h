@@ -18,6 +18,7 @@ typedef struct RenderStats {
     const char *exr;
     const char *png; /* "": none */
     const RenderResult *result;
+    const ErrorGoal *error;
     /* Wall-clock seconds. */
     double load, build, render, write, total;
 } RenderStats;

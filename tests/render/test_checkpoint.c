@@ -34,19 +34,22 @@ typedef struct CheckpointCase {
     const Integrator *(*integrator)(void);
     unsigned samples, photons, layers;
     ChainOptions chains;
+    double error; /* goal; 0: none */
 } CheckpointCase;
 
 static const CheckpointCase CASES[] = {
-    {"cornell", integrator_pt, 160, 0, LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_DEPTH), {0}},
-    {"pool", integrator_pt, 40, 2000, 0, {0}},
-    {"cornell", integrator_ibpt, 60, 0, 0, {0}},
-    {"cornell", integrator_bdpt, 60, 0, 0, {0}},
-    {"cornell", integrator_mmlt, 150, 0, 0, {.chains = 64}},
-    {"pool", integrator_mmlt, 30, 2000, LAYERS_AOV, {0}},
-    {"cornell", integrator_mmlt, 100, 0, LAYER_BIT(LAYER_HALVES) | LAYER_BIT(LAYER_VARIANCE), {.chains = 128}},
-    {"cornell", integrator_mmlt, 100, 0, LAYER_BIT(LAYER_BY_DEPTH), {0}},
-    {"cornell", integrator_mmlt, 100, 0, 0, {.paper = true, .chains = 256}},
-    {"cornell", integrator_mmlt, 100, 0, 0, {.chains_only = true}},
+    {"cornell", integrator_pt, 160, 0, LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_DEPTH), {0}, 0.0},
+    {"pool", integrator_pt, 40, 2000, 0, {0}, 0.0},
+    {"cornell", integrator_ibpt, 60, 0, 0, {0}, 0.0},
+    {"cornell", integrator_bdpt, 60, 0, 0, {0}, 0.0},
+    {"cornell", integrator_mmlt, 150, 0, 0, {.chains = 64}, 0.0},
+    {"pool", integrator_mmlt, 30, 2000, LAYERS_AOV, {0}, 0.0},
+    {"cornell", integrator_mmlt, 100, 0, LAYER_BIT(LAYER_HALVES) | LAYER_BIT(LAYER_VARIANCE), {.chains = 128}, 0.0},
+    {"cornell", integrator_mmlt, 100, 0, LAYER_BIT(LAYER_BY_DEPTH), {0}, 0.0},
+    {"cornell", integrator_mmlt, 100, 0, 0, {.paper = true, .chains = 256}, 0.0},
+    {"cornell", integrator_mmlt, 100, 0, 0, {.chains_only = true}, 0.0},
+    {"cornell", integrator_pt, 0, 0, 0, {0}, 0.04},
+    {"cornell", integrator_mmlt, 0, 0, LAYER_BIT(LAYER_HALVES), {0}, 0.08},
 };
 
 typedef struct Rendering {
@@ -102,7 +105,8 @@ static bool rendering_run(Rendering *rendering, int passes, const char *checkpoi
         .photons = of->photons,
         .reconstruction = RECONSTRUCTION_SPLAT,
         .chains = of->chains,
-        .layers = of->layers != 0 ? &rendering->layers : NULL,
+        .layers = of->layers != 0 || of->error > 0.0 ? &rendering->layers : NULL,
+        .error = {.goal = of->error, .scale = 1.0},
         .checkpoint = {.file = checkpoint, .every = 0.02, .resume = checkpoint, .anew = true},
         .stop = &stop};
     const RenderTask task = {.integrator = of->integrator(),

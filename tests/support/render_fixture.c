@@ -69,6 +69,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
         image->film.quantum_exponent = setup->quantum_of->quantum_exponent;
     RenderOptions options = {.first_sample = setup->first_sample,
                              .samples = setup->samples,
+                             .error = setup->error,
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
                              .photons = setup->photons,

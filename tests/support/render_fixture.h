@@ -11,6 +11,7 @@ typedef struct RenderSetup {
     const char *path;
     int width, height; /* 0: the scene's */
     unsigned first_sample, samples;
+    ErrorGoal error;
     int max_depth; /* 0: the scene's */
     int threads;
     const BackendInterface *backend; /* NULL: the CPU's */

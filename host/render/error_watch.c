@@ -1,0 +1,46 @@
+#include "render/error_watch.h"
+
+#include "render/halves_error.h"
+#include "render/layers.h"
+
+#include <math.h>
+
+bool error_watch_due(const RenderRun *run)
+{
+    const ErrorWatch *watch = &run->error;
+    if (!(run->options->error.goal > 0.0))
+        return false;
+    double from =
+        watch->work > 0 ? ERROR_LOOK_GROWTH * (double)watch->work : (double)ERROR_LOOK_FIRST * (double)run->crop_pixels;
+    return (double)run->done >= from;
+}
+
+bool error_watch_look(RenderRun *run, Error *error)
+{
+    HalvesError found;
+    if (!halves_error(run->options->layers->halves, &run->options->error, &found, error))
+        return false;
+    run->error = (ErrorWatch){.estimate = found.value, .deviation = found.deviation, .work = run->done};
+    return true;
+}
+
+bool error_watch_reached(const RenderRun *run)
+{
+    const ErrorWatch *watch = &run->error;
+    return watch->work > 0 && watch->estimate + watch->deviation <= run->options->error.goal;
+}
+
+uint64_t error_watch_next(uint64_t samples)
+{
+    uint64_t next = 2 * (uint64_t)ceil(0.5 * ERROR_LOOK_GROWTH * (double)samples);
+    return next < ERROR_LOOK_FIRST ? ERROR_LOOK_FIRST : next > samples ? next : samples + 2;
+}
+
+double error_watch_fraction(const RenderRun *run)
+{
+    const ErrorWatch *watch = &run->error;
+    double goal = run->options->error.goal, error = watch->estimate + watch->deviation;
+    if (watch->work == 0 || !(goal > 0.0) || !(error > 0.0))
+        return 0.0;
+    return fmin(1.0, (double)run->done / (double)watch->work * (goal / error) * (goal / error));
+}

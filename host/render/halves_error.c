@@ -1,0 +1,217 @@
+#include "render/halves_error.h"
+
+#include "base/sample_statistics.h"
+#include "compare/metrics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define TILE METRICS_TILE
+
+/* What is resolved of a row of tiles. */
+typedef enum Plane { PICTURE, DIFFERENCE, PLANES } Plane;
+
+typedef struct Estimate {
+    const Film *halves;
+    const ErrorGoal *goal;
+    FilmScale scales[2];
+    size_t width, height;
+    float *planes[PLANES]; /* 3 x width x TILE: the picture; difference of the halves, of the picture's variance */
+    float *rgb[2]; /* one part of each half */
+    double *squares; /* relative square of the error of each pixel, or of each tile */
+    size_t count; /* of squares so far */
+    double *tiles; /* their sum in each tile */
+    size_t tile_count;
+} Estimate;
+
+/* ---- a row of tiles ---------------------------------------------------------------------------------------------- */
+
+/* Share of half 0 in a pixel's part that has these samples. */
+static double share_of(double a, double b)
+{
+    return a + b > 0.0 ? a / (a + b) : 0.5;
+}
+
+/* Adds pixels first ... first + count - 1 of a part of both halves to the planes. */
+static void part_add(const Estimate *estimate, FilmPart part, size_t first, size_t count)
+{
+    const Film *halves = estimate->halves;
+    bool by_samples = part == FILM_OWN || halves[0].light_samples + halves[1].light_samples == 0;
+    double share = share_of((double)halves[0].light_samples, (double)halves[1].light_samples);
+    for (int half = 0; half < 2; ++half)
+        film_resolve_pixels(&halves[half], part, estimate->scales[half], first, count, estimate->rgb[half]);
+    for (size_t value = 0; value < 3 * count; ++value) {
+        size_t pixel = first + value / 3;
+        double a = (double)estimate->rgb[0][value], b = (double)estimate->rgb[1][value];
+        double p = by_samples ? share_of(halves[0].counts[pixel], halves[1].counts[pixel]) : share;
+        estimate->planes[PICTURE][value] += (float)(p * a + (1.0 - p) * b);
+        estimate->planes[DIFFERENCE][value] += (float)(sqrt(p * (1.0 - p)) * (a - b));
+    }
+}
+
+static void rows_resolve(const Estimate *estimate, size_t y, size_t rows)
+{
+    size_t first = y * estimate->width, count = rows * estimate->width;
+    for (int plane = 0; plane < PLANES; ++plane)
+        for (size_t value = 0; value < 3 * count; ++value)
+            estimate->planes[plane][value] = 0.0f;
+    part_add(estimate, FILM_OWN, first, count);
+    if (estimate->halves[0].light_sums)
+        part_add(estimate, FILM_LIGHT, first, count);
+}
+
+/* ---- a tile ------------------------------------------------------------------------------------------------------ */
+
+/* One channel of a tile. */
+typedef struct TileValues {
+    size_t count;
+    double picture[TILE * TILE], difference[TILE * TILE];
+} TileValues;
+
+static void tile_values(const Estimate *estimate, size_t x, size_t rows, size_t channel, TileValues *values)
+{
+    size_t end = x + TILE < estimate->width ? x + TILE : estimate->width;
+    values->count = 0;
+    for (size_t row = 0; row < rows; ++row)
+        for (size_t column = x; column < end; ++column) {
+            size_t value = 3 * (row * estimate->width + column) + channel;
+            double picture = (double)estimate->planes[PICTURE][value];
+            double difference = (double)estimate->planes[DIFFERENCE][value];
+            bool finite = isfinite(picture) && isfinite(difference);
+            values->picture[values->count] = finite ? picture : 0.0;
+            values->difference[values->count++] = finite ? difference : 0.0;
+        }
+}
+
+static double mean_of(const double *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; ++i)
+        sum += values[i];
+    return sum / (double)count;
+}
+
+/* How much of the tile's variety is the picture's, not noise: 0 ... 1. */
+static double variety_of(const TileValues *values, double mean)
+{
+    double variety = 0.0, noise = 0.0;
+    for (size_t i = 0; i < values->count; ++i) {
+        variety += (values->picture[i] - mean) * (values->picture[i] - mean);
+        noise += values->difference[i] * values->difference[i];
+    }
+    return variety > noise ? 1.0 - noise / variety : 0.0;
+}
+
+/* Adds a third of the relative squares of one channel: of the pixels, or of the tile. */
+static void channel_add(const TileValues *values, bool blocks, double *squares)
+{
+    double mean = mean_of(values->picture, values->count), difference = mean_of(values->difference, values->count);
+    double own = variety_of(values, mean);
+    if (blocks) {
+        squares[0] += metrics_relative_square(difference * difference, mean) / 3.0;
+        return;
+    }
+    for (size_t i = 0; i < values->count; ++i)
+        squares[i] += metrics_relative_square(values->difference[i] * values->difference[i],
+                                              mean + own * (values->picture[i] - mean)) /
+                      3.0;
+}
+
+static void tile_add(Estimate *estimate, size_t x, size_t rows)
+{
+    bool blocks = estimate->goal->blocks;
+    double *squares = estimate->squares + estimate->count, sum = 0.0;
+    TileValues values;
+    for (size_t channel = 0; channel < 3; ++channel) {
+        tile_values(estimate, x, rows, channel, &values);
+        channel_add(&values, blocks, squares);
+    }
+    size_t added = blocks ? 1 : values.count;
+    for (size_t i = 0; i < added; ++i)
+        sum += squares[i];
+    estimate->count += added;
+    estimate->tiles[estimate->tile_count++] = sum;
+}
+
+/* ---- the film ---------------------------------------------------------------------------------------------------- */
+
+/* Root of the mean. Its standard error is, relative to it, half of that of the sum over the tiles, whose variance is estimated
+ * from the differences between neighbours: tiles have different errors, but those of neighbours are alike. */
+static HalvesError mean_error(const Estimate *estimate)
+{
+    double sum = 0.0, spread = 0.0, paired = 0.0, tiles = (double)estimate->tile_count;
+    for (size_t i = 0; i < estimate->tile_count; ++i)
+        sum += estimate->tiles[i];
+    for (size_t i = 0; i + 1 < estimate->tile_count; i += 2, paired += 2.0)
+        spread += (estimate->tiles[i] - estimate->tiles[i + 1]) * (estimate->tiles[i] - estimate->tiles[i + 1]);
+    double value = sqrt(sum / (double)estimate->count);
+    double deviation = paired > 0.0 ? sqrt(spread * tiles / paired) : sum;
+    return (HalvesError){value, sum > 0.0 ? 0.5 * value * deviation / sum : 0.0};
+}
+
+/* The error at a fraction of the pixels in order of their errors. */
+static double percentile_of(const Estimate *estimate, double part)
+{
+    double last = (double)(estimate->count - 1), place = ceil(part * (double)estimate->count) - 1.0;
+    return sqrt(estimate->squares[(size_t)fmin(fmax(place, 0.0), last)]);
+}
+
+/* About how many pixels have one error between them, for the pixel filter spreads it. */
+#define PIXELS_ALIKE 4.0
+
+/* Its standard error is that of the rank of the errors below it. */
+static HalvesError percentile_error(const Estimate *estimate)
+{
+    double part = 0.01 * estimate->goal->percentile;
+    double independent = fmax(1.0, (double)estimate->count / (estimate->goal->blocks ? 1.0 : PIXELS_ALIKE));
+    sample_sort(estimate->squares, estimate->count);
+    double value = percentile_of(estimate, part);
+    return (HalvesError){value, percentile_of(estimate, part + sqrt(part * (1.0 - part) / independent)) - value};
+}
+
+static bool estimate_allocate(Estimate *estimate, Error *error)
+{
+    size_t values = 3 * estimate->width * TILE, pixels = estimate->width * estimate->height;
+    size_t tiles = ((estimate->width + TILE - 1) / TILE) * ((estimate->height + TILE - 1) / TILE);
+    bool complete = true;
+    for (int i = 0; i < 2; ++i) {
+        estimate->planes[i] = malloc(values * sizeof(float));
+        estimate->rgb[i] = malloc(values * sizeof(float));
+        complete = complete && estimate->planes[i] && estimate->rgb[i];
+    }
+    estimate->squares = calloc(estimate->goal->blocks ? tiles : pixels, sizeof *estimate->squares);
+    estimate->tiles = malloc(tiles * sizeof *estimate->tiles);
+    complete = complete && estimate->squares && estimate->tiles;
+    return complete ||
+           error_memory(error, 4 * values * sizeof(float) + pixels * sizeof(double), "the error's estimate");
+}
+
+static void estimate_free(Estimate *estimate)
+{
+    for (int i = 0; i < 2; ++i) {
+        free(estimate->planes[i]);
+        free(estimate->rgb[i]);
+    }
+    free(estimate->squares);
+    free(estimate->tiles);
+}
+
+bool halves_error(const Film halves[2], const ErrorGoal *goal, HalvesError *error_found, Error *error)
+{
+    const int *crop = halves[0].crop;
+    Estimate estimate = {
+        .halves = halves, .goal = goal, .width = (size_t)(crop[2] - crop[0]), .height = (size_t)(crop[3] - crop[1])};
+    bool done = estimate_allocate(&estimate, error);
+    for (int half = 0; half < 2; ++half)
+        estimate.scales[half] = film_scale_of(&halves[half], (float)goal->scale);
+    for (size_t y = 0; done && y < estimate.height; y += TILE) {
+        size_t rows = y + TILE < estimate.height ? TILE : estimate.height - y;
+        rows_resolve(&estimate, y, rows);
+        for (size_t x = 0; x < estimate.width; x += TILE)
+            tile_add(&estimate, x, rows);
+    }
+    if (done)
+        *error_found = goal->percentile > 0.0 ? percentile_error(&estimate) : mean_error(&estimate);
+    estimate_free(&estimate);
+    return done;
+}
