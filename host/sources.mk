@@ -9,9 +9,10 @@ include host/scene/sources.mk
 include host/pbrt/sources.mk
 include host/render/sources.mk
 include host/mmlt/sources.mk
+include host/serve/sources.mk
 include host/bench/sources.mk
 include host/command/sources.mk
-libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) -lm
+libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) $(MICROHTTPD_LIBS) -lm
 
 # The commit goes into reports of measurements; the file changes only when that does.
 host/base/build_info.lo: build_commit.h

@@ -5,11 +5,11 @@
 #   host/        host, shared; main.c alone may name a backend's header
 # Within host/ and shared/ a room may include itself and those before it, in the order below, and no file includes itself by
 # way of others (x.c and x.h count as one). A room that is not in the list is a fault, and so is an include that this tree
-# does not resolve. config.h, build_commit.h (both made by the build) and <system headers> are free outside shared/.
+# does not resolve. config.h, build_commit.h, serve_page.h (made by the build) and <system headers> are free outside shared/.
 srcdir=${srcdir:-$(dirname "$0")/..}
 
 shared_rooms='math layout geometry bsdf light camera path chain kernels'
-host_rooms='base image film backend compare scene pbrt render mmlt bench command'
+host_rooms='base image film backend compare scene pbrt render mmlt serve bench command'
 
 # resolve ROOT DIRECTORY NAME: prints the file that #include "NAME" in DIRECTORY refers to, relative to ROOT, in the
 # order of the build's include path, or nothing if there is none.
@@ -78,7 +78,7 @@ check() {
             shared/*) echo "$file:$line: only shared/math/platform.h may include system headers" ;;
             esac
             ;;
-        '"config.h' | '"build_commit.h')
+        '"config.h' | '"build_commit.h' | '"serve_page.h')
             case $file in shared/*) echo "$file:$line: shared/ may not depend on ${name#?}" ;; esac
             ;;
         *)

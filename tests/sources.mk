@@ -40,6 +40,7 @@ check_PROGRAMS += \
 	tests/test_reference \
 	tests/test_render \
 	tests/test_scenes \
+	tests/test_serve \
 	tests/test_shift \
 	tests/test_texture \
 	tests/test_verify
@@ -106,6 +107,7 @@ EXTRA_DIST += \
 	tests/math/test_math.h \
 	tests/backend/test_opencl.h \
 	tests/support/test_matrix.h \
+	tests/serve/test_serve.h \
 	tests/support/test_util.h \
 	tests/support/verify_fixture.h \
 	tests/support/walk_kernels.h \
@@ -264,6 +266,10 @@ tests_test_opencl_SOURCES = tests/backend/test_opencl.c \
 tests_test_partition_SOURCES = tests/mmlt/test_partition.c \
 	tests/mmlt/test_partition_kernels.c \
 	tests/mmlt/test_partition_replay.c
+
+tests_test_serve_SOURCES = tests/serve/test_serve.c \
+	tests/serve/test_serve_page.c \
+	tests/serve/test_serve_tev.c
 
 tests_test_texture_SOURCES = tests/image/test_texture.c \
 	tests/image/test_texture_color.c \

@@ -149,6 +149,35 @@ bool option_strategy(const char *option, const char *text, unsigned strategy[2],
     return true;
 }
 
+/* Splits HOST:PORT or [HOST]:PORT at the last colon; returns the text of the port, or NULL. */
+static const char *address_split(const char *text, char *host, size_t size)
+{
+    const char *colon = strrchr(text, ':');
+    size_t length = colon ? (size_t)(colon - text) : 0;
+    if (length >= 2 && text[0] == '[' && text[length - 1] == ']') {
+        text += 1;
+        length -= 2;
+    } else if (memchr(text, ':', length))
+        return NULL; /* of IPv6, without brackets */
+    if (length == 0 || length >= size)
+        return NULL;
+    memcpy(host, text, length);
+    host[length] = '\0';
+    return colon + 1;
+}
+
+bool option_address(const char *option, const char *text, unsigned low, OptionAddress *address, Error *error)
+{
+    uint64_t port = 0;
+    const char *end = address_split(text, address->host, sizeof address->host);
+    if (end && read_whole(&end, &port) && !*end && port >= low && port <= 65535) {
+        address->port = (unsigned)port;
+        return true;
+    }
+    error_set(error, "--%s=%s: not an address and a port", option, text);
+    return error_fix(error, "give HOST:PORT with a port from %u to 65535, as in localhost:14158 or [::1]:14158", low);
+}
+
 bool option_names(const char *text, char separator, const char *const *names, unsigned count, unsigned *bits,
                   const char **other)
 {

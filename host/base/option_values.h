@@ -31,6 +31,15 @@ bool option_crop(const char *option, const char *text, int crop[4], Error *error
 /* s,t of a bidirectional strategy: s >= 0 vertices from the light, t >= 1 from the camera, s + t >= 2. */
 bool option_strategy(const char *option, const char *text, unsigned strategy[2], Error *error);
 
+/* A place in a network: HOST:PORT, or [HOST]:PORT for addresses of IPv6. */
+typedef struct OptionAddress {
+    char host[256]; /* a name or a number; "": none is given */
+    unsigned port;
+} OptionAddress;
+
+/* HOST:PORT, low <= port <= 65535. The host is not looked up. */
+bool option_address(const char *option, const char *text, unsigned low, OptionAddress *address, Error *error);
+
 /* Names with `separator` between them: name i of `names` sets bit i of *bits. On any other name returns false, with
  * *other pointing to it; the message is left to the caller. */
 bool option_names(const char *text, char separator, const char *const *names, unsigned count, unsigned *bits,

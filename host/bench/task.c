@@ -156,7 +156,7 @@ static bool task_render(BenchWorkshop *shop, const BenchTask *task, const char *
                                    .stop = interrupt_flag()};
     const SceneSettings *settings = &shop->data.settings;
     Progress progress;
-    const RenderCallbacks callbacks = {task_progress, NULL, &progress};
+    const RenderCallbacks callbacks = {.progress = task_progress, .context = &progress};
     RenderResult result;
     Film film = {0};
     progress_init(&progress, stderr, shop->bench->options.quiet);

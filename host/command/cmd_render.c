@@ -53,6 +53,7 @@ typedef struct RenderJob {
     BackendMember backend;
     RenderOutput output;
     Progress progress;
+    Watch watch;
     uint64_t samples_done; /* at the latest progress report (RenderProgress.samples) */
     bool left; /* no sample was rendered, and existing files were left alone */
     bool frame_used; /* a file name has the frame's number */
@@ -218,10 +219,27 @@ static void job_writing(void *context, const char *path, double part)
     progress_writing(&job->progress, path, part);
 }
 
+static void job_publish(void *context, RenderRun *run, const RenderProgress *progress)
+{
+    RenderJob *job = context;
+    watch_publish(&job->watch, run, progress);
+}
+
 static bool job_save(void *context, const Film *film, Error *error)
 {
     RenderJob *job = context;
     return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
+}
+
+static bool job_watch(RenderJob *job, Error *error)
+{
+    const int *crop = job->scene.settings.crop;
+    const WatchSubject subject = {.facts = {job->output.exr, job->command->scene, job->command->integrator},
+                                  .width = crop[2] - crop[0],
+                                  .height = crop[3] - crop[1],
+                                  .settings = &job->output.picture,
+                                  .memory = &job->output.memory};
+    return watch_begin(&job->watch, &job->command->watch, &subject, error);
 }
 
 static bool film_render(RenderJob *job, Error *error)
@@ -229,7 +247,7 @@ static bool film_render(RenderJob *job, Error *error)
     const RenderCommand *command = job->command;
     const SceneSettings *settings = &job->scene.settings;
     RenderOptions options = job_options(job);
-    RenderCallbacks callbacks = {job_progress, job_save, job};
+    RenderCallbacks callbacks = {job_progress, job_save, job_publish, job};
     const RenderTask task = {.integrator = job->integrator,
                              .scene = &job->scene,
                              .backend = job->backend,
@@ -242,8 +260,10 @@ static bool film_render(RenderJob *job, Error *error)
     job->output.writing_context = job;
     bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
                     render_output_reserve(&job->output, settings->crop, statistics.threads, error) &&
-                    render_film(&task, &job->film, &job->result, error);
+                    job_watch(job, error) && render_film(&task, &job->film, &job->result, error);
     progress_end(&job->progress);
+    if (rendered)
+        watch_finish(&job->watch, &job->film);
     return rendered;
 }
 
@@ -434,6 +454,7 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     job.start = timing_now();
     scene_init(&job.scene);
     int status = job_run(&job, error);
+    watch_end(&job.watch);
     if (job.backend.backend)
         job.backend.interface->close(job.backend.backend);
     bad_chains_cancel(&job.bad_chains);

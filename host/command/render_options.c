@@ -75,6 +75,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "multiply the PNG's colours by 2^STOPS (default: 0)"},
     [OPTION_STATS] = {"stats", 0, "FILE.json", "write statistics as JSON; - for standard output"},
     [OPTION_TRACE] = {"trace", 0, "FILE.json", "write a timeline of the devices, for chrome://tracing"},
+    [OPTION_TEV] = {"tev", 0, "HOST:PORT", "send the picture to the viewer tev as it converges"},
+    [OPTION_SERVE] = {"serve", 0, "[ADDRESS:PORT]", "show the picture as it converges on a page in the browser"},
     [OPTION_VERIFY] = {"verify", 0, NULL,
                        "compare the backend's state with the CPU's bit for bit instead of rendering"},
     [OPTION_LENIENT] = {"lenient", 0, NULL, "replace unsupported features, with a warning"},
@@ -231,6 +233,11 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return path_set(&command->stats, option, value, NULL, error);
     case OPTION_TRACE:
         return path_set(&command->trace, option, value, NULL, error);
+    case OPTION_TEV:
+        return option_address("tev", value, 1, &command->watch.tev, error);
+    case OPTION_SERVE:
+        return server_available(error) &&
+               option_address("serve", value ? value : "127.0.0.1:0", 0, &command->watch.serve, error);
     case OPTION_DEVICE:
         command->device = value;
         return true;
@@ -318,20 +325,22 @@ static bool option_set(void *context, int index, const char *value, Error *error
 /* Rejects options that contradict --verify, which renders no picture and has no time limit. */
 static bool verify_alone(const RenderCommand *command, Error *error)
 {
-    const char *option = command->output             ? "output"
-                         : command->png_path         ? "png"
-                         : command->seconds > 0.0    ? "time"
-                         : command->error.goal > 0.0 ? "error"
-                         : command->save_every > 0.0 ? "save-every"
-                         : command->checkpoint       ? "checkpoint"
-                         : command->resume           ? "resume"
-                         : command->stats            ? "stats"
-                         : command->trace            ? "trace"
-                         : command->dump_bad         ? "dump-bad"
-                         : command->film             ? "film"
-                         : command->has_layers       ? "layers"
-                         : command->despeckle > 0.0  ? "despeckle"
-                                                     : NULL;
+    const char *option = command->output                ? "output"
+                         : command->png_path            ? "png"
+                         : command->seconds > 0.0       ? "time"
+                         : command->error.goal > 0.0    ? "error"
+                         : command->save_every > 0.0    ? "save-every"
+                         : command->checkpoint          ? "checkpoint"
+                         : command->resume              ? "resume"
+                         : command->stats               ? "stats"
+                         : command->trace               ? "trace"
+                         : command->watch.tev.host[0]   ? "tev"
+                         : command->watch.serve.host[0] ? "serve"
+                         : command->dump_bad            ? "dump-bad"
+                         : command->film                ? "film"
+                         : command->has_layers          ? "layers"
+                         : command->despeckle > 0.0     ? "despeckle"
+                                                        : NULL;
     if (!command->verify || !option)
         return true;
     error_set(error, "--%s cannot be used with --verify, which renders no image", option);

@@ -6,6 +6,7 @@
 #include "base/options.h"
 #include "render/layers.h"
 #include "render/render.h"
+#include "serve/watch.h"
 
 /* Parsed options. Strings point into argv. */
 typedef struct RenderCommand {
@@ -51,6 +52,7 @@ typedef struct RenderCommand {
     const char *stats; /* "-": standard output */
     int frame; /* number for file names (base/frame_name.h); -1: not given */
     const char *trace;
+    WatchOptions watch;
     bool lenient;
     bool quiet;
 } RenderCommand;
@@ -105,6 +107,8 @@ typedef enum RenderOption {
     OPTION_EXPOSURE,
     OPTION_STATS,
     OPTION_TRACE,
+    OPTION_TEV,
+    OPTION_SERVE,
     OPTION_VERIFY,
     OPTION_LENIENT,
     OPTION_QUIET,

@@ -29,6 +29,12 @@ static bool generation_follows(Mmlt *mmlt)
     return !(limit > 0.0) || plan_fit(&mmlt->plan, mmlt->seconds, mmlt_least_seconds(mmlt), left, limit);
 }
 
+static void weights_tell(const Mmlt *mmlt)
+{
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        mmlt->run->chains.weights[s] = mmlt->combinations[0].weight[s];
+}
+
 /* Runs a generation and plans the next one. */
 static bool generation_next(Mmlt *mmlt, Error *error)
 {
@@ -39,6 +45,7 @@ static bool generation_next(Mmlt *mmlt, Error *error)
         !render_layers_sample(run, mmlt->paths.done * run->crop_pixels, error))
         return false;
     mmlt->seconds = timing_now() - begin;
+    weights_tell(mmlt);
     render_run_report(run, plan->timed ? 0.0 : (double)plan->done / (double)plan->total);
     if (!mmlt->whole)
         return true;
@@ -107,8 +114,7 @@ static bool mmlt_render(RenderRun *run, Error *error)
     backend_adopt(&mmlt);
     done = done && generations_resume(&mmlt, &follows, error) && (!follows || generations_run(&mmlt, error)) &&
            checkpoint_end(run, mmlt_state(&mmlt), error);
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        run->chains.weights[s] = mmlt.combinations[0].weight[s];
+    weights_tell(&mmlt);
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
         run->chains.r_hat[depth] = chain_groups_r_hat(&mmlt.chains.groups, depth);
     mmlt_destroy(&mmlt);

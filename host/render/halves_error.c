@@ -12,7 +12,8 @@
 typedef enum Plane { PICTURE, DIFFERENCE, PLANES } Plane;
 
 typedef struct Estimate {
-    const Film *halves;
+    const Film *halves; /* NULL: they are images */
+    const float *images[2];
     const ErrorGoal *goal;
     FilmScale scales[2];
     size_t width, height;
@@ -46,6 +47,16 @@ static void part_add(const Estimate *estimate, FilmPart part, size_t first, size
         double p = by_samples ? share_of(halves[0].counts[pixel], halves[1].counts[pixel]) : share;
         estimate->planes[PICTURE][value] += (float)(p * a + (1.0 - p) * b);
         estimate->planes[DIFFERENCE][value] += (float)(sqrt(p * (1.0 - p)) * (a - b));
+    }
+}
+
+static void rows_take(const Estimate *estimate, size_t y, size_t rows)
+{
+    size_t first = 3 * y * estimate->width, count = 3 * rows * estimate->width;
+    const float *a = estimate->images[0] + first, *b = estimate->images[1] + first;
+    for (size_t value = 0; value < count; ++value) {
+        estimate->planes[PICTURE][value] = (float)(0.5 * ((double)a[value] + (double)b[value]));
+        estimate->planes[DIFFERENCE][value] = (float)(0.5 * ((double)a[value] - (double)b[value]));
     }
 }
 
@@ -196,22 +207,38 @@ static void estimate_free(Estimate *estimate)
     free(estimate->tiles);
 }
 
+static bool estimate_make(Estimate *estimate, HalvesError *error_found, Error *error)
+{
+    bool done = estimate_allocate(estimate, error);
+    for (size_t y = 0; done && y < estimate->height; y += TILE) {
+        size_t rows = y + TILE < estimate->height ? TILE : estimate->height - y;
+        if (estimate->halves)
+            rows_resolve(estimate, y, rows);
+        else
+            rows_take(estimate, y, rows);
+        for (size_t x = 0; x < estimate->width; x += TILE)
+            tile_add(estimate, x, rows);
+    }
+    if (done)
+        *error_found = estimate->goal->percentile > 0.0 ? percentile_error(estimate) : mean_error(estimate);
+    estimate_free(estimate);
+    return done;
+}
+
 bool halves_error(const Film halves[2], const ErrorGoal *goal, HalvesError *error_found, Error *error)
 {
     const int *crop = halves[0].crop;
     Estimate estimate = {
         .halves = halves, .goal = goal, .width = (size_t)(crop[2] - crop[0]), .height = (size_t)(crop[3] - crop[1])};
-    bool done = estimate_allocate(&estimate, error);
     for (int half = 0; half < 2; ++half)
         estimate.scales[half] = film_scale_of(&halves[half], (float)goal->scale);
-    for (size_t y = 0; done && y < estimate.height; y += TILE) {
-        size_t rows = y + TILE < estimate.height ? TILE : estimate.height - y;
-        rows_resolve(&estimate, y, rows);
-        for (size_t x = 0; x < estimate.width; x += TILE)
-            tile_add(&estimate, x, rows);
-    }
-    if (done)
-        *error_found = goal->percentile > 0.0 ? percentile_error(&estimate) : mean_error(&estimate);
-    estimate_free(&estimate);
-    return done;
+    return estimate_make(&estimate, error_found, error);
+}
+
+bool halves_error_of_images(const float *const images[2], int width, int height, const ErrorGoal *goal,
+                            HalvesError *error_found, Error *error)
+{
+    Estimate estimate = {
+        .images = {images[0], images[1]}, .goal = goal, .width = (size_t)width, .height = (size_t)height};
+    return estimate_make(&estimate, error_found, error);
 }

@@ -18,4 +18,8 @@ typedef struct HalvesError {
  * pixel that is dark by chance would make its error seem small, or large. Fails out of memory. */
 bool halves_error(const Film halves[2], const ErrorGoal *goal, HalvesError *error_found, Error *error);
 
+/* The same of the mean of two images of width x height x 3 values. */
+bool halves_error_of_images(const float *const images[2], int width, int height, const ErrorGoal *goal,
+                            HalvesError *error_found, Error *error);
+
 #endif

@@ -93,7 +93,7 @@ static PictureGroup *group_add(Picture *picture, PictureSource source, const cha
 {
     const char *const names[3] = {red, green, blue};
     PictureGroup *group = &picture->groups[picture->group_count++];
-    *group = (PictureGroup){.source = source, .values = picture->free};
+    *group = (PictureGroup){.source = source, .channel = red, .channels = 3, .values = picture->free};
     for (size_t c = 0; c < 3; ++c)
         picture->channels[picture->channel_count++] = (ExrChannel){names[c], group->values + c, 3, half};
     picture->free += 3 * (size_t)picture->width * EXR_BAND_ROWS;
@@ -164,6 +164,7 @@ static void variable_add(Picture *picture, uint aov, uint values, const char *re
     bool one = !green[0];
     PictureGroup *group = group_add(picture, PICTURE_VARIABLE, red, green, blue, values == AOV_LIGHTLIKE);
     group->variable = &picture->settings.layers->aovs[aov];
+    group->channels = one ? 1 : 3;
     picture->channel_count -= one ? 2 : 0; /* not three equal ones */
 }
 
@@ -214,7 +215,7 @@ static void own_band(const Picture *picture, int first, int count)
                         own->values - 3 * (size_t)above * width);
 }
 
-static void group_band(const Picture *picture, const PictureGroup *group, int first, int count)
+void picture_group_band(const Picture *picture, const PictureGroup *group, int first, int count)
 {
     size_t width = (size_t)picture->width, pixel = (size_t)first * width, pixels = (size_t)count * width;
     int above = rows_above(picture, first), below = rows_below(picture, first, count);
@@ -243,11 +244,11 @@ void picture_band(Picture *picture, int first, int count)
     assert(count <= EXR_BAND_ROWS);
     own_band(picture, first, count);
     for (size_t i = 1; i < picture->group_count; ++i)
-        group_band(picture, &picture->groups[i], first, count);
+        picture_group_band(picture, &picture->groups[i], first, count);
 }
 
 const float *picture_row(Picture *picture, int y)
 {
-    group_band(picture, &picture->groups[0], y, 1);
+    picture_group_band(picture, &picture->groups[0], y, 1);
     return picture->groups[0].values;
 }

@@ -51,6 +51,8 @@ typedef enum PictureSource {
 
 typedef struct PictureGroup {
     PictureSource source;
+    const char *channel; /* name of its first channel: "R", "direct.R", "Z" */
+    int channels; /* 1 or 3; one channel is the first of three equal ones */
     const Film *film;
     const AovImage *variable; /* of PICTURE_VARIABLE */
     FilmPart part;
@@ -77,6 +79,9 @@ void picture_init(Picture *picture, const PictureSettings *settings, const Film 
 
 /* Resolves rows first ... first + count - 1 of all groups; count <= EXR_BAND_ROWS. */
 void picture_band(Picture *picture, int first, int count);
+
+/* Resolves the same rows of one group, which must not be PICTURE_DESPECKLED, into group->values. */
+void picture_group_band(const Picture *picture, const PictureGroup *group, int first, int count);
 
 /* Resolves row y of the picture itself, 3 values per pixel. Valid until the next call of either function. */
 const float *picture_row(Picture *picture, int y);

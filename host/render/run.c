@@ -46,9 +46,10 @@ bool render_run_gather(RenderRun *run, Error *error)
     return film_merge(run->film, &run->halves[0], error) && film_merge(run->film, &run->halves[1], error);
 }
 
-void render_run_report(const RenderRun *run, double fraction)
+void render_run_report(RenderRun *run, double fraction)
 {
-    if (!run->callbacks || !run->callbacks->progress)
+    const RenderCallbacks *callbacks = run->callbacks;
+    if (!callbacks || (!callbacks->progress && !callbacks->publish))
         return;
     BackendStatistics statistics;
     run->interface->statistics(run->backend, &statistics);
@@ -63,7 +64,10 @@ void render_run_report(const RenderRun *run, double fraction)
                                .error = run->error.estimate};
     if (run->done > 0 && fraction > by_time)
         progress.fraction_before = progress.fraction * (double)run->past.done / (double)run->done;
-    run->callbacks->progress(run->callbacks->context, &progress);
+    if (callbacks->progress)
+        callbacks->progress(callbacks->context, &progress);
+    if (callbacks->publish)
+        callbacks->publish(callbacks->context, run, &progress);
 }
 
 void render_run_save_if_due(RenderRun *run)

@@ -63,8 +63,8 @@ SplatSink render_run_sink(Film *film);
 /* Brings the film up to date with its halves, if it has any. */
 bool render_run_gather(RenderRun *run, Error *error);
 
-/* Calls `progress`. fraction: of the samples wanted; 0 if their number is not limited. */
-void render_run_report(const RenderRun *run, double fraction);
+/* Calls `progress` and `publish`. fraction: of the samples wanted; 0 if their number is not limited. */
+void render_run_report(RenderRun *run, double fraction);
 
 /* Calls `save` if it is due. A failure causes a warning; the next attempt is made when the next save is due. */
 void render_run_save_if_due(RenderRun *run);

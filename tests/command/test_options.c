@@ -129,6 +129,23 @@ START_TEST(test_crop)
 }
 END_TEST
 
+START_TEST(test_address)
+{
+    static const char *const BAD[] = {"",    "host",   ":80",   "host:", "host:0",  "host:65536", "host:8x",
+                                      "::1", "::1:80", "[::1]", "[]:80", "host:-1", "[::1]80",    "host:80:90"};
+    Error error = {0};
+    OptionAddress address;
+    ck_assert(option_address("tev", "localhost:14158", 1, &address, &error));
+    ck_assert_str_eq(address.host, "localhost");
+    ck_assert_uint_eq(address.port, 14158);
+    ck_assert(option_address("serve", "[::1]:0", 0, &address, &error));
+    ck_assert_str_eq(address.host, "::1");
+    ck_assert_uint_eq(address.port, 0);
+    for (size_t i = 0; i < sizeof BAD / sizeof *BAD; ++i)
+        ck_assert_msg(!option_address("tev", BAD[i], 1, &address, &error), "%s", BAD[i]);
+}
+END_TEST
+
 /* ---- options ------------------------------------------------------------------------------------------------------ */
 
 enum { OUTPUT, SAMPLES, SAVE, SEED, PNG, QUIET, SAMPLER };
@@ -318,6 +335,7 @@ int main(void)
     tcase_add_test(values, test_seconds);
     tcase_add_test(values, test_resolution);
     tcase_add_test(values, test_crop);
+    tcase_add_test(values, test_address);
     suite_add_tcase(suite, values);
     TCase *options = tcase_create("options");
     tcase_add_loop_test(options, test_options_good, 0, sizeof GOOD_LINES / sizeof *GOOD_LINES);
