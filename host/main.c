@@ -34,6 +34,7 @@ static int compare_run(const BackendTable *backends, int argc, char **argv, Erro
 
 static const Command COMMANDS[] = {
     {"render", "render a scene to OpenEXR and PNG", cmd_render},
+    {"merge", "make an image of the parts that several machines have rendered", cmd_merge},
     {"compare", "measure how far an image is from a reference", compare_run},
     {"bench", "measure error against time and write a report", cmd_bench},
     {"info", "print what a scene contains", cmd_info},
@@ -100,7 +101,7 @@ static int usage_fail(Error *error, const char *word)
     if (nearest)
         error_fix(error, "did you mean %s? twinlight --help lists all", nearest);
     else
-        error_fix(error, "use render, compare, bench, info, devices or pyramid; see twinlight --help");
+        error_fix(error, "use render, merge, compare, bench, info, devices or pyramid; see twinlight --help");
     return EXIT_USAGE;
 }
 

@@ -3,6 +3,7 @@ dist_man_MANS += \
 	man/twinlight-compare.1 \
 	man/twinlight-devices.1 \
 	man/twinlight-info.1 \
+	man/twinlight-merge.1 \
 	man/twinlight-pyramid.1 \
 	man/twinlight-render.1 \
 	man/twinlight-scene.5 \

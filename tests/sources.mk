@@ -41,6 +41,7 @@ check_PROGRAMS += \
 	tests/test_render \
 	tests/test_scenes \
 	tests/test_serve \
+	tests/test_shard \
 	tests/test_shift \
 	tests/test_texture \
 	tests/test_verify
@@ -151,6 +152,7 @@ tests_test_pool_SOURCES = tests/mmlt/test_pool.c
 tests_test_reference_SOURCES = tests/render/test_reference.c
 tests_test_render_SOURCES = tests/render/test_render.c
 tests_test_scenes_SOURCES = tests/render/test_scenes.c
+tests_test_shard_SOURCES = tests/render/test_shard.c
 tests_test_shift_SOURCES = tests/mmlt/test_shift.c
 tests_test_verify_SOURCES = tests/render/test_verify.c
 
@@ -286,6 +288,7 @@ script_tests = \
 	tests/command/test_cli.sh \
 	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \
+	tests/command/test_merge.sh \
 	tests/command/test_outputs.sh \
 	tests/command/test_readme.sh
 dist_check_SCRIPTS += $(script_tests)

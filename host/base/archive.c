@@ -45,6 +45,31 @@ void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t m
                      (unsigned long)least, (unsigned long)most);
 }
 
+/* ---- the kind of a file ------------------------------------------------------------------------------------------ */
+
+#define PROGRAM "Twinlight "
+#define BYTE_ORDER_MARK 0x0102030405060708u
+
+void archive_head(Archive *archive, const char *kind, bool *other)
+{
+    char name[32] = PROGRAM, saved[32];
+    uint64_t mark = BYTE_ORDER_MARK;
+    strncat(name, kind, sizeof name - sizeof PROGRAM);
+    memcpy(saved, name, sizeof saved);
+    ARCHIVE_FIELD(archive, saved);
+    *other = !archive->failed && memcmp(saved, PROGRAM, strlen(PROGRAM)) == 0 && memcmp(saved, name, sizeof name) != 0;
+    if (*other) {
+        saved[sizeof saved - 1] = '\0';
+        text_make_printable(saved);
+        archive_fail(archive, "it is a %s of " PROGRAM "and no %s", saved + strlen(PROGRAM), kind);
+    } else if (memcmp(saved, name, sizeof name) != 0) {
+        archive_fail(archive, "it is no %s of Twinlight", kind);
+    }
+    ARCHIVE_FIELD(archive, mark);
+    if (mark != BYTE_ORDER_MARK)
+        archive_fail(archive, "it was written by a machine of another byte order");
+}
+
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
 static bool memory_append(void *context, void *bytes, size_t size, Error *error)

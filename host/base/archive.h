@@ -32,6 +32,10 @@ void archive_same(Archive *archive, uint64_t value, const char *what);
  * count as it is unless least <= count <= most. */
 void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t most, const char *what);
 
+/* The beginning of a file: its kind ("checkpoint"), and a mark of the byte order. Restoring fails for another kind, other byte
+ * order or anything else; *other is then whether it is another kind of file of this program. */
+void archive_head(Archive *archive, const char *kind, bool *other);
+
 /* Fails with this message unless it has failed before. */
 void archive_fail(Archive *archive, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

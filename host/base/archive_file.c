@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 /* Sums of the film are mostly noise: higher levels take several times as long for a few per cent. */
 #define LEVEL 1
@@ -101,7 +102,9 @@ static bool stream_read(ArchiveReader *reader, void *bytes, size_t size, size_t 
         size_t left = ZSTD_decompressStream(reader->stream, &output, &input);
         reader->place = input.pos;
         if (ZSTD_isError(left))
-            return error_set(error, "%s", ZSTD_getErrorName(left));
+            return ZSTD_getErrorCode(left) == ZSTD_error_prefix_unknown
+                       ? error_set(error, "it is another kind of file, not compressed by Zstandard")
+                       : error_set(error, "%s", ZSTD_getErrorName(left));
         reader->ended = left == 0;
     }
     *count = output.pos;

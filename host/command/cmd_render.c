@@ -9,6 +9,7 @@
 #include "base/timing.h"
 #include "command/mlt_option.h"
 #include "command/output_check.h"
+#include "command/part_output.h"
 #include "command/render_options.h"
 #include "command/render_output.h"
 #include "command/render_settings.h"
@@ -21,6 +22,7 @@
 #include "render/progress.h"
 #include "render/render.h"
 #include "render/report.h"
+#include "render/shard.h"
 #include "render/stats.h"
 #include "scene/camera_setup.h"
 #include "scene/warnings.h"
@@ -52,10 +54,10 @@ typedef struct RenderJob {
     BadChains bad_chains;
     BackendMember backend;
     RenderOutput output;
+    PartOutput part; /* in place of it with --shard */
     Progress progress;
     Watch watch;
-    uint64_t samples_done; /* at the latest progress report (RenderProgress.samples) */
-    bool left; /* no sample was rendered, and existing files were left alone */
+    bool left; /* no sample was rendered, and files were left as they are */
     bool frame_used; /* a file name has the frame's number */
     RenderResult result;
     double load, build, rendering, write; /* seconds */
@@ -121,15 +123,30 @@ static CheckpointOptions checkpoint_options(const RenderCommand *command)
                                .anew = command->checkpoint && command->resume && path_same(file, command->resume)};
 }
 
+/* The names of image and PNG, or of the part. */
 static bool outputs_name(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
-    RenderOutput *output = &job->output;
     const char *image = image_name(job, error);
+    if (!image)
+        return false;
+    if (command->shard.count > 0)
+        return part_output_name(&job->part, command->output, image, command->shard, error);
+    return render_output_name(&job->output, image, command->png, command->png_path, error);
+}
+
+/* The main file that is written. */
+static const char *job_target(const RenderJob *job)
+{
+    return job->part.path[0] ? job->part.path : job->output.exr;
+}
+
+static bool outputs_check(RenderJob *job, Error *error)
+{
+    const RenderCommand *command = job->command;
+    RenderOutput *output = &job->output;
     const CheckpointOptions checkpoint = checkpoint_options(command);
     const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
-    if (!image || !render_output_name(output, image, command->png, command->png_path, error))
-        return false;
     output->picture = (PictureSettings){.scale = job->scene.settings.film_scale,
                                         .despeckle = command->despeckle,
                                         .layers = job->layers.wanted != 0 ? &job->layers : NULL};
@@ -141,7 +158,7 @@ static bool outputs_name(RenderJob *job, Error *error)
     camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
                     output->world_to_ndc);
     const CommandFile files[] = {{"the scene", strcmp(command->scene, "-") == 0 ? NULL : command->scene, false},
-                                 {"the image", output->exr, true},
+                                 {job->part.path[0] ? "the part" : "the image", job_target(job), true},
                                  {"the PNG", output->png[0] ? output->png : NULL, true},
                                  {"the statistics", stats, true},
                                  {"the trace", command->trace, true},
@@ -158,6 +175,7 @@ static RenderOptions job_options(RenderJob *job)
     const SceneSettings *settings = &job->scene.settings;
     RenderOptions options = {
         .samples = (unsigned)command->samples,
+        .shard = command->shard,
         .seconds = command->seconds,
         .max_depth = settings->max_depth,
         .chains = command->chains,
@@ -208,7 +226,6 @@ static bool backend_build(RenderJob *job, Error *error)
 static void job_progress(void *context, const RenderProgress *progress)
 {
     RenderJob *job = context;
-    job->samples_done = progress->samples;
     job->output.error = progress->error;
     progress_update(&job->progress, progress);
 }
@@ -225,10 +242,18 @@ static void job_publish(void *context, RenderRun *run, const RenderProgress *pro
     watch_publish(&job->watch, run, progress);
 }
 
-static bool job_save(void *context, const Film *film, Error *error)
+/* Writes what is finished: the part or the image. */
+static bool target_write(RenderJob *job, const RenderTotals *totals, Error *error)
 {
-    RenderJob *job = context;
-    return render_output_write(&job->output, film, (double)job->samples_done / (double)film_pixels(film), error);
+    if (job->part.path[0])
+        return part_output_write(&job->part, &job->film, totals, error);
+    return render_output_write(&job->output, &job->film, (double)totals->done / (double)film_pixels(&job->film), error);
+}
+
+static bool job_save(void *context, const Film *film, const RenderTotals *totals, Error *error)
+{
+    (void)film;
+    return target_write(context, totals, error);
 }
 
 static bool job_watch(RenderJob *job, Error *error)
@@ -258,8 +283,12 @@ static bool film_render(RenderJob *job, Error *error)
     progress_init(&job->progress, stderr, command->quiet);
     job->output.writing = job_writing;
     job->output.writing_context = job;
+    job->part.threads = statistics.threads;
+    if (job->part.path[0])
+        part_output_begin(&job->part, &job->output, job->integrator, &job->scene, &options);
+    bool pictures = !job->part.path[0] || watch_wanted(&command->watch);
     bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
-                    render_output_reserve(&job->output, settings->crop, statistics.threads, error) &&
+                    (!pictures || render_output_reserve(&job->output, settings->crop, statistics.threads, error)) &&
                     job_watch(job, error) && render_film(&task, &job->film, &job->result, error);
     progress_end(&job->progress);
     if (rendered)
@@ -296,7 +325,10 @@ static void summary_report(const RenderJob *job)
     if (job->command->error.goal > 0.0)
         goal_report(job);
     if (job->left)
-        log_message(LOG_WARNING, "%s is left unchanged: no sample is finished yet", job->output.exr);
+        log_message(LOG_WARNING, "%s is left unchanged: no sample is finished yet", job_target(job));
+    else if (job->part.path[0])
+        log_message(LOG_INFO, "wrote %s: shard %u of %u, for twinlight merge", job->part.path,
+                    job->part.head.shard.number, job->part.head.shard.count);
     else
         log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
 }
@@ -311,6 +343,7 @@ static bool stats_output(const RenderJob *job, Error *error)
         .integrator = command->integrator,
         .backend = command->backends.name,
         .seed = command->seed,
+        .part = job->part.path,
         .exr = job->output.exr,
         .png = job->output.png,
         .result = &job->result,
@@ -353,14 +386,14 @@ static bool stage_run(bool (*stage)(RenderJob *, Error *), RenderJob *job, doubl
     return done;
 }
 
-/* Writes the image, but does not replace an existing one if there is no sample. */
+/* Writes the image or the part. If there is no sample, an existing image is not replaced, and no part is written. */
 static bool film_write(RenderJob *job, Error *error)
 {
-    job->left = job->result.samples == 0 && access(job->output.exr, F_OK) == 0;
+    job->left = job->result.samples == 0 && (job->part.path[0] || access(job->output.exr, F_OK) == 0);
     if (job->left)
         return true;
     job->output.error = job->result.error.estimate;
-    bool written = render_output_write(&job->output, &job->film, job->result.samples_per_pixel, error);
+    bool written = target_write(job, &job->result.totals, error);
     progress_end(&job->progress);
     return written;
 }
@@ -374,7 +407,7 @@ static void film_rescue(RenderJob *job, Error *error)
         return;
     if (stage_run(film_write, job, &job->write, &failed))
         error_set(error, "%s; what was finished, %.6g samples per pixel, is in %s", what, job->result.samples_per_pixel,
-                  job->output.exr);
+                  job_target(job));
     else
         error_set(error, "%s; what was finished could not be written either: %s", what, error_text(&failed));
     if (first.fix[0])
@@ -399,6 +432,15 @@ static int memory_print(const RenderJob *job)
     return EXIT_OK;
 }
 
+/* Whether each shard has something to do. Only now are samples and size known that the scene file may set. */
+static bool shards_check(RenderJob *job, Error *error)
+{
+    const RenderOptions options = job_options(job);
+    const int *crop = job->scene.settings.crop;
+    uint64_t pixels = (uint64_t)(crop[2] - crop[0]) * (uint64_t)(crop[3] - crop[1]);
+    return !shard_given(&options) || shard_check(&options, !job->integrator->render, pixels, error);
+}
+
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -415,14 +457,14 @@ static int job_run(RenderJob *job, Error *error)
         return EXIT_FAILED;
     if (!stage_run(scene_load, job, &job->load, error))
         return EXIT_FAILED;
-    if (!render_settings_apply(command, job->integrator, &job->scene, error))
+    if (!render_settings_apply(command, job->integrator, &job->scene, error) || !shards_check(job, error))
         return EXIT_USAGE;
     if (command->memory)
         return memory_print(job);
     if (command->verify)
         return job_verify(job, error);
-    if (!outputs_name(job, error) || !stage_run(backend_build, job, &job->build, error) || !interrupt_install(error) ||
-        !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
+    if (!outputs_name(job, error) || !outputs_check(job, error) || !stage_run(backend_build, job, &job->build, error) ||
+        !interrupt_install(error) || !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
         film_rescue(job, error);

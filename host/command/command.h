@@ -15,6 +15,7 @@ static inline int options_status(OptionsEnd end)
 /* A command gets its own name as argv[0] and returns an exit status. On EXIT_FAILED and EXIT_USAGE `error` says why,
  * unless the command's own output has already. */
 int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_merge(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_bench(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_pyramid(const BackendTable *backends, int argc, char **argv, Error *error);

@@ -5,6 +5,7 @@
 #include "base/options.h"
 #include "base/path_name.h"
 #include "command/mlt_option.h"
+#include "render/shard.h"
 
 #include <string.h>
 
@@ -58,6 +59,9 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
                           "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
     [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
+    [OPTION_SHARD] =
+        {"shard", 0, "K/N",
+         "render the K-th of N parts of the picture to a file for twinlight merge (default: SCENE-KofN.part)"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
     [OPTION_CHECKPOINT] = {"checkpoint", 0, "FILE", "write what is needed to go on after an interruption"},
     [OPTION_CHECKPOINT_EVERY] = {"checkpoint-every", 0, "TIME", "how often, besides at the end (default: 10m)"},
@@ -203,6 +207,23 @@ static bool layers_set(RenderCommand *command, const char *value, Error *error)
     return error_fix(error, "use " LAYER_LIST(LAYER_TEXT_OF) "separated by commas, or all (but by-depth) or none");
 }
 
+static bool shard_set(RenderCommand *command, const char *value, Error *error)
+{
+    char number[24];
+    uint64_t k = 0, n = 0;
+    const char *slash = strchr(value, '/');
+    Error ignored;
+    snprintf(number, sizeof number, "%.*s", slash ? (int)(slash - value) : 0, value);
+    if (slash && (size_t)(slash - value) < sizeof number &&
+        option_whole("shard", slash + 1, 1, SHARDS_MOST, &n, &ignored) &&
+        option_whole("shard", number, 1, n, &k, &ignored)) {
+        command->shard = (Shard){(unsigned)k, (unsigned)n};
+        return true;
+    }
+    error_set(error, "--shard=%s: it is not of the form K/N with 1 <= K <= N <= %u", value, SHARDS_MOST);
+    return error_fix(error, "use --shard=3/16 for the third of sixteen parts");
+}
+
 /* Options of Markov chains. */
 static bool chain_option_set(RenderCommand *command, int option, const char *value, Error *error)
 {
@@ -228,7 +249,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
     const int option = parse->set->uses ? (int)parse->set->uses[index].option : index;
     switch (option) {
     case OPTION_OUTPUT:
-        return path_set(&command->output, option, value, parse->set->output_ending, error);
+        command->output = value;
+        return true;
     case OPTION_STATS:
         return path_set(&command->stats, option, value, NULL, error);
     case OPTION_TRACE:
@@ -275,6 +297,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return option_number("error-percentile", value, 1.0, 99.99, &command->error.percentile, error);
     case OPTION_ERROR_OF:
         return error_of_set(command, value, error);
+    case OPTION_SHARD:
+        return shard_set(command, value, error);
     case OPTION_SAVE_EVERY:
         return option_seconds("save-every", value, &command->save_every, error);
     case OPTION_CHECKPOINT:
@@ -330,6 +354,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->seconds > 0.0       ? "time"
                          : command->error.goal > 0.0    ? "error"
                          : command->save_every > 0.0    ? "save-every"
+                         : command->shard.count > 0     ? "shard"
                          : command->checkpoint          ? "checkpoint"
                          : command->resume              ? "resume"
                          : command->stats               ? "stats"
@@ -345,6 +370,33 @@ static bool verify_alone(const RenderCommand *command, Error *error)
         return true;
     error_set(error, "--%s cannot be used with --verify, which renders no image", option);
     return error_fix(error, "leave --%s out; --samples=N sets how much is compared", option);
+}
+
+/* The name of what is written, once it is known whether that is an image or a part. */
+static bool output_ending_check(RenderCommand *command, const RenderOptionSet *set, Error *error)
+{
+    if (!command->output)
+        return true;
+    if (command->shard.count == 0)
+        return path_set(&command->output, OPTION_OUTPUT, command->output, set->output_ending, error);
+    if (!path_ends(command->output, set->output_ending))
+        return true;
+    error_set(error, "--output=%s: with --shard a part is written, which is no image", command->output);
+    return error_fix(error, "give it a name like image-%uof%u.part; twinlight merge makes the image of all parts",
+                     command->shard.number, command->shard.count);
+}
+
+/* Rejects options of the image with --shard, which writes none. */
+static bool shard_alone(const RenderCommand *command, Error *error)
+{
+    const char *option = command->png_path          ? "png"
+                         : command->exposure != 0.0 ? "exposure"
+                         : command->despeckle > 0.0 ? "despeckle"
+                                                    : NULL;
+    if (command->shard.count == 0 || !option)
+        return true;
+    error_set(error, "--%s cannot be used with --shard, which writes no image", option);
+    return error_fix(error, "give --%s to twinlight merge", option);
 }
 
 /* Chooses the backends, once all options are known. */
@@ -396,7 +448,9 @@ OptionsEnd render_options_parse(RenderCommand *command, const RenderOptionSet *s
     OptionsEnd end = options_parse(&table, argc, argv, option_set, &parse, &first, error);
     if (end != OPTIONS_READ)
         return end;
-    bool good = options_scene(&table, argc, argv, first, &command->scene, error) && verify_alone(command, error) &&
-                backends_set(command, backends, parse.backend, error);
+    command->first_operand = first;
+    bool good = (set->several || options_scene(&table, argc, argv, first, &command->scene, error)) &&
+                verify_alone(command, error) && output_ending_check(command, set, error) &&
+                shard_alone(command, error) && backends_set(command, backends, parse.backend, error);
     return good ? OPTIONS_READ : OPTIONS_WRONG;
 }

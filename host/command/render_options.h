@@ -11,7 +11,8 @@
 /* Parsed options. Strings point into argv. */
 typedef struct RenderCommand {
     const char *scene;
-    const char *output; /* ends in .exr */
+    int first_operand; /* in argv, after parsing */
+    const char *output; /* ends in .exr, or with --shard not */
     bool png; /* write a PNG */
     const char *png_path;
     double exposure; /* stops */
@@ -47,6 +48,7 @@ typedef struct RenderCommand {
     bool has_crop;
     int crop[4];
     double save_every;
+    Shard shard; /* count 0: none */
     const char *checkpoint, *resume; /* files; NULL: none */
     double checkpoint_every; /* seconds; 0: not given */
     const char *stats; /* "-": standard output */
@@ -95,6 +97,7 @@ typedef enum RenderOption {
     OPTION_MAX_DEPTH,
     OPTION_RESOLUTION,
     OPTION_CROP,
+    OPTION_SHARD,
     OPTION_SAVE_EVERY,
     OPTION_CHECKPOINT,
     OPTION_CHECKPOINT_EVERY,
@@ -127,6 +130,7 @@ typedef struct RenderOptionSet {
     int use_count;
     const char *output_ending; /* required of --output */
     uint64_t depth_low, depth_high; /* allowed range of --max-depth */
+    bool several; /* operands are not one scene: RenderCommand.first_operand */
 } RenderOptionSet;
 
 /* Parses the command line into `command`, which must hold the defaults. `error` says what is wrong on OPTIONS_WRONG. */

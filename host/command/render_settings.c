@@ -27,7 +27,13 @@ static bool goal_check(const RenderCommand *command, Error *error)
         error_set(error, "--%s without --error: there is no error to be reached", option);
         return error_fix(error, "add --error=E, e.g. --error=2%%, or leave --%s out", option);
     }
-    if (!(command->error.goal > 0.0) || !command->chains.paper)
+    if (!(command->error.goal > 0.0))
+        return true;
+    if (command->shard.count > 0) {
+        error_set(error, "--error cannot be used with --shard: a shard knows its own error only");
+        return error_fix(error, "leave one of the two out; --samples and --time are for shards");
+    }
+    if (!command->chains.paper)
         return true;
     error_set(error, "--error: the scheme \"paper\" of mmlt has no independent halves to estimate an error from");
     return error_fix(error, "leave --mlt=scheme=paper out, or use --time or --samples");

@@ -87,23 +87,50 @@ void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t 
     }
 }
 
-/* Sums of squared deviations of two samples add up with that of their means (Chan, Golub and LeVeque 1979). */
-PixelStatistics pixel_series_statistics(const PixelSeries *series, const PixelSeries *also, size_t value)
+/* ---- two series -------------------------------------------------------------------------------------------------- */
+
+/* Of a value's images; `spread` is here the sum of squared deviations. */
+static PixelStatistics sums_of(const PixelSeries *series, size_t value)
 {
     size_t pixel = value / (size_t)series->channels;
-    PixelStatistics all = {(double)series->mean[value], (double)series->spread[value],
-                           pixel_series_weight(series, pixel), pixel_series_pictures(series, pixel)};
-    if (also && pixel_series_pictures(also, pixel) > 0) {
-        double weight = pixel_series_weight(also, pixel), part = weight / (all.weight + weight),
-               distance = (double)also->mean[value] - all.mean;
-        all.spread += (double)also->spread[value] + all.weight * part * distance * distance;
-        all.mean += part * distance;
-        all.weight += weight;
-        all.pictures += pixel_series_pictures(also, pixel);
-    }
+    return (PixelStatistics){(double)series->mean[value], (double)series->spread[value],
+                             pixel_series_weight(series, pixel), pixel_series_pictures(series, pixel)};
+}
+
+/* Sums of squared deviations of two samples add up with that of their means (Chan, Golub and LeVeque 1979). */
+static PixelStatistics sums_join(PixelStatistics a, PixelStatistics b)
+{
+    if (b.pictures == 0)
+        return a;
+    double part = b.weight / (a.weight + b.weight), distance = b.mean - a.mean;
+    return (PixelStatistics){a.mean + part * distance, a.spread + b.spread + a.weight * part * distance * distance,
+                             a.weight + b.weight, a.pictures + b.pictures};
+}
+
+PixelStatistics pixel_series_statistics(const PixelSeries *series, const PixelSeries *also, size_t value)
+{
+    PixelStatistics all = sums_of(series, value);
+    if (also)
+        all = sums_join(all, sums_of(also, value));
     all.spread = all.pictures > 1 ? all.spread / (all.pictures - 1) : 0.0;
     return all;
 }
+
+void pixel_series_merge(PixelSeries *series, const PixelSeries *from)
+{
+    for (size_t value = 0; value < series->pixels * (size_t)series->channels; ++value) {
+        PixelStatistics all = sums_join(sums_of(series, value), sums_of(from, value));
+        series->mean[value] = (float)all.mean;
+        series->spread[value] = (float)all.spread;
+    }
+    for (size_t i = 0; i < (series->uniform ? 1 : series->pixels); ++i) {
+        unsigned pictures = (unsigned)series->pictures[i] + from->pictures[i];
+        series->weight[i] = (float)((double)series->weight[i] + (double)from->weight[i]);
+        series->pictures[i] = (unsigned short)(pictures < USHRT_MAX ? pictures : USHRT_MAX);
+    }
+}
+
+/* ---- variances --------------------------------------------------------------------------------------------------- */
 
 double pixel_series_spread(const PixelSeries *series, size_t value)
 {

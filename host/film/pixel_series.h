@@ -34,6 +34,9 @@ void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t 
 void pixel_series_begin(PixelSeries *series, double weight);
 void pixel_series_add_part(PixelSeries *series, const float *picture, size_t first, size_t end);
 
+/* Adds the images of another series of the same size. */
+void pixel_series_merge(PixelSeries *series, const PixelSeries *from);
+
 /* Sum of the weights of a pixel, and number of its images. */
 static inline double pixel_series_weight(const PixelSeries *series, size_t pixel)
 {

@@ -13,6 +13,7 @@
 #include "render/error_watch.h"
 #include "render/integrator.h"
 #include "render/layers.h"
+#include "render/shard.h"
 
 #include <math.h>
 
@@ -93,7 +94,7 @@ static unsigned mmlt_photons(const RenderOptions *options, uint64_t pixels)
     if (options->seconds > 0.0)
         count = fmin(count, MMLT_PHOTONS_PER_SECOND * options->seconds);
     if (options->samples > 0)
-        count = fmin(count, MMLT_PHOTONS_PER_SAMPLE * (double)options->samples * (double)pixels);
+        count = fmin(count, MMLT_PHOTONS_PER_SAMPLE * (double)shard_work(options, pixels));
     return (unsigned)fmax(count, MMLT_PHOTONS_MIN);
 }
 

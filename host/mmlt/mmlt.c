@@ -4,6 +4,7 @@
 #include "chain/chain.h"
 #include "mmlt/tuning.h"
 #include "render/layers.h"
+#include "render/shard.h"
 
 #include <float.h>
 #include <math.h>
@@ -81,7 +82,7 @@ bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
     *mmlt = (Mmlt){.run = run, .options = run->options->chains, .scheme = mmlt_scheme(run->options->chains.paper)};
     options_complete(&mmlt->options, mmlt->scheme, run->frame.path.max_depth);
     mmlt_guide_init(&mmlt->guide, run->guide);
-    plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, run->options->samples);
+    plan_init(&mmlt->plan, &mmlt->options, mmlt->scheme, run->crop_pixels, shard_work(run->options, run->crop_pixels));
     if (run->options->error.goal > 0.0) /* what is rendered until it is reached is not to depend on the clock */
         mmlt->plan.timed = false;
     if (!generation_film_init(mmlt, error) || !estimators_init(mmlt, error) ||

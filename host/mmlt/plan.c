@@ -49,14 +49,14 @@ static uint chains_of_sample(const Plan *plan)
     return plan->options->chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
 }
 
-void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples)
+void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, uint64_t work)
 {
     *plan = (Plan){.options = options,
                    .scheme = scheme,
                    .pixels = pixels,
                    .rates = {.pool = POOL_PER_STEP, .paths = options->chains_only ? PATHS_DIRECT : PATHS_FIRST},
-                   .total = samples > 0 ? pixels * samples : UINT64_MAX / 2,
-                   .timed = samples == 0,
+                   .total = work > 0 ? work : UINT64_MAX / 2,
+                   .timed = work == 0,
                    .chains = options->chains};
     plan->planned = chain_work(plan);
     uint64_t left = (uint64_t)ceil(chains_left(plan));

@@ -22,9 +22,9 @@ typedef struct Plan {
     double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */
 } Plan;
 
-/* Plans the first generation: few chains, for an early image, and at most half of the work. samples: per pixel; 0: no
- * limit. options, scheme: must outlive the plan. */
-void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, unsigned samples);
+/* Plans the first generation: few chains, for an early image, and at most half of the work. work: that is wanted
+ * (estimators_work); 0: no limit. options, scheme: must outlive the plan. */
+void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, uint64_t work);
 
 /* Saves what was learnt and done, or restores it: not the limit, which may be another one. */
 void plan_archive(Archive *archive, Plan *plan);

@@ -14,11 +14,6 @@
 /* Room for the name of the previous file. */
 #define NAME_MAX_BYTES (PATH_MAX + sizeof PREVIOUS)
 
-static const char MAGIC[32] = "Twinlight checkpoint";
-
-/* Distinguishes byte orders. */
-#define BYTE_ORDER_MARK 0x0102030405060708u
-
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
 /* The file that `path` leads to, and the one before it. */
@@ -81,44 +76,10 @@ bool checkpoint_files_check(const CheckpointOptions *options, Error *error)
 
 /* ---- contents ---------------------------------------------------------------------------------------------------- */
 
-/* Totals over this run and those before. */
-static RenderPast totals_of(const RenderRun *run)
+/* What a file begins with. *other: archive_head. */
+static void head_archive(Archive *archive, Identity *identity, bool *other)
 {
-    RenderPast totals = run->past;
-    BackendStatistics statistics;
-    uint64_t counters[DIAGNOSTIC_COUNT] = {0};
-    run->interface->statistics(run->backend, &statistics);
-    run->interface->diagnostics(run->backend, counters);
-    totals.done = run->done;
-    totals.seconds = render_run_seconds(run);
-    totals.samples = run->options->samples;
-    totals.closest_rays += statistics.closest_rays;
-    totals.shadow_rays += statistics.shadow_rays;
-    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i)
-        totals.diagnostics[i] += counters[i];
-    return totals;
-}
-
-static void totals_archive(Archive *archive, RenderPast *totals)
-{
-    ARCHIVE_FIELD(archive, totals->done);
-    ARCHIVE_FIELD(archive, totals->seconds);
-    ARCHIVE_FIELD(archive, totals->samples);
-    archive_count(archive, &totals->photons, 0, PHOTONS_MOST_ALLOWED, "photons");
-    ARCHIVE_FIELD(archive, totals->closest_rays);
-    ARCHIVE_FIELD(archive, totals->shadow_rays);
-    ARCHIVE_FIELD(archive, totals->diagnostics);
-}
-
-/* What a file begins with. */
-static void head_archive(Archive *archive, Identity *identity)
-{
-    char magic[sizeof MAGIC];
-    memcpy(magic, MAGIC, sizeof magic);
-    ARCHIVE_FIELD(archive, magic);
-    if (memcmp(magic, MAGIC, sizeof magic) != 0)
-        archive_fail(archive, "it is no checkpoint of Twinlight");
-    archive_same(archive, BYTE_ORDER_MARK, "the order of bytes");
+    archive_head(archive, "checkpoint", other);
     ARCHIVE_FIELD(archive, *identity);
 }
 
@@ -134,10 +95,11 @@ static void image_archive(Archive *archive, RenderRun *run, CheckpointState stat
 
 static void run_archive(RenderRun *run, CheckpointState state, Archive *archive)
 {
-    RenderPast totals = totals_of(run);
-    head_archive(archive, &run->checkpoint->identity);
+    RenderTotals totals = render_run_totals(run);
+    bool other;
+    head_archive(archive, &run->checkpoint->identity, &other);
     ARCHIVE_FIELD(archive, run->film->quantum_exponent);
-    totals_archive(archive, &totals);
+    render_totals_archive(archive, &totals);
     ARCHIVE_FIELD(archive, run->error);
     image_archive(archive, run, state);
 }
@@ -220,15 +182,20 @@ static bool file_open(Checkpoint *checkpoint, const char *path, const char *what
 {
     ArchiveReader *reader = &checkpoint->reader;
     Identity saved = {{0}};
+    const IdentityUse use = {what, "this rendering", "resume with what it is of, or begin with a new --checkpoint"};
+    bool other;
     *damaged = true;
     if (!archive_reader_open(reader, path, error))
         return false;
-    head_archive(&reader->archive, &saved);
+    head_archive(&reader->archive, &saved, &other);
     saved.text[sizeof saved.text - 1] = '\0';
-    *damaged = reader->archive.failed;
-    if (*damaged)
+    *damaged = reader->archive.failed && !other;
+    if (other) {
+        error_set(error, "%s cannot be resumed: %s", what, error_text(&reader->archive.error));
+        error_fix(error, "give the file of a --checkpoint");
+    } else if (*damaged)
         *error = reader->archive.error;
-    else if (identity_compare(&saved, &checkpoint->identity, what, error))
+    else if (identity_compare(&saved, &checkpoint->identity, &use, error))
         return true;
     archive_reader_close(reader);
     return false;
@@ -271,7 +238,7 @@ static bool failure_set(const Checkpoint *checkpoint, Error *error)
 /* Fails if fewer samples are wanted than there are. */
 static bool samples_check(const RenderRun *run, Error *error)
 {
-    const RenderPast *past = &run->past;
+    const RenderTotals *past = &run->past;
     unsigned wanted = run->options->samples;
     if (wanted == 0 || wanted == past->samples || past->done <= wanted * run->crop_pixels)
         return true;
@@ -288,7 +255,7 @@ static bool past_restore(RenderRun *run, Error *error)
     ARCHIVE_FIELD(archive, exponent);
     if (exponent < -2048 || exponent > 2048)
         archive_fail(archive, "the film's quantum is out of range");
-    totals_archive(archive, &run->past);
+    render_totals_archive(archive, &run->past);
     ARCHIVE_FIELD(archive, run->error);
     if (archive->failed)
         return failure_set(run->checkpoint, error);

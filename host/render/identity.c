@@ -9,13 +9,16 @@
 #include <string.h>
 
 /* Changes with what the archives of a rendering's state hold. */
-#define LAYOUT 2
+#define LAYOUT "2"
 
 #ifdef KERNELS_IN_DOUBLE
 #define PRECISION " (double)"
 #else
 #define PRECISION ""
 #endif
+
+#define VERSION_NAME PACKAGE_VERSION "." LAYOUT PRECISION
+#define VERSION_LINE "version=" VERSION_NAME "\n"
 
 __attribute__((format(printf, 2, 3))) static void line_add(Identity *identity, const char *format, ...)
 {
@@ -109,15 +112,28 @@ static void paths_add(Identity *identity, const RenderOptions *options, const Fr
         line_add(identity, "photons=%u\n", options->photons);
 }
 
+/* A shard, and what its share is of. */
+static void shard_add(Identity *identity, const RenderOptions *options)
+{
+    const Shard shard = options->shard;
+    if (shard.number > 0)
+        line_add(identity, "shard=%u/%u\n", shard.number, shard.count);
+    else
+        line_add(identity, "shard=none\n");
+    if (shard.count > 0)
+        number_add(identity, "samples", options->samples);
+}
+
 void identity_make(Identity *identity, const Integrator *integrator, const Scene *scene, const RenderOptions *options,
                    const FrameParams *frame)
 {
     const FilmParams *film = &frame->film;
     *identity = (Identity){{0}};
-    line_add(identity, "version=%s.%d%s\n", PACKAGE_VERSION, LAYOUT, PRECISION);
+    line_add(identity, "%s", VERSION_LINE);
     line_add(identity, "integrator=%s\n", integrator->name);
     line_add(identity, "resolution=%ux%u\n", film->width, film->height);
     line_add(identity, "crop=%u,%u,%u,%u\n", film->crop_x0, film->crop_y0, film->crop_x1, film->crop_y1);
+    shard_add(identity, options);
     paths_add(identity, options, frame);
     layers_add(identity, options->layers);
     switch_add(identity, "error", options->error.goal > 0.0);
@@ -134,32 +150,43 @@ static bool starts_with(const char *line, const char *name)
 }
 
 /* Sets the error for two lines that differ. */
-static bool difference_set(const char *saved, const char *now, const char *what, Error *error)
+static bool difference_set(const char *saved, const char *now, const IdentityUse *use, Error *error)
 {
     char lines[2][128];
     snprintf(lines[0], sizeof lines[0], "%.*s", (int)strcspn(saved, "\n"), saved);
     snprintf(lines[1], sizeof lines[1], "%.*s", (int)strcspn(now, "\n"), now);
     if (starts_with(now, "scene=")) {
-        error_set(error, "%s is of another scene, or of this one before it was changed", what);
-        return error_fix(error, "resume with the scene that it is of, or begin with a new --checkpoint");
+        error_set(error, "%s is of another scene than %s, or of this one before it was changed", use->saved, use->now);
+        return error_fix(error, "%s", use->fix);
     }
     if (starts_with(now, "version=")) {
-        error_set(error, "%s is of Twinlight %s, and this is %s", what, lines[0] + strcspn(lines[0], "0123456789"),
-                  lines[1] + strlen("version="));
-        return error_fix(error, "resume with the version that it is of, or begin with a new --checkpoint");
+        error_set(error, "%s is of Twinlight %s, and %s of %s", use->saved, lines[0] + strcspn(lines[0], "0123456789"),
+                  use->now, lines[1] + strlen("version="));
+        return error_fix(error, "%s", use->fix);
     }
-    error_set(error, "%s is of --%s, and this rendering of --%s", what, lines[0], lines[1]);
-    return error_fix(error, "resume with the options that it is of, or begin with a new --checkpoint");
+    error_set(error, "%s is of --%s, and %s of --%s", use->saved, lines[0], use->now, lines[1]);
+    return error_fix(error, "%s", use->fix);
 }
 
-bool identity_compare(const Identity *saved, const Identity *now, const char *what, Error *error)
+bool identity_compare(const Identity *saved, const Identity *now, const IdentityUse *use, Error *error)
 {
     size_t line = 0;
     for (size_t i = 0; i < sizeof now->text; ++i) {
         if (saved->text[i] != now->text[i])
-            return difference_set(saved->text + line, now->text + line, what, error);
+            return difference_set(saved->text + line, now->text + line, use, error);
         if (now->text[i] == '\n')
             line = i + 1;
     }
     return true;
+}
+
+bool identity_of_this_version(const Identity *saved, const char *what, Error *error)
+{
+    char text[64];
+    if (strncmp(saved->text, VERSION_LINE, strlen(VERSION_LINE)) == 0)
+        return true;
+    snprintf(text, sizeof text, "%.*s", (int)strcspn(saved->text, "\n"), saved->text);
+    text_make_printable(text);
+    error_set(error, "%s is of Twinlight %s, and this is " VERSION_NAME, what, text + strcspn(text, "0123456789"));
+    return error_fix(error, "use the version that it is of for all of its picture");
 }

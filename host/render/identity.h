@@ -1,5 +1,5 @@
 /* What a rendering is of, as text: program, algorithm, options and scene, as far as the state of a rendering depends on
- * them. A checkpoint is resumed only by a rendering of the same identity. Limits of samples and time, threads, backend
+ * them. A checkpoint is resumed only by a rendering of the same identity, and parts are merged only with such. Limits of samples and time, threads, backend
  * and output are not part of it. */
 #ifndef TWINLIGHT_RENDER_IDENTITY_H
 #define TWINLIGHT_RENDER_IDENTITY_H
@@ -13,12 +13,21 @@ typedef struct Identity {
     char text[IDENTITY_TEXT_MAX]; /* lines "NAME=VALUE\n", in the same order for the same version; the rest is 0 */
 } Identity;
 
-/* frame: from render_frame. */
+/* frame: from render_frame. A shard with a count but without a number: any part of the picture that so many shards share. */
 void identity_make(Identity *identity, const Integrator *integrator, const Scene *scene, const RenderOptions *options,
                    const FrameParams *frame);
 
-/* Whether both are the same; otherwise sets an error that names the first difference. what: name of what has the identity
- * `saved`, whose text need not end. */
-bool identity_compare(const Identity *saved, const Identity *now, const char *what, Error *error);
+/* How an error names the two that are compared, and what to do. */
+typedef struct IdentityUse {
+    const char *saved, *now; /* "pool.ck", "this rendering" */
+    const char *fix;
+} IdentityUse;
+
+/* Whether both are the same; otherwise sets an error that names the first difference. The text of `saved` need not end. */
+bool identity_compare(const Identity *saved, const Identity *now, const IdentityUse *use, Error *error);
+
+/* Whether an identity read from the file `what` is of this version of the program, so that what
+ * follows can be read; otherwise sets an error. */
+bool identity_of_this_version(const Identity *saved, const char *what, Error *error);
 
 #endif

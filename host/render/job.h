@@ -3,6 +3,7 @@
 #define TWINLIGHT_RENDER_JOB_H
 
 #include "film/film.h"
+#include "layout/diagnostics.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -51,9 +52,16 @@ typedef struct ErrorGoal {
     double scale; /* of the picture that is written */
 } ErrorGoal;
 
+/* --shard=NUMBER/COUNT: which share of the picture is rendered (render/shard.h). */
+typedef struct Shard {
+    unsigned number; /* 1 ... count */
+    unsigned count; /* 0: the whole picture is rendered */
+} Shard;
+
 typedef struct RenderOptions {
     unsigned first_sample; /* of every pixel; a run over [a, b) and one over [b, c) merge to one over [a, c) */
-    unsigned samples; /* per pixel; 0: no limit but `seconds` */
+    unsigned samples; /* per pixel, of the whole picture; 0: no limit but `seconds` */
+    Shard shard;
     double seconds; /* 0: no limit but `samples` */
     ErrorGoal error; /* a further limit; needs `layers` */
     int max_depth; /* segments, >= 1 */
@@ -86,12 +94,22 @@ typedef struct RenderProgress {
     double error; /* estimated relative error, if there is a goal; 0 before the first estimate */
 } RenderProgress;
 
+/* What has been done, in all runs of a rendering that was interrupted and resumed. */
+typedef struct RenderTotals {
+    uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */
+    double seconds;
+    unsigned samples; /* RenderOptions.samples of the latest run */
+    unsigned photons; /* asked for by the first run */
+    uint64_t closest_rays, shadow_rays;
+    uint64_t diagnostics[DIAGNOSTIC_COUNT];
+} RenderTotals;
+
 struct RenderRun;
 
 typedef struct RenderCallbacks {
     void (*progress)(void *context, const RenderProgress *progress); /* a few times a second; may be NULL */
     /* Called as soon as there is an image, then every save_every seconds, also after failures; may be NULL. */
-    bool (*save)(void *context, const Film *film, Error *error);
+    bool (*save)(void *context, const Film *film, const RenderTotals *totals, Error *error);
     /* Called after `progress`: between passes, when nothing changes the film and its layers; may be NULL. The film may have to
      * be brought up to date (render_run_gather). */
     void (*publish)(void *context, struct RenderRun *run, const RenderProgress *progress);

@@ -3,6 +3,7 @@
 #include "backend/step_recorder.h"
 #include "layout/kernel_list.h"
 #include "path/path_state.h"
+#include "render/shard.h"
 
 #include <stdlib.h>
 
@@ -137,6 +138,12 @@ static void stratified_set(const RenderLayers *layers, const PixelSeries halves[
     }
 }
 
+static void stratified_renew(RenderLayers *layers)
+{
+    stratified_set(layers, layers->own, layers->stratified[0]);
+    stratified_set(layers, layers->light, layers->stratified[1]);
+}
+
 static bool variance_add(RenderLayers *layers, const Film *part, unsigned half, Error *error)
 {
     size_t bytes = 3 * film_pixels(part) * sizeof(float);
@@ -150,8 +157,7 @@ static bool variance_add(RenderLayers *layers, const Film *part, unsigned half, 
         pixel_series_add(&layers->light[half], rgb, NULL, (double)part->light_samples);
     }
     free(rgb);
-    stratified_set(layers, layers->own, layers->stratified[0]);
-    stratified_set(layers, layers->light, layers->stratified[1]);
+    stratified_renew(layers);
     return true;
 }
 
@@ -172,6 +178,30 @@ bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Er
 {
     return (!has_halves(layers) || film_merge(&layers->halves[half], part, error)) &&
            (!wants(layers, LAYER_VARIANCE) || variance_add(layers, part, half, error));
+}
+
+bool render_layers_merge(RenderLayers *layers, RenderLayers *from, Error *error)
+{
+    for (int i = 0; i < 2 && wants(layers, LAYER_HALVES); ++i)
+        if (!film_merge(&layers->halves[i], &from->halves[i], error))
+            return false;
+    for (int i = 0; i < 2 && wants(layers, LAYER_VARIANCE); ++i) {
+        pixel_series_merge(&layers->own[i], &from->own[i]);
+        pixel_series_merge(&layers->light[i], &from->light[i]);
+    }
+    if (wants(layers, LAYER_VARIANCE))
+        stratified_renew(layers);
+    if (from->aov_samples <= layers->aov_samples)
+        return true;
+    for (uint aov = 0; aov < AOV_COUNT; ++aov) {
+        AovImage image = layers->aovs[aov];
+        layers->aovs[aov] = from->aovs[aov];
+        from->aovs[aov] = image;
+    }
+    unsigned samples = layers->aov_samples;
+    layers->aov_samples = from->aov_samples;
+    from->aov_samples = samples;
+    return true;
 }
 
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb)
@@ -218,6 +248,7 @@ static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *erro
     RenderLayers *layers = run->options->layers;
     FrameParams frame = run->frame;
     const SplatSink sink = {.splats = aov_splats, .context = layers};
+    render_frame_seed(&frame, run->options->seed);
     frame.pass.aovs = aovs;
     frame.path.sobol = 1;
     frame.film.reconstruction = RECONSTRUCTION_SAMPLE;
@@ -227,13 +258,25 @@ static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *erro
     return run->interface->run(run->backend, &frame, list, &sink, render_run_stop_between(run), NULL, error);
 }
 
+/* Samples that the variables should have by now. Every shard makes those of the whole picture, in proportion to what is done of
+ * its share, so that they do not depend on how the picture is divided. */
+static uint64_t aov_samples_wanted(const RenderRun *run, uint64_t samples)
+{
+    const RenderOptions *options = run->options;
+    uint64_t wanted = samples / run->crop_pixels;
+    if (shard_given(options)) {
+        wanted *= options->shard.count;
+        wanted = options->samples > 0 && wanted > options->samples ? options->samples : wanted;
+    }
+    return wanted < AOV_SAMPLES ? wanted : AOV_SAMPLES;
+}
+
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
 {
     RenderLayers *layers = run->options->layers;
-    uint64_t wanted = samples / run->crop_pixels;
+    uint64_t wanted = aov_samples_wanted(run, samples);
     uint aovs = 0, count = 0;
     StepList list;
-    wanted = wanted < AOV_SAMPLES ? wanted : AOV_SAMPLES;
     if (!layers || layers->aov_samples >= wanted || (layers->wanted & LAYERS_AOV) == 0 || *render_run_stop(run))
         return true;
     for (uint aov = 0; aov < AOV_COUNT; ++aov)

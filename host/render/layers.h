@@ -60,11 +60,15 @@ void render_layers_archive(Archive *archive, RenderLayers *layers);
 /* Adds an independent part of the picture to half 0 or 1 and to the variances. */
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error);
 
+/* Adds the layers of another shard of the picture. Its AOVs, which are the same in all shards, are taken (leaving `from` with
+ * these) if they have more samples. */
+bool render_layers_merge(RenderLayers *layers, RenderLayers *from, Error *error);
+
 /* rgb[3 * count]: the estimated variance of scale x the picture in pixels first ... first + count - 1. */
 void render_layers_variance(const RenderLayers *layers, float scale, size_t first, size_t count, float *rgb);
 
 /* Renders the AOVs that the run's layers want, if any: brings them to as many samples per pixel as `samples` paths of
- * light make, at most 8, since AOVs are nearly noise-free. */
+ * light make, at most 8, since AOVs are nearly noise-free. A shard makes those of the whole picture. */
 bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error);
 
 #endif

@@ -10,6 +10,7 @@
 #include "render/error_watch.h"
 #include "render/film_pilot.h"
 #include "render/photon_map.h"
+#include "render/shard.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,6 +34,7 @@ static const char *const DIAGNOSTIC_NAMES[DIAGNOSTIC_COUNT] = {DIAGNOSTIC_LIST(D
 typedef struct PassLoop {
     RenderRun *run;
     StepList list;
+    uint first_sample; /* of every pixel */
     uint64_t next, total; /* items; without a limit, all sample numbers */
 } PassLoop;
 
@@ -75,7 +77,7 @@ static bool pass_run(PassLoop *loop, const SampleSpan *span, uint items, Error *
     RenderRun *run = loop->run;
     uint64_t delivered = 0;
     uint sequence = span->half * SEQUENCE_SAMPLES;
-    run->frame.pass.sample_index = run->options->first_sample + sequence + (uint)span->sample;
+    run->frame.pass.sample_index = loop->first_sample + sequence + (uint)span->sample;
     run->frame.pass.first_item = (uint)span->pixel;
     run->frame.pass.item_count = items;
     run->frame.path.sobol = run->frame.path.sobol > 0 ? 1 + sequence : 0;
@@ -152,16 +154,15 @@ static bool passes_run(PassLoop *loop, Error *error)
 
 static bool samples_render(const Integrator *integrator, RenderRun *run, Error *error)
 {
-    const RenderOptions *options = run->options;
-    PassLoop loop = {.run = run};
-    loop.total = run->crop_pixels * (options->samples > 0 ? options->samples : PILOT_SAMPLE - options->first_sample);
+    const ShardRange samples = shard_samples(run->options);
+    PassLoop loop = {.run = run, .first_sample = (uint)samples.first, .total = run->crop_pixels * samples.count};
     uint64_t most = run->crop_pixels * film_samples_most(run->frame.film.reconstruction);
     loop.total = loop.total < most ? loop.total : most;
     if (!integrator->list(&run->frame, &loop.list, error))
         return false;
     loop.list.photons = &run->photons;
-    if (options->error.goal > 0.0)
-        run->halves = options->layers->halves;
+    if (run->options->error.goal > 0.0)
+        run->halves = run->options->layers->halves;
     Error gathering = {0};
     bool done = passes_run(&loop, error), gathered = render_run_gather(run, &gathering);
     if (done && !gathered)
@@ -171,26 +172,30 @@ static bool samples_render(const Integrator *integrator, RenderRun *run, Error *
     return done;
 }
 
+void render_result_totals(RenderResult *result, RenderTotals totals, uint64_t pixels)
+{
+    result->totals = totals;
+    result->samples = totals.done;
+    result->samples_per_pixel = (double)totals.done / (double)pixels;
+    result->seconds = totals.seconds;
+    result->backend.closest_rays = totals.closest_rays;
+    result->backend.shadow_rays = totals.shadow_rays;
+    result->diagnostic_count = DIAGNOSTIC_COUNT;
+    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
+        result->diagnostic_names[i] = DIAGNOSTIC_NAMES[i];
+        result->diagnostics[i] = totals.diagnostics[i];
+    }
+}
+
 static void result_fill(const RenderRun *run, RenderResult *result)
 {
-    uint64_t counters[DIAGNOSTIC_COUNT] = {0};
-    result->samples = run->done;
-    result->samples_per_pixel = (double)run->done / (double)run->crop_pixels;
-    result->seconds = render_run_seconds(run);
     run->interface->statistics(run->backend, &result->backend);
-    result->backend.closest_rays += run->past.closest_rays;
-    result->backend.shadow_rays += run->past.shadow_rays;
-    run->interface->diagnostics(run->backend, counters);
+    render_result_totals(result, render_run_totals(run), run->crop_pixels);
     result->chains = run->chains;
     result->error = run->error;
     result->error_reached = error_watch_reached(run);
     result->stopped = *render_run_stop(run);
     result->photons = run->photons.params.count;
-    result->diagnostic_count = 0;
-    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i) {
-        result->diagnostic_names[result->diagnostic_count] = DIAGNOSTIC_NAMES[i];
-        result->diagnostics[result->diagnostic_count++] = counters[i] + run->past.diagnostics[i];
-    }
 }
 
 /* A filter wider than this costs more to spread splats by than they cost. */
@@ -216,8 +221,7 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->path.only_t = options->only_strategy ? options->strategy[1] : NONE;
     frame->path.unweighted = options->unweighted;
     frame->path.sobol = options->independent || integrator->render ? 0 : 1;
-    frame->pass.seed_low = (uint)options->seed;
-    frame->pass.seed_high = (uint)(options->seed >> 32);
+    render_frame_seed(frame, options->seed);
     frame->pass.sample_index = options->first_sample;
     frame->pass.first_item = 0;
     frame->pass.pixel_stride = 1;
@@ -250,6 +254,17 @@ bool render_photons_make(RenderRun *run, const Integrator *integrator, const Sce
     return true;
 }
 
+/* The film's quantum, which is that of the picture in all shards, and after it the seed of the shard's chains. */
+static bool quantum_and_seed_set(const RenderTask *task, RenderRun *run, Error *error)
+{
+    const Integrator *integrator = task->integrator;
+    if (!task->keep_quantum && !run->resumed && !film_pilot_run(run, integrator, task->scene, error))
+        return false;
+    if (integrator->render)
+        render_frame_seed(&run->frame, shard_seed(run->options));
+    return true;
+}
+
 bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error *error)
 {
     const Integrator *integrator = task->integrator;
@@ -276,8 +291,7 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     RenderLayers *layers = options->layers;
     Checkpoint checkpoint;
     bool done = checkpoint_begin(&checkpoint, &run, integrator, scene, error) &&
-                (task->keep_quantum || run.resumed || film_pilot_run(&run, integrator, scene, error)) &&
-                render_photons_make(&run, integrator, scene, error) &&
+                quantum_and_seed_set(task, &run, error) && render_photons_make(&run, integrator, scene, error) &&
                 (!layers || render_layers_init(layers, layers->wanted, options->error.goal > 0.0, film, error)) &&
                 (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);

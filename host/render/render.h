@@ -14,6 +14,7 @@
 
 /* The outcome of a rendering; diagnostics are the kernels' counters (layout/diagnostics.h). */
 typedef struct RenderResult {
+    RenderTotals totals; /* from which the next three and the diagnostics follow */
     uint64_t samples; /* paths; MMLT: work in samples of path tracing */
     double samples_per_pixel;
     double seconds; /* of rendering alone, photons included */
@@ -27,6 +28,9 @@ typedef struct RenderResult {
     const char *diagnostic_names[DIAGNOSTIC_NAMES_MAX];
     uint64_t diagnostics[DIAGNOSTIC_NAMES_MAX];
 } RenderResult;
+
+/* Sets what follows from totals over an image of `pixels`. */
+void render_result_totals(RenderResult *result, RenderTotals totals, uint64_t pixels);
 
 /* What to render, on what, and how. */
 typedef struct RenderTask {

@@ -33,6 +33,40 @@ double render_run_seconds(const RenderRun *run)
     return run->past.seconds + timing_now() - run->start;
 }
 
+RenderTotals render_run_totals(const RenderRun *run)
+{
+    RenderTotals totals = run->past;
+    BackendStatistics statistics;
+    uint64_t counters[DIAGNOSTIC_COUNT] = {0};
+    run->interface->statistics(run->backend, &statistics);
+    run->interface->diagnostics(run->backend, counters);
+    totals.done = run->done;
+    totals.seconds = render_run_seconds(run);
+    totals.samples = run->options->samples;
+    totals.closest_rays += statistics.closest_rays;
+    totals.shadow_rays += statistics.shadow_rays;
+    for (int i = 0; i < DIAGNOSTIC_COUNT; ++i)
+        totals.diagnostics[i] += counters[i];
+    return totals;
+}
+
+void render_totals_archive(Archive *archive, RenderTotals *totals)
+{
+    ARCHIVE_FIELD(archive, totals->done);
+    ARCHIVE_FIELD(archive, totals->seconds);
+    ARCHIVE_FIELD(archive, totals->samples);
+    archive_count(archive, &totals->photons, 0, PHOTONS_MOST_ALLOWED, "photons");
+    ARCHIVE_FIELD(archive, totals->closest_rays);
+    ARCHIVE_FIELD(archive, totals->shadow_rays);
+    ARCHIVE_FIELD(archive, totals->diagnostics);
+}
+
+void render_frame_seed(FrameParams *frame, uint64_t seed)
+{
+    frame->pass.seed_low = (uint)seed;
+    frame->pass.seed_high = (uint)(seed >> 32);
+}
+
 SplatSink render_run_sink(Film *film)
 {
     return (SplatSink){.splats = film_splats, .sums = film_sums, .sum_words = film_sum_words(film), .context = film};
@@ -76,7 +110,9 @@ void render_run_save_if_due(RenderRun *run)
     if (!run->callbacks || !run->callbacks->save || run->options->save_every <= 0.0 ||
         timing_now() - run->last_save < run->options->save_every)
         return;
-    bool saved = render_run_gather(run, &error) && run->callbacks->save(run->callbacks->context, run->film, &error);
+    const RenderTotals totals = render_run_totals(run);
+    bool saved =
+        render_run_gather(run, &error) && run->callbacks->save(run->callbacks->context, run->film, &totals, &error);
     /* One warning per series of failures. */
     if (!saved && !run->save_failed)
         log_message(LOG_WARNING, "%s; rendering continues, and saving will be tried again", error_text(&error));

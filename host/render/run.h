@@ -3,19 +3,8 @@
 #define TWINLIGHT_RENDER_RUN_H
 
 #include "backend/backend.h"
-#include "layout/diagnostics.h"
 #include "render/chain_statistics.h"
 #include "render/job.h"
-
-/* What the runs before this one have done, of which a checkpoint was resumed. */
-typedef struct RenderPast {
-    uint64_t done; /* as RenderRun.done */
-    double seconds;
-    unsigned samples; /* RenderOptions.samples of the latest */
-    unsigned photons; /* asked for by the first, or by this one if it is that */
-    uint64_t closest_rays, shadow_rays;
-    uint64_t diagnostics[DIAGNOSTIC_COUNT];
-} RenderPast;
 
 /* The number of the second sequence's first sample of a pixel, beyond all that the first can make. */
 #define SEQUENCE_SAMPLES 0x40000000u
@@ -37,10 +26,10 @@ typedef struct RenderRun {
     Film *film;
     Film *halves; /* two films of which `film` is the sum, by render_run_gather; NULL: it is added to itself */
     uint64_t crop_pixels;
-    uint64_t done; /* paths in the film; MMLT: its work (estimators_work) */
+    uint64_t done; /* as RenderTotals.done */
     struct Checkpoint *checkpoint; /* NULL: none is written or resumed (render/checkpoint.h) */
     bool resumed;
-    RenderPast past; /* zeros, but for photons, unless resumed */
+    RenderTotals past; /* of the runs before this one; zeros, but for photons, unless resumed */
     double start, last_save;
     bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;
@@ -55,6 +44,15 @@ const atomic_int *render_run_stop_between(const RenderRun *run);
 
 /* Seconds of rendering so far, those of earlier runs included. */
 double render_run_seconds(const RenderRun *run);
+
+/* Totals of this run and those before it. */
+RenderTotals render_run_totals(const RenderRun *run);
+
+/* Saves or restores totals. */
+void render_totals_archive(Archive *archive, RenderTotals *totals);
+
+/* Sets the seed of a frame's random numbers. */
+void render_frame_seed(FrameParams *frame, uint64_t seed);
 
 /* A sink that adds splats to the film. Passes that use it must set frame.film.exponent to the film's
  * quantum_exponent. */

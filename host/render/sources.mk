@@ -13,6 +13,8 @@ libtwinlight_host_la_SOURCES += \
 	host/render/integrator_pt.c \
 	host/render/job.h \
 	host/render/layers.c host/render/layers.h \
+	host/render/merge.c host/render/merge.h \
+	host/render/part.c host/render/part.h \
 	host/render/photon_grid.c host/render/photon_grid.h \
 	host/render/photon_lobe.c host/render/photon_lobe.h \
 	host/render/photon_map.c host/render/photon_map.h \
@@ -23,5 +25,6 @@ libtwinlight_host_la_SOURCES += \
 	host/render/render.c host/render/render.h \
 	host/render/report.c host/render/report.h \
 	host/render/run.c host/render/run.h \
+	host/render/shard.c host/render/shard.h \
 	host/render/stats.c host/render/stats.h \
 	host/render/verify.c host/render/verify.h

@@ -195,7 +195,8 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_unsigned(&json, "peak_memory_bytes", timing_peak_memory());
     json_unsigned(&json, "backend_bytes", result->backend.bytes);
     stats_diagnostics(&json, stats);
-    json_string(&json, "image", stats->exr);
+    json_string(&json, "part", stats->part[0] ? stats->part : NULL);
+    json_string(&json, "image", stats->part[0] ? NULL : stats->exr);
     json_string(&json, "png", stats->png[0] ? stats->png : NULL);
     json_object_end(&json);
 }

@@ -15,6 +15,7 @@ typedef struct RenderStats {
     const char *integrator;
     const char *backend;
     uint64_t seed;
+    const char *part; /* "": none, but an image */
     const char *exr;
     const char *png; /* "": none */
     const RenderResult *result;

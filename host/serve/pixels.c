@@ -85,7 +85,7 @@ bool pixels_make(Pixels *pixels, const float *rgb, const float *other, int width
     size_t row = 3 * (size_t)pixels->width;
     pixels->size = bytes * row * (size_t)pixels->height;
     pixels->bytes = malloc(pixels->size);
-    float *values = malloc(row * sizeof *values);
+    float *values = calloc(row, sizeof *values);
     unsigned char *out = pixels->bytes;
     for (int y = 0; out && values && y < pixels->height; ++y) {
         row_put(&source, y, pixels->width, values);

@@ -11,6 +11,11 @@ typedef struct WatchOptions {
     OptionAddress serve; /* the same for the page; port 0: the system chooses it */
 } WatchOptions;
 
+static inline bool watch_wanted(const WatchOptions *options)
+{
+    return options->tev.host[0] != '\0' || options->serve.host[0] != '\0';
+}
+
 /* What is watched; all of it outlives the Watch. */
 typedef struct WatchSubject {
     RenderFacts facts; /* image: the output file */

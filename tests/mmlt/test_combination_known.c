@@ -341,7 +341,7 @@ START_TEST(test_rates_adopted)
     Plan plan;
     known_init(&known, 29);
     StepRates best = combination_rates(&known.combination);
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 16);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PIXELS * 16);
     const StepRates first = plan.rates;
     plan_learn(&plan, 2, &known.combination);
     TEST_TRUE(plan.rates.paths == first.paths && plan.rates.pool == first.pool && first.paths != best.paths);

@@ -43,7 +43,7 @@ START_TEST(test_sizes)
 {
     const ChainOptions options = {.chains = PLANS[_i].chains, .steps = STEPS_DEFAULT, .pool = PLANS[_i].pool};
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PLANS[_i].samples);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PIXELS * PLANS[_i].samples);
     ck_assert_uint_le(plan.chains, CHAINS_FIRST);
     uint pair = 0, index = 0;
     double owed = 0.0;
@@ -143,7 +143,7 @@ START_TEST(test_width)
                 {0.74, 64}, {0.68, 64}, {0.66, 128}, {0.51, 256}}; /* 4/3, 3/2, 3/2, 5/3 times longer */
     const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, _i == 0 ? 0 : 1000000);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, _i == 0 ? 0 : PIXELS * 1000000ull);
     plan.width = 64 * CHAINS_FIRST;
     plan_count(&plan, 1000, 0.0);
     for (uint i = 0; i < sizeof NEXT / sizeof NEXT[0]; ++i) {
@@ -178,7 +178,7 @@ START_TEST(test_pools)
 {
     ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = 12};
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 16);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PIXELS * 16);
     plan.rates.pool = 1.0 / 12.0;
     ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS / 4), PIXELS / 4);
     ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS + PIXELS / 4), PIXELS);
@@ -196,7 +196,7 @@ START_TEST(test_published)
     const ChainOptions options = {
         .chains = PAPER_CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .pool = 8, .chains_only = true};
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(true), PIXELS, 1000);
+    plan_init(&plan, &options, mmlt_scheme(true), PIXELS, PIXELS * 1000);
     for (uint index = 1; index < 8; ++index) {
         ck_assert_uint_eq(plan.chains, PAPER_CHAINS_DEFAULT);
         plan_count(&plan, 1000, 0.0);

@@ -46,8 +46,9 @@ Backend *fixture_open(const RenderSetup *setup, const Scene *scene, Error *error
     return setup_interface(setup)->open(&view, &options, error);
 }
 
-static bool picture_save(void *context, const Film *film, Error *error)
+static bool picture_save(void *context, const Film *film, const RenderTotals *totals, Error *error)
 {
+    (void)totals;
     (void)error;
     film_resolve(film, 1.0f, context);
     return true;
