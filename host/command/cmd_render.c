@@ -1,30 +1,20 @@
 /* `twinlight render`: from a scene to an image. */
 #include "command/command.h"
 
-#include "backend/trace_output.h"
-#include "base/frame_name.h"
 #include "base/interrupt.h"
 #include "base/log.h"
-#include "base/path_name.h"
 #include "base/timing.h"
 #include "command/mlt_option.h"
 #include "command/output_check.h"
-#include "command/part_output.h"
-#include "command/render_options.h"
-#include "command/render_output.h"
+#include "command/render_job.h"
 #include "command/render_settings.h"
 #include "command/render_verify.h"
-#include "mmlt/bad_chains.h"
 #include "mmlt/chain_list.h"
 #include "mmlt/scheme.h"
 #include "pbrt/import.h"
 #include "render/checkpoint.h"
-#include "render/progress.h"
-#include "render/render.h"
 #include "render/report.h"
 #include "render/shard.h"
-#include "render/stats.h"
-#include "scene/camera_setup.h"
 #include "scene/warnings.h"
 
 #include <string.h>
@@ -43,131 +33,7 @@ static const RenderOptionSet OPTIONS = {
     .depth_high = 65535,
 };
 
-/* One rendering from command line to files. */
-typedef struct RenderJob {
-    RenderCommand *command;
-    Arena names; /* file names with the frame number filled in */
-    const Integrator *integrator;
-    Scene scene;
-    Film film;
-    RenderLayers layers;
-    BadChains bad_chains;
-    BackendMember backend;
-    RenderOutput output;
-    PartOutput part; /* in place of it with --shard */
-    Progress progress;
-    Watch watch;
-    bool left; /* no sample was rendered, and files were left as they are */
-    bool frame_used; /* a file name has the frame's number */
-    RenderResult result;
-    double load, build, rendering, write; /* seconds */
-    double start;
-} RenderJob;
-
 /* ---- before rendering ------------------------------------------------------------------------------------------- */
-
-/* A number that no file name uses would make every frame overwrite the one before. */
-static bool frame_check(const RenderJob *job, Error *error)
-{
-    if (job->command->frame < 0 || job->frame_used)
-        return true;
-    error_set(error, "--frame=%d: no file name has a place for the number", job->command->frame);
-    return error_fix(error, "write it as %%04d, as in -o frame.%%04d.exr");
-}
-
-/* Fills the frame number into file names from the command line. */
-static bool names_fill(RenderJob *job, Error *error)
-{
-    RenderCommand *command = job->command;
-    const char **names[] = {&command->output,   &command->png_path,   &command->stats, &command->trace,
-                            &command->dump_bad, &command->checkpoint, &command->resume};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
-        if (!*names[i] || !frame_name_has(*names[i]))
-            continue;
-        if (command->frame < 0) {
-            error_set(error, "%s has a place for a frame number, but none is given", *names[i]);
-            return error_fix(error, "add --frame=N");
-        }
-        *names[i] = frame_name_fill(&job->names, *names[i], command->frame, error);
-        job->frame_used = true;
-        if (!*names[i])
-            return false;
-    }
-    return !command->output || frame_check(job, error);
-}
-
-/* The image's name: from the command line or the scene's Film, whose name may also have a place for the frame number,
- * or else after the scene file. */
-static const char *image_name(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    const char *film = path_file_name(job->scene.settings.output);
-    if (command->output)
-        return command->output;
-    job->frame_used = job->frame_used || frame_name_has(film);
-    if (!frame_check(job, error))
-        return NULL;
-    if (!film[0])
-        return strcmp(command->scene, "-") == 0 ? "stdin" : path_file_name(command->scene);
-    return command->frame < 0 ? film : frame_name_fill(&job->names, film, command->frame, error);
-}
-
-/* A file to resume is written to as well, unless --checkpoint names another. */
-static CheckpointOptions checkpoint_options(const RenderCommand *command)
-{
-    const char *file = command->checkpoint ? command->checkpoint : command->resume;
-    return (CheckpointOptions){.file = file,
-                               .every =
-                                   command->checkpoint_every > 0.0 ? command->checkpoint_every : CHECKPOINT_SECONDS,
-                               .resume = command->resume,
-                               .anew = command->checkpoint && command->resume && path_same(file, command->resume)};
-}
-
-/* The names of image and PNG, or of the part. */
-static bool outputs_name(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    const char *image = image_name(job, error);
-    if (!image)
-        return false;
-    if (command->shard.count > 0)
-        return part_output_name(&job->part, command->output, image, command->shard, error);
-    return render_output_name(&job->output, image, command->png, command->png_path, error);
-}
-
-/* The main file that is written. */
-static const char *job_target(const RenderJob *job)
-{
-    return job->part.path[0] ? job->part.path : job->output.exr;
-}
-
-static bool outputs_check(RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    RenderOutput *output = &job->output;
-    const CheckpointOptions checkpoint = checkpoint_options(command);
-    const char *stats = command->stats && !stats_to_output(command->stats) ? command->stats : NULL;
-    output->picture = (PictureSettings){.scale = job->scene.settings.film_scale,
-                                        .despeckle = command->despeckle,
-                                        .layers = job->layers.wanted != 0 ? &job->layers : NULL};
-    output->exposure = (float)command->exposure;
-    output->scene_file = command->scene;
-    output->integrator = command->integrator;
-    output->seed = command->seed;
-    output->max_depth = job->scene.settings.max_depth;
-    camera_matrices(&job->scene.camera_settings, &job->scene.frame.camera, job->scene.origin, output->world_to_camera,
-                    output->world_to_ndc);
-    const CommandFile files[] = {{"the scene", strcmp(command->scene, "-") == 0 ? NULL : command->scene, false},
-                                 {job->part.path[0] ? "the part" : "the image", job_target(job), true},
-                                 {"the PNG", output->png[0] ? output->png : NULL, true},
-                                 {"the statistics", stats, true},
-                                 {"the trace", command->trace, true},
-                                 {"the list of chains", command->dump_bad, true},
-                                 {"the checkpoint", checkpoint.file, true}};
-    return output_files_check(
-        files, sizeof files / sizeof files[0],
-        "give each its own name, with --output, --png, --stats, --trace, --dump-bad and --checkpoint", error);
-}
 
 static RenderOptions job_options(RenderJob *job)
 {
@@ -191,7 +57,7 @@ static RenderOptions job_options(RenderJob *job)
         .seed = command->seed,
         .photons = command->photons,
         .save_every = command->save_every,
-        .checkpoint = checkpoint_options(command),
+        .checkpoint = job_checkpoint_options(command),
         .stop = interrupt_flag(),
     };
     options.error.scale = (double)settings->film_scale;
@@ -296,85 +162,6 @@ static bool film_render(RenderJob *job, Error *error)
     return rendered;
 }
 
-/* ---- after rendering -------------------------------------------------------------------------------------------- */
-
-/* What --error has estimated. */
-static void goal_report(const RenderJob *job)
-{
-    const ErrorWatch *watch = &job->result.error;
-    const double percent = 100.0;
-    if (watch->work == 0)
-        log_message(LOG_WARNING, "the rendering ended before its error could be estimated; --error had no effect");
-    else
-        log_message(job->result.error_reached ? LOG_INFO : LOG_WARNING, "estimated error %.3g %% +- %.2g %%%s%.3g %%",
-                    percent * watch->estimate, percent * watch->deviation,
-                    job->result.error_reached ? ": below --error=" : ", not yet below --error=",
-                    percent * job->command->error.goal);
-}
-
-static void summary_report(const RenderJob *job)
-{
-    const RenderResult *result = &job->result;
-    char seconds[24], samples[24], rays[24];
-    double per_second = result->seconds > 0.0 ? 1.0 / result->seconds : 0.0;
-    progress_time(result->seconds, seconds, sizeof seconds);
-    progress_rate((double)result->samples * per_second, samples, sizeof samples);
-    progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
-    log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
-                result->samples_per_pixel, seconds, samples, rays);
-    if (job->command->error.goal > 0.0)
-        goal_report(job);
-    if (job->left)
-        log_message(LOG_WARNING, "%s is left unchanged: no sample is finished yet", job_target(job));
-    else if (job->part.path[0])
-        log_message(LOG_INFO, "wrote %s: shard %u of %u, for twinlight merge", job->part.path,
-                    job->part.head.shard.number, job->part.head.shard.count);
-    else
-        log_message(LOG_INFO, "wrote %s%s%s", job->output.exr, job->output.png[0] ? " and " : "", job->output.png);
-}
-
-static bool stats_output(const RenderJob *job, Error *error)
-{
-    const RenderCommand *command = job->command;
-    const RenderStats stats = {
-        .scene_file = command->scene,
-        .scene = &job->scene,
-        .film = &job->film,
-        .integrator = command->integrator,
-        .backend = command->backends.name,
-        .seed = command->seed,
-        .part = job->part.path,
-        .exr = job->output.exr,
-        .png = job->output.png,
-        .result = &job->result,
-        .error = &command->error,
-        .load = job->load,
-        .build = job->build,
-        .render = job->rendering,
-        .write = job->write,
-        .total = timing_now() - job->start,
-    };
-    return stats_write(command->stats, &stats, error);
-}
-
-static bool trace_output(const RenderJob *job, Error *error)
-{
-    BackendMember members[BACKEND_GROUP_MAX];
-    TraceSource sources[BACKEND_GROUP_MAX];
-    size_t count = 0, found = backend_group_members(job->backend, members);
-    for (size_t i = 0; i < found; ++i) {
-        if (!members[i].interface->spans)
-            continue;
-        TraceSource *source = &sources[count++];
-        source->count = members[i].interface->spans(members[i].backend, &source->spans, &source->dropped);
-        members[i].interface->statistics(members[i].backend, &source->statistics);
-        if (source->dropped > 0)
-            log_message(LOG_WARNING, "the trace holds the first %zu spans only; %llu more were not recorded",
-                        source->count, (unsigned long long)source->dropped);
-    }
-    return trace_write(job->command->trace, sources, count, error);
-}
-
 /* ---- the whole job ---------------------------------------------------------------------------------------------- */
 
 /* Runs a stage and adds its wall-clock time to *seconds. */
@@ -448,11 +235,11 @@ static int job_run(RenderJob *job, Error *error)
     if (!job->integrator || !render_settings_check(command, job->integrator, error) ||
         !render_settings_layers(command, job->integrator, &job->layers.wanted, error))
         return EXIT_USAGE;
-    if (!names_fill(job, error))
+    if (!job_names_fill(job, error))
         return EXIT_USAGE;
     if (command->output && !output_check(command->output, error))
         return EXIT_FAILED; /* checked before loading the scene, which may take long */
-    const CheckpointOptions checkpoint = checkpoint_options(command);
+    const CheckpointOptions checkpoint = job_checkpoint_options(command);
     if (!checkpoint_files_check(&checkpoint, error))
         return EXIT_FAILED;
     if (!stage_run(scene_load, job, &job->load, error))
@@ -463,8 +250,9 @@ static int job_run(RenderJob *job, Error *error)
         return memory_print(job);
     if (command->verify)
         return job_verify(job, error);
-    if (!outputs_name(job, error) || !outputs_check(job, error) || !stage_run(backend_build, job, &job->build, error) ||
-        !interrupt_install(error) || !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
+    if (!job_outputs_name(job, error) || !job_outputs_check(job, error) ||
+        !stage_run(backend_build, job, &job->build, error) || !interrupt_install(error) ||
+        !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
         film_rescue(job, error);
@@ -473,9 +261,9 @@ static int job_run(RenderJob *job, Error *error)
     if (!stage_run(film_write, job, &job->write, error))
         return EXIT_FAILED;
     render_report(&job->result, &job->film, job->output.picture.scale);
-    summary_report(job);
-    if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !stats_output(job, error)) ||
-        (command->trace && !trace_output(job, error)))
+    job_summary(job);
+    if (!bad_chains_end(&job->bad_chains, error) || (command->stats && !job_stats(job, error)) ||
+        (command->trace && !job_trace(job, error)))
         return EXIT_FAILED;
     return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
 }

@@ -35,12 +35,3 @@ uint64_t error_watch_next(uint64_t samples)
     uint64_t next = 2 * (uint64_t)ceil(0.5 * ERROR_LOOK_GROWTH * (double)samples);
     return next < ERROR_LOOK_FIRST ? ERROR_LOOK_FIRST : next > samples ? next : samples + 2;
 }
-
-double error_watch_fraction(const RenderRun *run)
-{
-    const ErrorWatch *watch = &run->error;
-    double goal = run->options->error.goal, error = watch->estimate + watch->deviation;
-    if (watch->work == 0 || !(goal > 0.0) || !(error > 0.0))
-        return 0.0;
-    return fmin(1.0, (double)run->done / (double)watch->work * (goal / error) * (goal / error));
-}

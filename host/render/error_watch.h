@@ -28,8 +28,4 @@ bool error_watch_reached(const RenderRun *run);
  * whole samples: an even number. */
 uint64_t error_watch_next(uint64_t samples);
 
-/* How much of the work is done until the goal is reached, 0 ... 1, if the square of the error falls with the inverse of the
- * work; 0 before the first look. */
-double error_watch_fraction(const RenderRun *run);
-
 #endif

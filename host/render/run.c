@@ -2,7 +2,6 @@
 
 #include "base/log.h"
 #include "base/timing.h"
-#include "render/error_watch.h"
 
 #include <math.h>
 
@@ -80,6 +79,15 @@ bool render_run_gather(RenderRun *run, Error *error)
     return film_merge(run->film, &run->halves[0], error) && film_merge(run->film, &run->halves[1], error);
 }
 
+double render_run_error_fraction(const RenderRun *run)
+{
+    const ErrorWatch *watch = &run->error;
+    double goal = run->options->error.goal, error = watch->estimate + watch->deviation;
+    if (watch->work == 0 || !(goal > 0.0) || !(error > 0.0))
+        return 0.0;
+    return fmin(1.0, (double)run->done / (double)watch->work * (goal / error) * (goal / error));
+}
+
 void render_run_report(RenderRun *run, double fraction)
 {
     const RenderCallbacks *callbacks = run->callbacks;
@@ -89,7 +97,7 @@ void render_run_report(RenderRun *run, double fraction)
     run->interface->statistics(run->backend, &statistics);
     double elapsed = timing_now() - run->start;
     double by_time = run->options->seconds > 0.0 ? elapsed / run->options->seconds : 0.0;
-    fraction = fmax(fraction, error_watch_fraction(run));
+    fraction = fmax(fraction, render_run_error_fraction(run));
     RenderProgress progress = {.elapsed = elapsed,
                                .fraction = fmin(1.0, fmax(fraction, by_time)),
                                .samples = run->done,

@@ -172,15 +172,15 @@ START_TEST(test_reached)
     const RenderOptions options = {.error = {.goal = 0.1}};
     RenderRun run = {.options = &options, .crop_pixels = 100, .done = 399};
     ck_assert(!error_watch_due(&run) && !error_watch_reached(&run));
-    ck_assert_double_eq(error_watch_fraction(&run), 0.0);
+    ck_assert_double_eq(render_run_error_fraction(&run), 0.0);
     run.done = 400;
     ck_assert(error_watch_due(&run));
     run.error = (ErrorWatch){.estimate = 0.19, .deviation = 0.01, .work = 400};
     ck_assert(!error_watch_due(&run) && !error_watch_reached(&run));
-    ck_assert_double_eq_tol(error_watch_fraction(&run), 0.25, 1e-9);
+    ck_assert_double_eq_tol(render_run_error_fraction(&run), 0.25, 1e-9);
     run.done = 800;
     ck_assert(error_watch_due(&run));
-    ck_assert_double_eq_tol(error_watch_fraction(&run), 0.5, 1e-9);
+    ck_assert_double_eq_tol(render_run_error_fraction(&run), 0.5, 1e-9);
     run.error = (ErrorWatch){.estimate = 0.099, .deviation = 0.002, .work = 800};
     ck_assert(!error_watch_reached(&run));
     run.error.deviation = 0.001;
