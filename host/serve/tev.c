@@ -110,7 +110,7 @@ static void connect_try(Tev *tev)
     }
     tev->told = false;
     tev->version = 0;
-    tev->last_send = -INFINITY;
+    tev->last_send = -(double)INFINITY;
     log_message(LOG_INFO, "sending the picture to tev at %s", tev->address);
 }
 

@@ -75,7 +75,7 @@ START_TEST(test_end)
     const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
     const unsigned samples = 12 + (unsigned)_i;
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, samples);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, (uint64_t)samples * PIXELS);
     double owed = 0.0;
     uint index = 0, late = 0;
     while (plan.done < plan.total && index < GENERATIONS_MOST) {
