@@ -10,7 +10,7 @@
 #include <pthread.h>
 
 /* Fewest seconds between two publications. */
-#define SNAPSHOT_SECONDS 0.5
+#define SNAPSHOT_SECONDS 1.0
 
 /* Publications take at most this part of the time: the next one waits until the latest took no more. */
 #define SNAPSHOT_TIME_PART 0.005
