@@ -58,6 +58,7 @@ static RenderOptions job_options(RenderJob *job)
         .photons = command->photons,
         .save_every = command->save_every,
         .checkpoint = job_checkpoint_options(command),
+        .pilot = command->pilot,
         .stop = interrupt_flag(),
     };
     options.error.scale = (double)settings->film_scale;

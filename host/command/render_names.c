@@ -21,8 +21,8 @@ static bool frame_check(const RenderJob *job, Error *error)
 bool job_names_fill(RenderJob *job, Error *error)
 {
     RenderCommand *command = job->command;
-    const char **names[] = {&command->output,   &command->png_path,   &command->stats, &command->trace,
-                            &command->dump_bad, &command->checkpoint, &command->resume};
+    const char **names[] = {&command->output,   &command->png_path,   &command->stats,  &command->trace,
+                            &command->dump_bad, &command->checkpoint, &command->resume, &command->pilot};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (!*names[i] || !frame_name_has(*names[i]))
             continue;
@@ -102,7 +102,8 @@ bool job_outputs_check(RenderJob *job, Error *error)
                                  {"the statistics", stats, true},
                                  {"the trace", command->trace, true},
                                  {"the list of chains", command->dump_bad, true},
-                                 {"the checkpoint", checkpoint.file, true}};
+                                 {"the checkpoint", checkpoint.file, true},
+                                 {"the pilot", command->pilot, false}};
     return output_files_check(
         files, sizeof files / sizeof files[0],
         "give each its own name, with --output, --png, --stats, --trace, --dump-bad and --checkpoint", error);

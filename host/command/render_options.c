@@ -63,6 +63,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
         {"shard", 0, "K/N",
          "render the K-th of N parts of the picture to a file for twinlight merge (default: SCENE-KofN.part)"},
     [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
+    [OPTION_PILOT] = {"pilot", 0, "FILE", "mmlt: a shard begins with what the rendering of this checkpoint has learnt"},
     [OPTION_CHECKPOINT] = {"checkpoint", 0, "FILE", "write what is needed to go on after an interruption"},
     [OPTION_CHECKPOINT_EVERY] = {"checkpoint-every", 0, "TIME", "how often, besides at the end (default: 10m)"},
     [OPTION_RESUME] = {"resume", 0, "FILE",
@@ -299,6 +300,8 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return error_of_set(command, value, error);
     case OPTION_SHARD:
         return shard_set(command, value, error);
+    case OPTION_PILOT:
+        return path_set(&command->pilot, option, value, NULL, error);
     case OPTION_SAVE_EVERY:
         return option_seconds("save-every", value, &command->save_every, error);
     case OPTION_CHECKPOINT:
@@ -355,6 +358,7 @@ static bool verify_alone(const RenderCommand *command, Error *error)
                          : command->error.goal > 0.0    ? "error"
                          : command->save_every > 0.0    ? "save-every"
                          : command->shard.count > 0     ? "shard"
+                         : command->pilot               ? "pilot"
                          : command->checkpoint          ? "checkpoint"
                          : command->resume              ? "resume"
                          : command->stats               ? "stats"

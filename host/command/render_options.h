@@ -49,7 +49,7 @@ typedef struct RenderCommand {
     int crop[4];
     double save_every;
     Shard shard; /* count 0: none */
-    const char *checkpoint, *resume; /* files; NULL: none */
+    const char *checkpoint, *resume, *pilot; /* files; NULL: none */
     double checkpoint_every; /* seconds; 0: not given */
     const char *stats; /* "-": standard output */
     int frame; /* number for file names (base/frame_name.h); -1: not given */
@@ -98,6 +98,7 @@ typedef enum RenderOption {
     OPTION_RESOLUTION,
     OPTION_CROP,
     OPTION_SHARD,
+    OPTION_PILOT,
     OPTION_SAVE_EVERY,
     OPTION_CHECKPOINT,
     OPTION_CHECKPOINT_EVERY,

@@ -39,6 +39,20 @@ static bool goal_check(const RenderCommand *command, Error *error)
     return error_fix(error, "leave --mlt=scheme=paper out, or use --time or --samples");
 }
 
+static bool pilot_check(const RenderCommand *command, const Integrator *integrator, Error *error)
+{
+    if (!command->pilot)
+        return true;
+    if (command->shard.count == 0) {
+        error_set(error, "--pilot without --shard: the rendering would have the random numbers of its pilot");
+        return error_fix(error, "add --shard=K/N, or leave --pilot out; --resume=%s goes on from it", command->pilot);
+    }
+    if (integrator == integrator_mmlt() && !command->chains.paper && !command->chains.chains_only)
+        return true;
+    error_set(error, "--pilot is for mmlt and its combination of estimators: nothing else is learnt");
+    return error_fix(error, "leave --pilot%s out", integrator == integrator_mmlt() ? " or --mlt=scheme, combine" : "");
+}
+
 bool render_settings_check(const RenderCommand *command, const Integrator *integrator, Error *error)
 {
     const char *option = command->only_strategy ? "strategy" : command->balance ? "heuristic" : NULL;
@@ -63,7 +77,7 @@ bool render_settings_check(const RenderCommand *command, const Integrator *integ
                          "making large steps");
         return error_fix(error, "add --mlt=scheme=paper, or leave large-step out");
     }
-    if (!checkpoint_check(command, error) || !goal_check(command, error))
+    if (!checkpoint_check(command, error) || !goal_check(command, error) || !pilot_check(command, integrator, error))
         return false;
     unsigned s = command->strategy[0], t = command->strategy[1];
     if (!command->only_strategy || strategy_taken(integrator->strategies, s, s + t - 1))

@@ -42,6 +42,16 @@ void chains_estimator_archive(Archive *archive, ChainsEstimator *chains, uint mo
     ARCHIVE_FIELD(archive, chains->groups);
 }
 
+void chains_estimator_clear(ChainsEstimator *chains)
+{
+    for (int replica = 0; replica < REPLICAS; ++replica) {
+        uint fields = chains->populations[replica].fields;
+        chain_population_destroy(&chains->populations[replica]);
+        chain_population_init(&chains->populations[replica], fields);
+    }
+    memset(&chains->groups, 0, sizeof chains->groups);
+}
+
 void chains_estimator_continue(ChainsEstimator *chains, const Generation *generation)
 {
     const ChainPopulation *population = &chains->populations[generation->replica];

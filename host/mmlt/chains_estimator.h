@@ -28,6 +28,9 @@ bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint s
 /* Saves what the next generation needs, or restores it. most: chains that a population may have. */
 void chains_estimator_archive(Archive *archive, ChainsEstimator *chains, uint most);
 
+/* Forgets all chains. */
+void chains_estimator_clear(ChainsEstimator *chains);
+
 /* The replica's chains go on where the latest pass, or what was restored, left them, without chains_estimator_start. */
 void chains_estimator_continue(ChainsEstimator *chains, const Generation *generation);
 

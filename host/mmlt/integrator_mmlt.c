@@ -113,8 +113,8 @@ static bool mmlt_render(RenderRun *run, Error *error)
     Mmlt mmlt;
     bool follows, done = mmlt_init(&mmlt, run, error);
     backend_adopt(&mmlt);
-    done = done && generations_resume(&mmlt, &follows, error) && (!follows || generations_run(&mmlt, error)) &&
-           checkpoint_end(run, mmlt_state(&mmlt), error);
+    done = done && mmlt_pilot_adopt(&mmlt, error) && generations_resume(&mmlt, &follows, error) &&
+           (!follows || generations_run(&mmlt, error)) && checkpoint_end(run, mmlt_state(&mmlt), error);
     weights_tell(&mmlt);
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth)
         run->chains.r_hat[depth] = chain_groups_r_hat(&mmlt.chains.groups, depth);

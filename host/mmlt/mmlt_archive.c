@@ -1,5 +1,7 @@
 #include "mmlt/mmlt_archive.h"
 
+#include "render/pilot_file.h"
+
 /* Saves or restores what the next generation depends on. */
 static void mmlt_archive(Archive *archive, Mmlt *mmlt)
 {
@@ -43,6 +45,32 @@ static void state_archive(void *context, Archive *archive)
 CheckpointState mmlt_state(Mmlt *mmlt)
 {
     return (CheckpointState){mmlt->kept.size > 0 || mmlt->run->resumed ? state_archive : NULL, mmlt};
+}
+
+/* Of what was restored, keeps the combinations, the guide and the rates. */
+static void pilot_archive(void *context, Archive *archive)
+{
+    Mmlt *mmlt = context;
+    const Plan plan = mmlt->plan;
+    const PathsEstimator paths = mmlt->paths;
+    const PoolEstimator pool = mmlt->pool;
+    const ChainStatistics chains = mmlt->run->chains;
+    const Generation generation = mmlt->generation;
+    mmlt_archive(archive, mmlt);
+    StepRates rates = mmlt->plan.rates;
+    mmlt->plan = plan;
+    plan_rates_set(&mmlt->plan, rates);
+    mmlt->paths = paths;
+    mmlt->pool = pool;
+    chains_estimator_clear(&mmlt->chains);
+    mmlt->run->chains = chains;
+    mmlt->generation = generation;
+    mmlt->seconds = 0.0;
+}
+
+bool mmlt_pilot_adopt(Mmlt *mmlt, Error *error)
+{
+    return !mmlt->run->pilot || pilot_file_restore(mmlt->run, (CheckpointState){pilot_archive, mmlt}, error);
 }
 
 bool mmlt_keep(Mmlt *mmlt, Error *error)

@@ -15,4 +15,8 @@ CheckpointState mmlt_state(Mmlt *mmlt);
 /* Copies the state, if checkpoints are written. Between generations. */
 bool mmlt_keep(Mmlt *mmlt, Error *error);
 
+/* Begins with what the run's pilot has learnt, if it has one: variances, weights and rates, and where on the film light is hard
+ * to find. Before the first generation. */
+bool mmlt_pilot_adopt(Mmlt *mmlt, Error *error);
+
 #endif

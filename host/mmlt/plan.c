@@ -49,6 +49,19 @@ static uint chains_of_sample(const Plan *plan)
     return plan->options->chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
 }
 
+/* Plans the first generation, by the present rates. */
+static void first_plan(Plan *plan)
+{
+    uint chains = plan->options->chains;
+    uint64_t left = (uint64_t)ceil(chains_left(plan));
+    if (plan->scheme->grows) {
+        left = (left + 1) / 2;
+        chains = chains < CHAINS_FIRST ? chains : CHAINS_FIRST;
+    }
+    plan->planned = chain_work(plan);
+    plan->chains = left < chains ? (uint)left : chains;
+}
+
 void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, uint64_t work)
 {
     *plan = (Plan){.options = options,
@@ -56,15 +69,14 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
                    .pixels = pixels,
                    .rates = {.pool = POOL_PER_STEP, .paths = options->chains_only ? PATHS_DIRECT : PATHS_FIRST},
                    .total = work > 0 ? work : UINT64_MAX / 2,
-                   .timed = work == 0,
-                   .chains = options->chains};
-    plan->planned = chain_work(plan);
-    uint64_t left = (uint64_t)ceil(chains_left(plan));
-    if (scheme->grows) {
-        left = (left + 1) / 2;
-        plan->chains = plan->chains < CHAINS_FIRST ? plan->chains : CHAINS_FIRST;
-    }
-    plan->chains = left < plan->chains ? (uint)left : plan->chains;
+                   .timed = work == 0};
+    first_plan(plan);
+}
+
+void plan_rates_set(Plan *plan, StepRates rates)
+{
+    plan->rates = rates;
+    first_plan(plan);
 }
 
 void plan_archive(Archive *archive, Plan *plan)

@@ -26,6 +26,9 @@ typedef struct Plan {
  * (estimators_work); 0: no limit. options, scheme: must outlive the plan. */
 void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme, uint64_t pixels, uint64_t work);
 
+/* Begins with rates that are known. Before the first generation. */
+void plan_rates_set(Plan *plan, StepRates rates);
+
 /* Saves what was learnt and done, or restores it: not the limit, which may be another one. */
 void plan_archive(Archive *archive, Plan *plan);
 

@@ -76,18 +76,17 @@ bool checkpoint_files_check(const CheckpointOptions *options, Error *error)
 
 /* ---- contents ---------------------------------------------------------------------------------------------------- */
 
-/* What a file begins with. *other: archive_head. */
-static void head_archive(Archive *archive, Identity *identity, bool *other)
+void checkpoint_head_archive(Archive *archive, Identity *identity, bool *other)
 {
     archive_head(archive, "checkpoint", other);
     ARCHIVE_FIELD(archive, *identity);
 }
 
-static void image_archive(Archive *archive, RenderRun *run, CheckpointState state)
+void checkpoint_image_archive(Archive *archive, Film *film, RenderLayers *layers, CheckpointState state)
 {
-    film_archive(archive, run->film);
-    if (run->options->layers)
-        render_layers_archive(archive, run->options->layers);
+    film_archive(archive, film);
+    if (layers)
+        render_layers_archive(archive, layers);
     state.archive(state.context, archive);
 }
 
@@ -97,11 +96,11 @@ static void run_archive(RenderRun *run, CheckpointState state, Archive *archive)
 {
     RenderTotals totals = render_run_totals(run);
     bool other;
-    head_archive(archive, &run->checkpoint->identity, &other);
+    checkpoint_head_archive(archive, &run->checkpoint->identity, &other);
     ARCHIVE_FIELD(archive, run->film->quantum_exponent);
     render_totals_archive(archive, &totals);
     ARCHIVE_FIELD(archive, run->error);
-    image_archive(archive, run, state);
+    checkpoint_image_archive(archive, run->film, run->options->layers, state);
 }
 
 /* Moves the new file to its name, and the old one to that of the previous one. A file that is not known to be whole must not
@@ -187,7 +186,7 @@ static bool file_open(Checkpoint *checkpoint, const char *path, const char *what
     *damaged = true;
     if (!archive_reader_open(reader, path, error))
         return false;
-    head_archive(&reader->archive, &saved, &other);
+    checkpoint_head_archive(&reader->archive, &saved, &other);
     saved.text[sizeof saved.text - 1] = '\0';
     *damaged = reader->archive.failed && !other;
     if (other) {
@@ -304,7 +303,7 @@ bool checkpoint_restore(RenderRun *run, CheckpointState state, Error *error)
     Checkpoint *checkpoint = run->checkpoint;
     if (!run->resumed)
         return true;
-    image_archive(&checkpoint->reader.archive, run, state);
+    checkpoint_image_archive(&checkpoint->reader.archive, run->film, run->options->layers, state);
     if (!archive_reader_finish(&checkpoint->reader, error))
         return failure_set(checkpoint, error);
     archive_reader_close(&checkpoint->reader);

@@ -45,6 +45,10 @@ void checkpoint_destroy(Checkpoint *checkpoint);
  * the film holds no image. */
 bool checkpoint_restore(RenderRun *run, CheckpointState state, Error *error);
 
+/* The parts of a file: what it begins with (*other: archive_head), and what is at its end. layers: NULL if there are none. */
+void checkpoint_head_archive(Archive *archive, Identity *identity, bool *other);
+void checkpoint_image_archive(Archive *archive, Film *film, struct RenderLayers *layers, CheckpointState state);
+
 /* Writes a checkpoint if one is due. A failure causes a warning; the next attempt is made when the next is due. */
 void checkpoint_save_if_due(RenderRun *run, CheckpointState state);
 

@@ -80,6 +80,7 @@ typedef struct RenderOptions {
     struct RenderLayers *layers;
     double save_every; /* seconds between calls of `save`; 0: never */
     CheckpointOptions checkpoint;
+    const char *pilot; /* checkpoint of a rendering from which a shard of mmlt takes what it has learnt; NULL: none */
     /* set to 1 by a signal handler: return at once with the samples finished so far; NULL: never */
     const atomic_int *stop;
 } RenderOptions;

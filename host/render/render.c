@@ -10,6 +10,7 @@
 #include "render/error_watch.h"
 #include "render/film_pilot.h"
 #include "render/photon_map.h"
+#include "render/pilot_file.h"
 #include "render/shard.h"
 
 #include <math.h>
@@ -290,12 +291,15 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     run.last_save = run.start - options->save_every; /* the first image is due as soon as there is one */
     RenderLayers *layers = options->layers;
     Checkpoint checkpoint;
+    PilotFile pilot = {.path = NULL};
     bool done = checkpoint_begin(&checkpoint, &run, integrator, scene, error) &&
-                quantum_and_seed_set(task, &run, error) && render_photons_make(&run, integrator, scene, error) &&
+                pilot_file_open(&pilot, &run, integrator, scene, error) && quantum_and_seed_set(task, &run, error) &&
+                render_photons_make(&run, integrator, scene, error) &&
                 (!layers || render_layers_init(layers, layers->wanted, options->error.goal > 0.0, film, error)) &&
                 (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));
     result_fill(&run, result);
     photon_map_destroy(&run.photons);
     checkpoint_destroy(&checkpoint);
+    pilot_file_close(&pilot);
     return done;
 }

@@ -28,6 +28,7 @@ typedef struct RenderRun {
     uint64_t crop_pixels;
     uint64_t done; /* as RenderTotals.done */
     struct Checkpoint *checkpoint; /* NULL: none is written or resumed (render/checkpoint.h) */
+    struct PilotFile *pilot; /* NULL: none (render/pilot_file.h) */
     bool resumed;
     RenderTotals past; /* of the runs before this one; zeros, but for photons, unless resumed */
     double start, last_save;

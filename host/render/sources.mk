@@ -21,6 +21,7 @@ libtwinlight_host_la_SOURCES += \
 	host/render/photon_pass.c host/render/photon_pass.h \
 	host/render/photon_paths.c host/render/photon_paths.h \
 	host/render/picture.c host/render/picture.h \
+	host/render/pilot_file.c host/render/pilot_file.h \
 	host/render/progress.c host/render/progress.h \
 	host/render/render.c host/render/render.h \
 	host/render/report.c host/render/report.h \

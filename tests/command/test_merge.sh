@@ -149,6 +149,38 @@ small --samples=60 --layers=by-depth --shard=1/2 -o depths.part "$scene"
 merged merged.exr depths.part
 says 'shard 2 of 2 is missing' 'a missing shard'
 
+# ---- a pilot --------------------------------------------------------------------------------------------------------
+
+"$program" render --resolution=40x30 --no-png -q --samples=20 --checkpoint=pilot.ck -o pilot.exr "$scene"
+shards guided 2 --samples=60 --pilot=pilot.ck "$scene"
+says 'beginning with what pilot.ck has learnt' 'a shard with a pilot'
+merged guided.exr guided-1.part guided-2.part
+small --samples=60 --shard=2/2 --pilot=pilot.ck --threads=1 -o again.part "$scene"
+merged one.exr guided-2.part
+merged again.exr again.part
+same one.exr again.exr 'a shard with a pilot, by one thread'
+small --samples=60 --shard=2/2 -o alone.part "$scene"
+merged alone.exr alone.part
+! cmp -s one.exr alone.exr
+result 'a pilot makes no difference' $?
+merged first.exr guided-1.part
+! cmp -s first.exr one.exr
+result 'shards with one pilot are the same' $?
+expect 2 'without --shard' render --samples=60 --pilot=pilot.ck -o no.exr "$scene"
+expect 2 'for mmlt' render --integrator=pt --samples=60 --shard=1/2 --pilot=pilot.ck -o no.part "$scene"
+# refused_pilot TEXT ARGUMENT...: a rendering with a pilot that is refused with that text.
+refused_pilot() {
+    text=$1
+    shift
+    expect 1 "$text" render --resolution=40x30 --samples=60 --shard=1/2 -o no.part "$@" "$scene"
+}
+refused_pilot 'pilot.ck is of --seed=0, and this rendering of --seed=5' --seed=5 --pilot=pilot.ck
+refused_pilot 'give the file of a --checkpoint' --pilot=again.part
+refused_pilot 'nothing.ck' --pilot=nothing.ck
+head -c 2000 pilot.ck >cut.ck
+refused_pilot 'cut.ck' --pilot=cut.ck
+file_missing no.part
+
 # ---- refusals -------------------------------------------------------------------------------------------------------
 
 merged kept.exr pt-1.part
