@@ -132,7 +132,7 @@ static void tile_add(Estimate *estimate, size_t x, size_t rows)
 {
     bool blocks = estimate->goal->blocks;
     double *squares = estimate->squares + estimate->count, sum = 0.0;
-    TileValues values;
+    TileValues values = {.count = 0};
     for (size_t channel = 0; channel < 3; ++channel) {
         tile_values(estimate, x, rows, channel, &values);
         channel_add(&values, blocks, squares);
@@ -150,13 +150,14 @@ static void tile_add(Estimate *estimate, size_t x, size_t rows)
  * from the differences between neighbours: tiles have different errors, but those of neighbours are alike. */
 static HalvesError mean_error(const Estimate *estimate)
 {
-    double sum = 0.0, spread = 0.0, paired = 0.0, tiles = (double)estimate->tile_count;
+    double sum = 0.0, spread = 0.0, tiles = (double)estimate->tile_count;
+    size_t pairs = estimate->tile_count / 2;
     for (size_t i = 0; i < estimate->tile_count; ++i)
         sum += estimate->tiles[i];
-    for (size_t i = 0; i + 1 < estimate->tile_count; i += 2, paired += 2.0)
+    for (size_t i = 0; i < 2 * pairs; i += 2)
         spread += (estimate->tiles[i] - estimate->tiles[i + 1]) * (estimate->tiles[i] - estimate->tiles[i + 1]);
     double value = sqrt(sum / (double)estimate->count);
-    double deviation = paired > 0.0 ? sqrt(spread * tiles / paired) : sum;
+    double deviation = pairs > 0 ? sqrt(spread * tiles / (2.0 * (double)pairs)) : sum;
     return (HalvesError){value, sum > 0.0 ? 0.5 * value * deviation / sum : 0.0};
 }
 
@@ -186,8 +187,8 @@ static bool estimate_allocate(Estimate *estimate, Error *error)
     size_t tiles = ((estimate->width + TILE - 1) / TILE) * ((estimate->height + TILE - 1) / TILE);
     bool complete = true;
     for (int i = 0; i < 2; ++i) {
-        estimate->planes[i] = malloc(values * sizeof(float));
-        estimate->rgb[i] = malloc(values * sizeof(float));
+        estimate->planes[i] = calloc(values, sizeof(float));
+        estimate->rgb[i] = calloc(values, sizeof(float));
         complete = complete && estimate->planes[i] && estimate->rgb[i];
     }
     estimate->squares = calloc(estimate->goal->blocks ? tiles : pixels, sizeof *estimate->squares);
