@@ -124,12 +124,17 @@ static void shard_add(Identity *identity, const RenderOptions *options)
         number_add(identity, "samples", options->samples);
 }
 
+void identity_begin(Identity *identity)
+{
+    *identity = (Identity){{0}};
+    line_add(identity, "%s", VERSION_LINE);
+}
+
 void identity_make(Identity *identity, const Integrator *integrator, const Scene *scene, const RenderOptions *options,
                    const FrameParams *frame)
 {
     const FilmParams *film = &frame->film;
-    *identity = (Identity){{0}};
-    line_add(identity, "%s", VERSION_LINE);
+    identity_begin(identity);
     line_add(identity, "integrator=%s\n", integrator->name);
     line_add(identity, "resolution=%ux%u\n", film->width, film->height);
     line_add(identity, "crop=%u,%u,%u,%u\n", film->crop_x0, film->crop_y0, film->crop_x1, film->crop_y1);

@@ -13,6 +13,9 @@ typedef struct Identity {
     char text[IDENTITY_TEXT_MAX]; /* lines "NAME=VALUE\n", in the same order for the same version; the rest is 0 */
 } Identity;
 
+/* Sets one that names the version of the program alone. */
+void identity_begin(Identity *identity);
+
 /* frame: from render_frame. A shard with a count but without a number: any part of the picture that so many shards share. */
 void identity_make(Identity *identity, const Integrator *integrator, const Scene *scene, const RenderOptions *options,
                    const FrameParams *frame);

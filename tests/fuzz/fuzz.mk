@@ -1,10 +1,10 @@
-# The readers of scenes, images and command lines against arbitrary bytes. tests/fuzz_NAME is a test that runs the
+# The readers of scenes, images, command lines and parts against arbitrary bytes. tests/fuzz_NAME is a test that runs the
 # inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
-# scenes, 7e6 on images and 3e7 on command lines). `make fuzz` builds them with libFuzzer and sanitizers and runs each
+# scenes, 7e6 on images and 3e7 on command lines; parts have seeds alone, from which 3e5 executions found nothing). `make fuzz` builds them with libFuzzer and sanitizers and runs each
 # for FUZZ_SECONDS, starting from these.
 EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
-FUZZ_TARGETS = scene image options
-check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options
+FUZZ_TARGETS = scene image options part
+check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part
 tests_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c tests/fuzz/fuzz_replay.c
 tests_fuzz_scene_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/scene bad"'
 tests_fuzz_scene_LDADD = libtwinlight_host.la
@@ -14,6 +14,9 @@ tests_fuzz_image_LDADD = libtwinlight_host.la
 tests_fuzz_options_SOURCES = tests/fuzz/fuzz_options.c tests/fuzz/fuzz_replay.c
 tests_fuzz_options_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/options"'
 tests_fuzz_options_LDADD = libtwinlight_host.la
+tests_fuzz_part_SOURCES = tests/fuzz/fuzz_part.c tests/fuzz/fuzz_replay.c
+tests_fuzz_part_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/part"'
+tests_fuzz_part_LDADD = libtwinlight_host.la $(ZSTD_LIBS)
 
 # A larger image would take the time of thousands of others.
 FUZZ_CC = clang
@@ -37,7 +40,7 @@ fuzz: fuzz-programs
 	  ./fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=1 \
 	    -artifact_prefix=fuzz-found/$$target- $$(test -f $$dictionary && echo -dict=$$dictionary) \
 	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
-CLEANFILES += fuzz_scene fuzz_image fuzz_options
+CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part
 
 # The readers and small renderings on the CPU under valgrind, which detects what sanitizers do not: uninitialised
 # values, and errors inside libraries. Takes half a minute.

@@ -277,6 +277,65 @@ START_TEST(test_promise)
 }
 END_TEST
 
+/* Scenes with references, for check-long. */
+static const struct {
+    const char *scene;
+    const Integrator *(*integrator)(void);
+    double goal;
+} LONG_RENDERINGS[] = {
+    {"cornell", integrator_pt, 0.05}, {"cornell", integrator_mmlt, 0.05}, {"cornell", integrator_bdpt, 0.05},
+    {"door", integrator_mmlt, 0.4},   {"glossy", integrator_mmlt, 0.4},   {"lamp", integrator_mmlt, 0.4},
+};
+
+#define LONG_SEEDS 20
+
+static double relative_error(const RenderedImage *image, PictureView reference)
+{
+    Metrics metrics;
+    Error error = {0};
+    ck_assert(metrics_compute(image->rgb, reference.rgb, reference.width, reference.height, 1, &metrics, &error));
+    return sqrt(metrics.rel_mse);
+}
+
+/* The same over 20 seeds on scenes with references: most renderings end within 0.8 to 1.25 of what was promised. */
+START_TEST(test_promise_of_scenes)
+{
+    char path[2][512];
+    PictureView reference;
+    RenderedImage image;
+    unsigned within = 0;
+    double sum = 0.0;
+    if (test_effort() < 2)
+        return;
+    snprintf(path[0], sizeof path[0], "%s/scenes/%s.pbrt", test_source_folder(), LONG_RENDERINGS[_i].scene);
+    snprintf(path[1], sizeof path[1], "%s/scenes/reference/%s.exr", test_source_folder(), LONG_RENDERINGS[_i].scene);
+    float *rgb = fixture_picture_read(path[1], &reference);
+    for (unsigned seed = 1; seed <= LONG_SEEDS; ++seed) {
+        RenderLayers layers = {0};
+        const RenderSetup setup = {.path = path[0],
+                                   .width = reference.width,
+                                   .height = reference.height,
+                                   .integrator = LONG_RENDERINGS[_i].integrator(),
+                                   .reconstruction = RECONSTRUCTION_SPLAT,
+                                   .error = {.goal = LONG_RENDERINGS[_i].goal, .scale = 1.0},
+                                   .seed = seed,
+                                   .photons = PHOTONS_DEFAULT,
+                                   .layers = &layers};
+        fixture_render(&setup, &image);
+        ck_assert(image.result.error_reached);
+        double found = relative_error(&image, reference) / setup.error.goal;
+        within += found >= 0.8 && found <= 1.25;
+        sum += found;
+        render_layers_destroy(&layers);
+        fixture_destroy(&image);
+    }
+    free(rgb);
+    printf("%s, %s: error / goal %.3f on average, %u of %u within 0.8 to 1.25\n", LONG_RENDERINGS[_i].scene,
+           LONG_RENDERINGS[_i].integrator()->name, sum / LONG_SEEDS, within, LONG_SEEDS);
+    ck_assert_uint_ge(within, 16);
+}
+END_TEST
+
 /* The image is the sum of its halves, which are of different samples, and it is the same for any number of threads. */
 START_TEST(test_halves)
 {
@@ -336,9 +395,10 @@ int main(void)
     tcase_add_test(looks, test_looks);
     tcase_add_test(looks, test_reached);
     suite_add_tcase(suite, looks);
-    tcase_set_timeout(promise, 120);
+    tcase_set_timeout(promise, test_effort() > 1 ? 1200 : 120);
     tcase_set_tags(promise, "pictures");
     tcase_add_loop_test(promise, test_promise, 0, renderings);
+    tcase_add_loop_test(promise, test_promise_of_scenes, 0, sizeof LONG_RENDERINGS / sizeof LONG_RENDERINGS[0]);
     tcase_add_loop_test(promise, test_halves, 0, renderings);
     tcase_add_loop_test(promise, test_samples, 1, 8);
     suite_add_tcase(suite, promise);
