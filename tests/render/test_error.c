@@ -365,6 +365,20 @@ START_TEST(test_halves)
 }
 END_TEST
 
+/* Whether the first half is a rendering without a goal of half of the samples. */
+static void first_half_compare(const RenderSetup *setup, const Film *half)
+{
+    RenderSetup plain = *setup;
+    RenderedImage image;
+    plain.error.goal = 0.0;
+    plain.layers = NULL;
+    plain.samples = (setup->samples + 1) / 2;
+    fixture_render(&plain, &image);
+    ck_assert(memcmp(image.film.sums, half->sums, 3 * film_pixels(half) * sizeof *half->sums) == 0);
+    ck_assert(memcmp(image.film.counts, half->counts, film_pixels(half) * sizeof *half->counts) == 0);
+    fixture_destroy(&image);
+}
+
 /* --samples ends a rendering that does not reach its goal, with as many samples as without a goal, odd numbers included. */
 START_TEST(test_samples)
 {
@@ -380,6 +394,7 @@ START_TEST(test_samples)
     bool looked = setup.samples >= ERROR_LOOK_FIRST;
     ck_assert(looked == (image.result.error.estimate > 0.0));
     ck_assert_uint_eq(image.result.error.work, looked ? image.result.samples : 0);
+    first_half_compare(&setup, &layers.halves[0]);
     render_layers_destroy(&layers);
     fixture_destroy(&image);
 }
