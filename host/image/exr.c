@@ -157,8 +157,7 @@ static exr_result_t header_write(exr_context_t context, const ExrWriter *writer)
     return result == EXR_ERR_SUCCESS ? exr_write_header(context) : result;
 }
 
-/* Clamps to the range of finite half floats; NaN stays. */
-static float half_range(float x)
+float exr_half_range(float x)
 {
     const float HALF_MAX = 65504.0f;
     return x > HALF_MAX ? HALF_MAX : x < -HALF_MAX ? -HALF_MAX : x;
@@ -202,7 +201,7 @@ static void chunk_gather(const ExrWriter *writer, const ExrLane *lane, exr_encod
         const float *from = channel->data + first * channel->stride;
         float *to = lane->plane + c * count;
         for (size_t i = 0; i < count; ++i)
-            to[i] = channel->half ? half_range(from[i * channel->stride]) : from[i * channel->stride];
+            to[i] = channel->half ? exr_half_range(from[i * channel->stride]) : from[i * channel->stride];
         exr_coding_channel_info_t *info = &encoder->channels[c];
         assert(strcmp(info->channel_name, channel->name) == 0);
         info->user_data_type = EXR_PIXEL_FLOAT;

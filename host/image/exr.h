@@ -15,6 +15,9 @@ typedef struct ExrChannel {
     bool half; /* store as 16-bit half floats */
 } ExrChannel;
 
+/* Clamps to the range of finite half floats, as values of such channels are; NaN stays. */
+float exr_half_range(float x);
+
 /* Rows per chunk of the file. */
 #define EXR_BAND_ROWS 16
 

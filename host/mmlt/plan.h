@@ -15,8 +15,7 @@ typedef struct Plan {
     uint64_t total; /* estimators_work that is wanted */
     bool timed; /* `total` is no limit: the time is */
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
-    double
-        owed; /* samples of path tracing per pixel that are due, but fewer than a whole one: those of later generations */
+    double owed; /* samples of path tracing per pixel that are due, which rounding has left to later generations */
     uint width; /* of the backend (BackendStatistics.width); 0 until set */
     uint chains; /* in the next generation */
     double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */

@@ -1,6 +1,6 @@
 /* What a rendering is of, as text: program, algorithm, options and scene, as far as the state of a rendering depends on
- * them. A checkpoint is resumed only by a rendering of the same identity, and parts are merged only with such. Limits of samples and time, threads, backend
- * and output are not part of it. */
+ * them. A checkpoint is resumed only by a rendering of the same identity, and parts are merged only with parts of it. Limits
+ * of samples and time, threads, backend and output do not belong to it. */
 #ifndef TWINLIGHT_RENDER_IDENTITY_H
 #define TWINLIGHT_RENDER_IDENTITY_H
 

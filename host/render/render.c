@@ -47,14 +47,19 @@ typedef struct SampleSpan {
     uint64_t items; /* how many */
 } SampleSpan;
 
-/* Halves take turns: between two looks at the error (error_watch.h) half of the samples are made of one, then of the other. */
+/* The latest look at the error (error_watch.h) that is due after this many samples of every pixel, in samples; 0: none is. */
+static uint64_t look_before(uint64_t samples)
+{
+    uint64_t look = 0;
+    while (error_watch_next(look) <= samples)
+        look = error_watch_next(look);
+    return look;
+}
+
+/* Halves take turns: between two looks half of the samples are made of one, then of the other. */
 static SampleSpan span_of_halves(const PassLoop *loop)
 {
-    uint64_t pixels = loop->run->crop_pixels, begin = 0, end = error_watch_next(0);
-    while (end * pixels <= loop->next) {
-        begin = end;
-        end = error_watch_next(begin);
-    }
+    uint64_t pixels = loop->run->crop_pixels, begin = look_before(loop->next / pixels), end = error_watch_next(begin);
     end = end * pixels < loop->total ? end : loop->total / pixels;
     uint64_t first = (end - begin + 1) / 2 * pixels, done = loop->next - begin * pixels;
     SampleSpan span = {.half = done >= first, .items = done >= first ? (end - begin) * pixels - done : first - done};
@@ -115,10 +120,9 @@ static bool look_if_due(const PassLoop *loop, Error *error)
     RenderRun *run = loop->run;
     if (!run->halves || loop->next % run->crop_pixels != 0 || loop->next < ERROR_LOOK_FIRST * run->crop_pixels)
         return true;
-    uint64_t samples = loop->next / run->crop_pixels, look = error_watch_next(0);
-    while (look < samples)
-        look = error_watch_next(look);
-    return (look != samples && loop->next < loop->total) || error_watch_look(run, error);
+    uint64_t samples = loop->next / run->crop_pixels;
+    bool due = look_before(samples) == samples || loop->next == loop->total;
+    return !due || error_watch_look(run, error);
 }
 
 /* Whether the rendering is to end before the next pass. */

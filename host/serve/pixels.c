@@ -1,10 +1,16 @@
 #include "serve/pixels.h"
 
+#include "image/exr.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define HALF_LARGEST_BITS 0x7bffu /* 65504 */
+/* Its conversion narrows integers. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#include <half.h>
+#pragma GCC diagnostic pop
 
 /* What pixels are made from. */
 typedef struct Source {
@@ -30,29 +36,9 @@ static float block_mean(const Source *source, int x, int y, size_t c)
     return sum / (float)((right - left) * (below - top));
 }
 
-/* The nearest 16-bit float, of two the one with an even last bit; the largest finite one for all beyond. */
-static uint32_t half_bits(float value)
-{
-    uint32_t bits, sign;
-    memcpy(&bits, &value, sizeof bits);
-    sign = bits >> 16 & 0x8000u;
-    bits &= 0x7fffffffu;
-    if (bits > 0x7f800000u)
-        return sign | 0x7e00u; /* NaN */
-    if (bits >= 0x477fe000u)
-        return sign | HALF_LARGEST_BITS;
-    if (bits >= 0x38800000u) /* 2^-14: not denormal */
-        return sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1u)) >> 13;
-    float sum;
-    memcpy(&sum, &bits, sizeof sum);
-    sum += 0.5f; /* whose unit is that of denormal 16-bit floats, 2^-24 */
-    memcpy(&bits, &sum, sizeof bits);
-    return sign | (bits - 0x3f000000u);
-}
-
 static void half_put(unsigned char *out, float value)
 {
-    uint32_t bits = half_bits(value);
+    uint32_t bits = imath_float_to_half(exr_half_range(value));
     out[0] = (unsigned char)(bits & 0xff);
     out[1] = (unsigned char)(bits >> 8);
 }

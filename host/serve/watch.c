@@ -9,7 +9,7 @@ bool watch_begin(Watch *watch, const WatchOptions *options, const WatchSubject *
 {
     bool serves = options->serve.host[0] != '\0';
     *watch = (Watch){.subject = *subject, .sends = options->tev.host[0] != '\0'};
-    if (!watch->sends && !serves)
+    if (!watch_wanted(options))
         return true;
     watch->open = true;
     snapshot_init(&watch->snapshot, subject->width, subject->height);
