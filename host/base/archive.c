@@ -1,5 +1,6 @@
 #include "base/archive.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +44,41 @@ void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t m
     else
         archive_fail(archive, "%s: %lu were saved, but there can be %lu to %lu", what, (unsigned long)saved,
                      (unsigned long)least, (unsigned long)most);
+}
+
+static void range_check(Archive *archive, double number, NumberRange range, const char *what)
+{
+    char text[32] = "NaN";
+    if (archive->saves || (number >= range.least && number <= range.most))
+        return;
+    if (!isnan(number))
+        snprintf(text, sizeof text, "%.9g", number);
+    archive_fail(archive, "%s: %s was saved, but there can be %.9g to %.9g", what, text, range.least, range.most);
+}
+
+void archive_doubles(Archive *archive, double *numbers, size_t count, NumberRange range, const char *what)
+{
+    archive_bytes(archive, numbers, count * sizeof *numbers);
+    for (size_t i = 0; i < count && !archive->failed; ++i)
+        range_check(archive, numbers[i], range, what);
+}
+
+void archive_floats(Archive *archive, float *numbers, size_t count, NumberRange range, const char *what)
+{
+    archive_bytes(archive, numbers, count * sizeof *numbers);
+    for (size_t i = 0; i < count && !archive->failed; ++i)
+        range_check(archive, (double)numbers[i], range, what);
+}
+
+void archive_flags(Archive *archive, bool *flags, size_t count, const char *what)
+{
+    for (size_t i = 0; i < count && !archive->failed; ++i) {
+        unsigned char byte = flags[i];
+        archive_bytes(archive, &byte, 1);
+        if (byte > 1)
+            archive_fail(archive, "%s: %d was saved, but there can be 0 or 1", what, byte);
+        flags[i] = byte == 1;
+    }
 }
 
 /* ---- the kind of a file ------------------------------------------------------------------------------------------ */

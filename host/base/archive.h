@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 
+#include <float.h>
 #include <stdint.h>
 
 typedef struct Archive {
@@ -18,6 +19,14 @@ typedef struct Archive {
     bool (*transfer)(void *context, void *bytes, size_t size, Error *error);
     void *context;
 } Archive;
+
+/* The numbers from `least` to `most`. */
+typedef struct NumberRange {
+    double least, most;
+} NumberRange;
+
+#define RANGE_FLOATS ((NumberRange){-FLT_MAX, FLT_MAX}) /* all finite floats */
+#define RANGE_FLOATS_POSITIVE ((NumberRange){0.0, FLT_MAX}) /* and those without a sign */
 
 /* Saves or restores `size` bytes. */
 void archive_bytes(Archive *archive, void *bytes, size_t size);
@@ -31,6 +40,14 @@ void archive_same(Archive *archive, uint64_t value, const char *what);
 /* For a count that decides what memory is taken or which entries are read. Restoring fails, naming `what`, and leaves the
  * count as it is unless least <= count <= most. */
 void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t most, const char *what);
+
+/* For numbers that must lie in a range. Restoring fails, naming `what`, unless least <= number <= most for all of them; NaN
+ * never is. What was read is in them all the same. */
+void archive_doubles(Archive *archive, double *numbers, size_t count, NumberRange range, const char *what);
+void archive_floats(Archive *archive, float *numbers, size_t count, NumberRange range, const char *what);
+
+/* For truth values, each saved as a byte. Restoring fails, naming `what`, for a byte that is neither 0 nor 1. */
+void archive_flags(Archive *archive, bool *flags, size_t count, const char *what);
 
 /* The beginning of a file: its kind ("checkpoint"), and a mark of the byte order. Restoring fails for another kind, other byte
  * order or anything else; *other is then whether it is another kind of file of this program. */

@@ -6,6 +6,8 @@
 static int ascending(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
+    if (isnan(x) || isnan(y)) /* qsort needs an order of all values */
+        return (isnan(x) ? 1 : 0) - (isnan(y) ? 1 : 0);
     return (x > y) - (x < y);
 }
 

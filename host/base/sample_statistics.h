@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/* Sorts ascending. */
+/* Sorts ascending, NaN last. */
 void sample_sort(double *values, size_t count);
 
 /* The quantile q in [0, 1], interpolated linearly (type 7 of Hyndman and Fan). Sorts `values`. NaN if count is 0. */

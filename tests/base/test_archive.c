@@ -4,6 +4,7 @@
 
 #include "base/archive_file.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -174,6 +175,73 @@ START_TEST(test_sizes)
 }
 END_TEST
 
+typedef struct Numbers {
+    double doubles[3];
+    float floats[3];
+    bool flags[2];
+} Numbers;
+
+static void numbers_archive(Archive *archive, Numbers *numbers)
+{
+    archive_doubles(archive, numbers->doubles, 3, (NumberRange){-1.0, 2.5}, "heights");
+    archive_floats(archive, numbers->floats, 3, RANGE_FLOATS, "widths");
+    archive_flags(archive, numbers->flags, 2, "doors");
+}
+
+/* Restores what `saved` was saved as, with one byte changed (`place` < 0: none). */
+static bool numbers_restore(const Numbers *saved, int place, unsigned char byte, Numbers *restored, Error *error)
+{
+    Numbers copy = *saved;
+    ArchiveMemory memory = {0};
+    Archive archive = archive_to_memory(&memory);
+    ArchiveWriter writer;
+    ArchiveReader reader;
+    numbers_archive(&archive, &copy);
+    ck_assert(!archive.failed);
+    if (place >= 0)
+        memory.bytes[place] = byte;
+    ck_assert(archive_writer_begin(&writer, test_path("numbers"), 1, error));
+    archive_bytes(&writer.archive, memory.bytes, memory.size);
+    ck_assert(archive_writer_finish(&writer, error) && output_file_commit(&writer.file, error));
+    archive_writer_destroy(&writer);
+    archive_memory_destroy(&memory);
+    ck_assert(archive_reader_open(&reader, test_path("numbers"), error));
+    numbers_archive(&reader.archive, restored);
+    bool good = archive_reader_finish(&reader, error);
+    archive_reader_close(&reader);
+    return good;
+}
+
+/* What is out of range is saved, but not restored. */
+START_TEST(test_ranges)
+{
+    static const struct {
+        Numbers numbers;
+        const char *message; /* NULL: all is in range */
+    } CASES[] = {
+        {{{-1.0, 2.5, 0.0}, {-FLT_MAX, FLT_MAX, 0.0f}, {true, false}}, NULL},
+        {{{0.0, 0.0, 2.6}, {0.0f}, {false}}, "heights: 2.6 was saved, but there can be -1 to 2.5"},
+        {{{-1.1, 0.0, 0.0}, {0.0f}, {false}}, "heights: -1.1 was saved"},
+        {{{0.0, (double)NAN, 0.0}, {0.0f}, {false}}, "heights: NaN was saved"},
+        {{{0.0}, {0.0f, 0.0f, (float)INFINITY}, {false}}, "widths: inf was saved"},
+        {{{0.0}, {0.0f, (float)NAN, 0.0f}, {false}}, "widths: NaN was saved"},
+    };
+    Error error = {0};
+    Numbers restored = {.doubles = {0.0}};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; ++i) {
+        bool good = numbers_restore(&CASES[i].numbers, -1, 0, &restored, &error);
+        ck_assert_int_eq(good, CASES[i].message == NULL);
+        if (CASES[i].message)
+            ck_assert_msg(strstr(error.message, CASES[i].message) != NULL, "%s", error.message);
+        else
+            ck_assert(restored.flags[0] && !restored.flags[1] && restored.doubles[1] == 2.5);
+    }
+    ck_assert(!numbers_restore(&CASES[0].numbers, sizeof restored.doubles + sizeof restored.floats + 1, 2, &restored,
+                               &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "doors: 2 was saved, but there can be 0 or 1"));
+}
+END_TEST
+
 /* An archive that has failed leaves no file, and the old one stays. */
 START_TEST(test_failed)
 {
@@ -236,6 +304,7 @@ int main(void)
     tcase_add_test(tcase, test_truncated);
     tcase_add_test(tcase, test_flipped);
     tcase_add_test(tcase, test_sizes);
+    tcase_add_test(tcase, test_ranges);
     tcase_add_test(tcase, test_failed);
     tcase_add_test(tcase, test_not_regular);
     tcase_add_test(tcase, test_memory);

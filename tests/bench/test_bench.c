@@ -20,6 +20,15 @@ START_TEST(test_quantiles)
 }
 END_TEST
 
+START_TEST(test_order_of_nan)
+{
+    double values[] = {(double)NAN, 3.0, (double)NAN, -1.0, (double)INFINITY, (double)NAN, 2.0};
+    sample_sort(values, 7);
+    ck_assert(values[0] == -1.0 && values[1] == 2.0 && values[2] == 3.0 && isinf(values[3]));
+    ck_assert(isnan(values[4]) && isnan(values[5]) && isnan(values[6]));
+}
+END_TEST
+
 START_TEST(test_lines)
 {
     /* By hand: means 2 and 3, sums of squares 5 and of products 4, residuals -0.2 0.6 -0.6 0.2. */
@@ -216,6 +225,7 @@ int main(void)
     TCase *tcase = tcase_create("bench");
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, test_quantiles);
+    tcase_add_test(tcase, test_order_of_nan);
     tcase_add_test(tcase, test_lines);
     tcase_add_test(tcase, test_r_hat);
     tcase_add_test(tcase, test_numbers);
