@@ -30,11 +30,13 @@ void pixel_series_destroy(PixelSeries *series)
 void pixel_series_archive(Archive *archive, PixelSeries *series)
 {
     size_t values = series->pixels * (size_t)series->channels, weights = series->uniform ? 1 : series->pixels;
-    archive_same(archive, values, "the values of a series of images");
-    archive_same(archive, weights, "the weights of a series of images");
-    archive_bytes(archive, series->mean, values * sizeof *series->mean);
-    archive_bytes(archive, series->spread, values * sizeof *series->spread);
-    archive_bytes(archive, series->weight, weights * sizeof *series->weight);
+    archive_same(archive, values, "the number of values in a series of images");
+    archive_same(archive, weights, "the number of weights in a series of images");
+    archive_floats(archive, series->mean, values, RANGE_FLOATS, "the means of a series of images");
+    /* Squares of very bright light are infinite. */
+    archive_floats(archive, series->spread, values, (NumberRange){-FLT_MAX, INFINITY},
+                   "the spreads of a series of images");
+    archive_floats(archive, series->weight, weights, RANGE_FLOATS_POSITIVE, "the weights of a series of images");
     archive_bytes(archive, series->pictures, weights * sizeof *series->pictures);
 }
 

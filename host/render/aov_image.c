@@ -28,8 +28,8 @@ void aov_image_destroy(AovImage *image)
 void aov_image_archive(Archive *archive, AovImage *image)
 {
     size_t pixels = (size_t)(image->film.x1 - image->film.x0) * (image->film.y1 - image->film.y0);
-    archive_same(archive, pixels * image->channels, "the values of a layer");
-    archive_bytes(archive, image->sums, pixels * image->channels * sizeof *image->sums);
+    archive_same(archive, pixels * image->channels, "the number of values in a layer");
+    archive_floats(archive, image->sums, pixels * image->channels, RANGE_FLOATS, "the values of a layer");
     archive_bytes(archive, image->counts, pixels * sizeof *image->counts);
 }
 

@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/path_name.h"
 #include "base/timing.h"
+#include "render/error_watch.h"
 #include "render/layers.h"
 
 #include <errno.h>
@@ -99,7 +100,7 @@ static void run_archive(RenderRun *run, CheckpointState state, Archive *archive)
     checkpoint_head_archive(archive, &run->checkpoint->identity, &other);
     ARCHIVE_FIELD(archive, run->film->quantum_exponent);
     render_totals_archive(archive, &totals);
-    ARCHIVE_FIELD(archive, run->error);
+    error_watch_archive(archive, &run->error);
     checkpoint_image_archive(archive, run->film, run->options->layers, state);
 }
 
@@ -255,7 +256,7 @@ static bool past_restore(RenderRun *run, Error *error)
     if (exponent < -2048 || exponent > 2048)
         archive_fail(archive, "the film's quantum is out of range");
     render_totals_archive(archive, &run->past);
-    ARCHIVE_FIELD(archive, run->error);
+    error_watch_archive(archive, &run->error);
     if (archive->failed)
         return failure_set(run->checkpoint, error);
     run->film->quantum_exponent = exponent;

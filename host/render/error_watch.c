@@ -5,6 +5,14 @@
 
 #include <math.h>
 
+void error_watch_archive(Archive *archive, ErrorWatch *watch)
+{
+    ARCHIVE_FIELD(archive, *watch);
+    /* NaN is the estimate for pixels that overflow, and is below no goal. */
+    if (watch->estimate < 0.0 || watch->deviation < 0.0)
+        archive_fail(archive, "the estimated error is negative");
+}
+
 bool error_watch_due(const RenderRun *run)
 {
     const ErrorWatch *watch = &run->error;

@@ -15,6 +15,9 @@
 /* Samples per pixel at the first look; even. */
 #define ERROR_LOOK_FIRST 4u
 
+/* Saves the latest estimate, or restores it. */
+void error_watch_archive(Archive *archive, ErrorWatch *watch);
+
 /* Whether a look is due after run->done paths. */
 bool error_watch_due(const RenderRun *run);
 

@@ -107,7 +107,7 @@ static void variance_archive(Archive *archive, RenderLayers *layers)
     for (int i = 0; i < 2; ++i) {
         pixel_series_archive(archive, &layers->own[i]);
         pixel_series_archive(archive, &layers->light[i]);
-        archive_bytes(archive, layers->stratified[i], tiles * sizeof *layers->stratified[i]);
+        archive_floats(archive, layers->stratified[i], tiles, (NumberRange){0.0, 1.0}, "the parts left of variances");
     }
 }
 

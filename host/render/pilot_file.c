@@ -1,6 +1,7 @@
 #include "render/pilot_file.h"
 
 #include "base/log.h"
+#include "render/error_watch.h"
 #include "render/layers.h"
 
 /* Reads the beginning of the file. */
@@ -48,12 +49,12 @@ static bool state_read(RenderRun *run, Film *film, RenderLayers *layers, Checkpo
 {
     Archive *archive = &run->pilot->reader.archive;
     const Film *own = run->film;
-    RenderTotals totals;
-    ErrorWatch watch;
+    RenderTotals totals = {0};
+    ErrorWatch watch = {.work = 0};
     int exponent = 0;
     ARCHIVE_FIELD(archive, exponent);
     render_totals_archive(archive, &totals);
-    ARCHIVE_FIELD(archive, watch);
+    error_watch_archive(archive, &watch);
     if (!archive->failed && exponent != own->quantum_exponent)
         archive_fail(archive, "it was made by a device with other bits");
     checkpoint_image_archive(archive, film, run->options->layers ? layers : NULL, state);

@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+/* A number of seconds that no rendering takes, and that fits all integers. */
+#define SECONDS_MOST 1e15
+
 static void film_splats(void *context, const uint *splats, uint count, uint stride)
 {
     film_add_splats(context, splats, count, stride);
@@ -52,7 +55,7 @@ RenderTotals render_run_totals(const RenderRun *run)
 void render_totals_archive(Archive *archive, RenderTotals *totals)
 {
     ARCHIVE_FIELD(archive, totals->done);
-    ARCHIVE_FIELD(archive, totals->seconds);
+    archive_doubles(archive, &totals->seconds, 1, (NumberRange){0.0, SECONDS_MOST}, "seconds of rendering");
     ARCHIVE_FIELD(archive, totals->samples);
     archive_count(archive, &totals->photons, 0, PHOTONS_MOST_ALLOWED, "photons");
     ARCHIVE_FIELD(archive, totals->closest_rays);
