@@ -2,6 +2,7 @@
 
 #include "chain/chain.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,20 +39,42 @@ static bool words_reserve(Archive *archive, ChainPopulation *population)
     return false;
 }
 
-void chain_population_archive(Archive *archive, ChainPopulation *population, uint most)
-{
-    archive_same(archive, population->fields, "the words of a chain");
-    archive_count(archive, &population->count, 0, most, "chains");
-    ARCHIVE_FIELD(archive, population->samples);
-    ARCHIVE_FIELD(archive, population->brightness);
-    if (archive->failed || (!archive->saves && !words_reserve(archive, population)))
-        return;
-    archive_bytes(archive, population->words, (size_t)population->count * population->fields * sizeof(uint));
-}
-
 static uint word_of(const ChainPopulation *population, uint field, uint i)
 {
     return population->words[(size_t)field * population->count + i];
+}
+
+/* Why chain i cannot go on; NULL if it can. */
+static const char *chain_fault(const ChainPopulation *population, uint i, uint depth_most)
+{
+    uint key = word_of(population, CHAIN_PASS_KEY, i), depth = chain_key_depth(key);
+    float luminance = bits_float(word_of(population, CHAIN_PASS_LUMINANCE, i));
+    if (depth < CHAIN_DEPTH_MIN || depth > depth_most)
+        return "its path is too short or too long";
+    if (chain_key_s(key) > depth)
+        return "its path has more vertices from the light than it has segments";
+    if (!(luminance >= 0.0f && luminance <= FLT_MAX))
+        return "the luminance of its path is negative or not finite";
+    return word_of(population, CHAIN_PASS_CELL, i) < IMPORTANCE_CELLS ? NULL : "its place on the film does not exist";
+}
+
+void chain_population_archive(Archive *archive, ChainPopulation *population, PopulationLimits limits)
+{
+    archive_same(archive, population->fields, "the words of a chain");
+    archive_count(archive, &population->count, 0, population->fields > 0 ? limits.chains : 0, "chains");
+    archive_doubles(archive, &population->samples, 1, (NumberRange){0.0, DBL_MAX}, "the samples behind chains");
+    archive_doubles(archive, &population->brightness, 1, RANGE_FLOATS_POSITIVE, "the brightness of chains");
+    if (archive->failed || (!archive->saves && !words_reserve(archive, population)))
+        return;
+    archive_bytes(archive, population->words, (size_t)population->count * population->fields * sizeof(uint));
+    /* Without brightness there are no chains, and nothing reads the words. */
+    for (uint i = 0; !archive->saves && !archive->failed && population->brightness > 0.0 && i < population->count;
+         ++i) {
+        const char *fault = chain_fault(population, i, limits.depth);
+        if (fault)
+            archive_fail(archive, "chain %lu of %lu: %s", (unsigned long)i + 1, (unsigned long)population->count,
+                         fault);
+    }
 }
 
 /* The chains' part of a path's contribution (partition of unity; see the header). most: n / (n + m). */

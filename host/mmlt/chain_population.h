@@ -31,8 +31,15 @@ typedef struct ChainPopulation {
 void chain_population_init(ChainPopulation *population, uint fields);
 void chain_population_destroy(ChainPopulation *population);
 
-/* Saves the chains, or restores them into a population with as many words per chain. most: chains that there may be. */
-void chain_population_archive(Archive *archive, ChainPopulation *population, uint most);
+/* What a population can hold. */
+typedef struct PopulationLimits {
+    uint chains;
+    uint depth; /* segments of a path */
+} PopulationLimits;
+
+/* Saves the chains, or restores them into a population with as many words per chain. Restoring fails unless all of them can
+ * go on: with paths within the limits, finite luminances and existing cells. Any coordinates will do. */
+void chain_population_archive(Archive *archive, ChainPopulation *population, PopulationLimits limits);
 
 /* The samples of a pool. */
 typedef struct PoolSamples {

@@ -27,6 +27,7 @@ bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint s
     if (!chain_list(&run->frame, steps, &chains->own.list, error))
         return false;
     chains->steps = steps;
+    chains->depth_most = run->frame.path.max_depth;
     chains->groups_each = groups;
     chains->own.list.guide = guide;
     chains->own.list.photons = &run->photons;
@@ -37,8 +38,9 @@ bool chains_estimator_list(ChainsEstimator *chains, const RenderRun *run, uint s
 
 void chains_estimator_archive(Archive *archive, ChainsEstimator *chains, uint most)
 {
+    const PopulationLimits limits = {.chains = most, .depth = chains->depth_most};
     for (int replica = 0; replica < REPLICAS; ++replica)
-        chain_population_archive(archive, &chains->populations[replica], most);
+        chain_population_archive(archive, &chains->populations[replica], limits);
     ARCHIVE_FIELD(archive, chains->groups);
 }
 

@@ -12,6 +12,7 @@ typedef struct ChainsEstimator {
     Estimator own;
     ChainPopulation populations[REPLICAS];
     uint steps; /* of a chain in a pass */
+    uint depth_most; /* segments of a path */
     uint *begun; /* the chains' words before the pass; only with --dump-bad */
     ChainGroups groups;
     uint groups_each; /* of a replica's chains in `groups` */

@@ -65,7 +65,7 @@ void combination_archive(Archive *archive, Combination *combination)
                       combination_patch_count(combination) * sizeof *combination->earlier[i]);
     ARCHIVE_FIELD(archive, combination->earlier_samples);
     ARCHIVE_FIELD(archive, combination->exponents);
-    ARCHIVE_FIELD(archive, combination->ready);
+    archive_flags(archive, combination->ready, SERIES_COUNT, "which variances are known");
     ARCHIVE_FIELD(archive, combination->rare_chains);
     ARCHIVE_FIELD(archive, combination->rare_paths);
     ARCHIVE_FIELD(archive, combination->best);
@@ -84,10 +84,16 @@ typedef struct TileCombination {
     double variance;
 } TileCombination;
 
+/* A variance in the range where weights in inverse proportion to it are numbers; NaN counts as none. */
+static double spread_clamp(double spread)
+{
+    return fmin(fmax(spread, SPREAD_MIN), SPREAD_MAX);
+}
+
 /* The weight of one estimate against another, in inverse proportion to their variances. */
 static double weight_against(double own, double other)
 {
-    return fmax(other, SPREAD_MIN) / (fmax(own, SPREAD_MIN) + fmax(other, SPREAD_MIN));
+    return spread_clamp(other) / (spread_clamp(own) + spread_clamp(other));
 }
 
 /* The largest weight that path tracing's own rare light may have in a tile, against the chains': that by the variances of
@@ -103,13 +109,14 @@ static double paths_rare_most(const Combination *combination, const double sampl
 
 /* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Rare light
  * is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence the
- * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c. */
+ * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c. Weights are in [0, 1]
+ * for any variances, those that are infinite or NaN included. */
 static TileCombination tile_combination(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                                         double rare_most)
 {
     const double *spread = tile->spread;
-    double by_chains = samples[ESTIMATOR_CHAINS] / fmax(spread[ESTIMATOR_CHAINS], SPREAD_MIN);
-    double by_pool = samples[ESTIMATOR_POOL] / fmax(spread[ESTIMATOR_POOL], SPREAD_MIN);
+    double by_chains = samples[ESTIMATOR_CHAINS] / spread_clamp(spread[ESTIMATOR_CHAINS]);
+    double by_pool = samples[ESTIMATOR_POOL] / spread_clamp(spread[ESTIMATOR_POOL]);
     double a = 1.0 / (by_chains + by_pool) + spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
     TileCombination best = {.chains = by_chains / (by_chains + by_pool), .variance = a};
     if (!(samples[ESTIMATOR_PATHS] > 0.0))
@@ -274,6 +281,20 @@ static void rates_of_paths(void *context, size_t paths)
             memcpy(search->best[paths].samples, samples, sizeof samples);
         }
     }
+}
+
+/* The most samples of an estimator per step of a chain. */
+static double rate_most(EstimatorKind kind)
+{
+    return PLAN_PARTS * estimator_cost(ESTIMATOR_CHAINS) / estimator_cost(kind);
+}
+
+void step_rates_archive(Archive *archive, StepRates *rates)
+{
+    archive_doubles(archive, &rates->paths, 1, (NumberRange){0.0, rate_most(ESTIMATOR_PATHS)},
+                    "samples of path tracing per step");
+    archive_doubles(archive, &rates->pool, 1, (NumberRange){POOL_PER_STEP, rate_most(ESTIMATOR_POOL)},
+                    "samples of a pool per step");
 }
 
 StepRates combination_rates(Combination *combination)

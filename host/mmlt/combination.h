@@ -18,7 +18,8 @@
 bool combination_init(Combination *combination, const Film *film, Error *error);
 void combination_destroy(Combination *combination);
 
-/* Saves what is known, or restores it into a combination for films of the same size. */
+/* Saves what is known, or restores it into a combination for films of the same size. Any numbers will do: weights are in
+ * [0, 1] whatever variances are, and light that is not finite counts as unknown. */
 void combination_archive(Archive *archive, Combination *combination);
 
 /* Sets the weights of a generation of `samples` of each estimator, from what is known: CombinationTile.weight and
@@ -34,6 +35,9 @@ void combination_errors(const Combination *combination, const double samples[EST
 typedef struct StepRates {
     double paths, pool;
 } StepRates;
+
+/* Saves rates that a plan has, or restores such: at least POOL_PER_STEP, and as many as combination_rates can find. */
+void step_rates_archive(Archive *archive, StepRates *rates);
 
 /* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations are
  * compared with this division of work from then on. */

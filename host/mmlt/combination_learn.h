@@ -17,6 +17,9 @@
 /* Avoids division by zero in tiles without variance or light (black ones). */
 #define SPREAD_MIN 1e-30
 
+/* Larger ones count as this: beyond it a number of samples over a variance may be zero. */
+#define SPREAD_MAX 1e200
+
 /* Three more series of pictures. From chains: light that pools leave out, and light that path tracing leaves out. From
  * path tracing: the latter. */
 #define SERIES_EXCESS ESTIMATOR_COUNT

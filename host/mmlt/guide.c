@@ -10,10 +10,12 @@ void mmlt_guide_init(MmltGuide *guide, const Guide *lights)
     mmlt_guide_show(guide, 0);
 }
 
-void mmlt_guide_archive(Archive *archive, MmltGuide *guide)
+void mmlt_guide_archive(Archive *archive, MmltGuide *guide, const int size[2])
 {
-    ARCHIVE_FIELD(archive, guide->importance);
-    ARCHIVE_FIELD(archive, guide->visits);
+    archive_floats(archive, guide->importance[0], REPLICAS * IMPORTANCE_CELLS,
+                   (NumberRange){IMPORTANCE_LEAST, IMPORTANCE_MOST}, "the target importance");
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        importance_visits_archive(archive, guide->visits[replica], size);
     ARCHIVE_FIELD(archive, guide->visited);
     ARCHIVE_FIELD(archive, guide->visited_all);
 }

@@ -17,8 +17,8 @@ typedef struct MmltGuide {
 /* lights: the scene's light guides. All cells alike at first. */
 void mmlt_guide_init(MmltGuide *guide, const Guide *lights);
 
-/* Saves what both replicas know, or restores it. */
-void mmlt_guide_archive(Archive *archive, MmltGuide *guide);
+/* Saves what both replicas know, or restores it. size: of the crop, pixels. */
+void mmlt_guide_archive(Archive *archive, MmltGuide *guide, const int size[2]);
 
 /* Sets `shown` for passes of a generation of this replica. */
 void mmlt_guide_show(MmltGuide *guide, int replica);

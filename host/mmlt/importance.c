@@ -43,6 +43,14 @@ static double light_around(const Combination *combination, int column, int row)
     return light / pixels;
 }
 
+static bool importance_sound(const float importance[IMPORTANCE_CELLS])
+{
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
+        if (!((double)importance[i] >= IMPORTANCE_LEAST && (double)importance[i] <= IMPORTANCE_MOST))
+            return false;
+    return true;
+}
+
 void importance_learn(const Combination *combination, float importance[IMPORTANCE_CELLS])
 {
     double light[IMPORTANCE_CELLS], sum = 0.0, worth = 0.0;
@@ -61,13 +69,15 @@ void importance_learn(const Combination *combination, float importance[IMPORTANC
     }
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i)
         importance[i] = (float)((double)importance[i] * (sum / worth));
+    if (!importance_sound(importance))
+        importance_even(importance);
 }
 
 /* ---- visits ------------------------------------------------------------------------------------------------------ */
 
-static uint cell_pixels(const Combination *combination, uint cell)
+static uint cell_pixels(const int size[2], uint cell)
 {
-    uint width = (uint)combination->size[0], height = (uint)combination->size[1];
+    uint width = (uint)size[0], height = (uint)size[1];
     uint column = cell % IMPORTANCE_SIDE, row = cell / IMPORTANCE_SIDE;
     return (cell_begin(column + 1, width) - cell_begin(column, width)) *
            (cell_begin(row + 1, height) - cell_begin(row, height));
@@ -99,7 +109,7 @@ bool importance_visits(const Combination *combination, const double samples[ESTI
                             "errors of tiles");
     combination_errors(combination, samples, errors);
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
-        uint count = cell_pixels(combination, i);
+        uint count = cell_pixels(combination->size, i);
         if (count > 0)
             deviation[i] = sqrt(error_around(combination, errors, i) * visited[i]);
         sum += count * deviation[i];
@@ -110,15 +120,36 @@ bool importance_visits(const Combination *combination, const double samples[ESTI
     for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
         double each = rint(VISITS_MEAN * deviation[i] * pixels / sum);
         visits[i] = (uint)all;
-        all += cell_pixels(combination, i) * (uint64_t)fmin(fmax(each, 1.0), VISITS_MOST);
+        all += cell_pixels(combination->size, i) * (uint64_t)fmin(fmax(each, 1.0), VISITS_MOST);
     }
     visits[IMPORTANCE_CELLS] = (uint)all;
     return true;
 }
 
+/* Whether the visits begin at 0, and those of all pixels of a cell are the same whole number. */
+static bool visits_sound(const uint visits[IMPORTANCE_CELLS + 1], const int size[2])
+{
+    uint64_t all = 0;
+    for (uint i = 0; i < IMPORTANCE_CELLS; ++i) {
+        uint pixels = cell_pixels(size, i), own = visits[i + 1] - visits[i];
+        if (visits[i] != all || own < pixels || own > (uint64_t)VISITS_MOST * pixels ||
+            (pixels > 0 && own % pixels != 0))
+            return false;
+        all += own;
+    }
+    return visits[IMPORTANCE_CELLS] == all;
+}
+
+void importance_visits_archive(Archive *archive, uint visits[IMPORTANCE_CELLS + 1], const int size[2])
+{
+    archive_bytes(archive, visits, (IMPORTANCE_CELLS + 1) * sizeof *visits);
+    if (!archive->saves && visits[IMPORTANCE_CELLS] > 0 && !visits_sound(visits, size))
+        archive_fail(archive, "the visits of a pool's pixels do not add up");
+}
+
 double importance_density_ratio(const Combination *combination, const uint visits[IMPORTANCE_CELLS + 1], uint cell)
 {
-    double count = (double)cell_pixels(combination, cell),
+    double count = (double)cell_pixels(combination->size, cell),
            pixels = (double)combination->size[0] * (double)combination->size[1];
     if (!(count > 0.0))
         return 0.0;

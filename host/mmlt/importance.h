@@ -13,11 +13,15 @@
 #include "layout/frame_params.h"
 #include "mmlt/combination.h"
 
+/* Target importances are within these. */
+#define IMPORTANCE_LEAST 1e-12
+#define IMPORTANCE_MOST 1e12
+
 /* Sets all target importances to 1. */
 void importance_even(float importance[IMPORTANCE_CELLS]);
 
 /* Computes target importances from what `combination` has learned of the picture, scaled to leave the mean contribution
- * weight unchanged. All 1 if the picture is black so far. */
+ * weight unchanged. All 1 if the picture is black so far, or if its light gives no importances within the bounds. */
 void importance_learn(const Combination *combination, float importance[IMPORTANCE_CELLS]);
 
 /* Computes the visits of a pool per cell (Guide.visits): the pixels of a cell are visited the more often the larger
@@ -28,6 +32,10 @@ void importance_learn(const Combination *combination, float importance[IMPORTANC
  * are visited equally, while errors are unknown or if the film is too large. Fails only when out of memory. */
 bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                        const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error);
+
+/* Saves the visits of a film of this size, or restores such as importance_visits computes: each pixel of a cell has the same
+ * number of 1 ... VISITS_MOST. */
+void importance_visits_archive(Archive *archive, uint visits[IMPORTANCE_CELLS + 1], const int size[2]);
 
 /* The density ratio of a cell: how many times less often pools with these visits sample it than if they visited all
  * pixels equally. 0: the cell has no pixels. */

@@ -110,9 +110,10 @@ void mmlt_destroy(Mmlt *mmlt)
 static void clamp_threshold_set(Mmlt *mmlt)
 {
     Generation *generation = &mmlt->generation;
-    generation->clamp_threshold = mmlt->options.chains_only
-                                      ? FLT_MAX
-                                      : (float)(CLAMP_FACTOR * pool_estimator_brightness(&mmlt->pool, generation));
+    generation->clamp_threshold =
+        mmlt->options.chains_only
+            ? FLT_MAX
+            : (float)fmin(CLAMP_FACTOR * pool_estimator_brightness(&mmlt->pool, generation), (double)FLT_MAX);
 }
 
 bool mmlt_pilot_run(Mmlt *mmlt, uint count, bool *whole, Error *error)

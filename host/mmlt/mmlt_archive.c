@@ -2,16 +2,21 @@
 
 #include "render/pilot_file.h"
 
-/* Saves or restores what the next generation depends on. */
+/* More than any rendering has. */
+#define GENERATIONS_MOST 0x7fffffffu
+
+/* Saves or restores what the next generation depends on. Numbers that later ones are divided by or read memory by must lie
+ * where they can; others, such as seconds, positions in orders of pixels and statistics, may be any. */
 static void mmlt_archive(Archive *archive, Mmlt *mmlt)
 {
+    const int *crop = mmlt->film.crop, size[2] = {crop[2] - crop[0], crop[3] - crop[1]};
     uint index = mmlt->generation.index;
-    ARCHIVE_FIELD(archive, index);
+    archive_count(archive, &index, 1, GENERATIONS_MOST, "generations");
     plan_archive(archive, &mmlt->plan);
     paths_estimator_archive(archive, &mmlt->paths);
     pool_estimator_archive(archive, &mmlt->pool);
     chains_estimator_archive(archive, &mmlt->chains, mmlt->options.chains);
-    mmlt_guide_archive(archive, &mmlt->guide);
+    mmlt_guide_archive(archive, &mmlt->guide, size);
     for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica)
         combination_archive(archive, &mmlt->combinations[replica]);
     ARCHIVE_FIELD(archive, mmlt->run->chains);

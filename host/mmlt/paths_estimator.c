@@ -8,6 +8,7 @@
 #include "render/integrator.h"
 #include "render/layers.h"
 
+#include <float.h>
 #include <math.h>
 
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
@@ -31,12 +32,22 @@ void paths_estimator_destroy(PathsEstimator *paths)
     step_list_destroy(&paths->own.list);
 }
 
+/* Whether the samples so far are those that were wanted: not fewer, which would all be due at once. */
+static bool samples_made(const PathsEstimator *paths)
+{
+    double most = (double)film_samples_most(paths->own.film->reconstruction);
+    return (double)paths->done <= most && fmin(rint(paths->wanted), most) <= (double)paths->done;
+}
+
 void paths_estimator_archive(Archive *archive, PathsEstimator *paths)
 {
     archive_same(archive, paths->sequences, "stratified sequences");
     ARCHIVE_FIELD(archive, paths->done);
     ARCHIVE_FIELD(archive, paths->of_sequence);
-    ARCHIVE_FIELD(archive, paths->wanted);
+    archive_doubles(archive, &paths->wanted, 1, (NumberRange){0.0, DBL_MAX}, "samples of path tracing that are wanted");
+    if (!archive->saves && !samples_made(paths))
+        archive_fail(archive, "samples of path tracing: %llu of %.9g that are wanted", (unsigned long long)paths->done,
+                     paths->wanted);
     ARCHIVE_FIELD(archive, paths->fresh);
     ARCHIVE_FIELD(archive, paths->seconds);
 }

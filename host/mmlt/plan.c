@@ -81,8 +81,7 @@ void plan_rates_set(Plan *plan, StepRates rates)
 
 void plan_archive(Archive *archive, Plan *plan)
 {
-    ARCHIVE_FIELD(archive, plan->rates.paths);
-    ARCHIVE_FIELD(archive, plan->rates.pool);
+    step_rates_archive(archive, &plan->rates);
     ARCHIVE_FIELD(archive, plan->done);
     ARCHIVE_FIELD(archive, plan->last);
     archive_count(archive, &plan->chains, 1, plan->options->chains, "chains of a generation");

@@ -7,6 +7,7 @@
 #include "mmlt/tuning.h"
 #include "render/bd_fields.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -30,11 +31,12 @@ void pool_estimator_archive(Archive *archive, PoolEstimator *pool)
     ARCHIVE_FIELD(archive, pool->sample);
     ARCHIVE_FIELD(archive, pool->pixel);
     ARCHIVE_FIELD(archive, pool->lights_first);
-    ARCHIVE_FIELD(archive, pool->brightness);
+    archive_doubles(archive, &pool->brightness, 1, RANGE_FLOATS_POSITIVE, "the brightness of a pool");
     ARCHIVE_FIELD(archive, pool->next);
     ARCHIVE_FIELD(archive, pool->turns);
-    ARCHIVE_FIELD(archive, pool->pilot_brightness);
-    ARCHIVE_FIELD(archive, pool->brightness_sum);
+    archive_doubles(archive, &pool->pilot_brightness, 1, RANGE_FLOATS_POSITIVE, "the brightness of the pilot pool");
+    archive_doubles(archive, pool->brightness_sum, REPLICAS, (NumberRange){0.0, DBL_MAX},
+                    "the brightness of all pools");
     ARCHIVE_FIELD(archive, pool->own.samples);
 }
 
