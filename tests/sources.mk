@@ -39,6 +39,7 @@ check_PROGRAMS += \
 	tests/test_pool \
 	tests/test_reference \
 	tests/test_render \
+	tests/test_restore \
 	tests/test_scenes \
 	tests/test_serve \
 	tests/test_shard \
@@ -151,6 +152,7 @@ tests_test_plan_SOURCES = tests/mmlt/test_plan.c
 tests_test_pool_SOURCES = tests/mmlt/test_pool.c
 tests_test_reference_SOURCES = tests/render/test_reference.c
 tests_test_render_SOURCES = tests/render/test_render.c
+tests_test_restore_SOURCES = tests/render/test_restore.c
 tests_test_scenes_SOURCES = tests/render/test_scenes.c
 tests_test_shard_SOURCES = tests/render/test_shard.c
 tests_test_shift_SOURCES = tests/mmlt/test_shift.c

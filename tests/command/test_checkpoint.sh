@@ -179,6 +179,13 @@ says 'there is no new.ck yet: the rendering starts anew' 'a first run of a scrip
 small -o a.exr --samples=1 --integrator=pt --frame=7 --checkpoint=f.%03d.ck "$scene"
 file_exists f.007.ck
 
+# Light so bright that squares of it are infinite is no damage.
+sed 's/\("rgb L" \[[^]]*\]\)/\1 "float scale" [ 1e24 ]/' "$scene" >bright.pbrt
+small -o bright.exr --samples=48 --checkpoint=bright.ck bright.pbrt
+small -o bright.exr --samples=96 --resume=bright.ck bright.pbrt
+result 'bright light: exit status' $?
+says 'going on from bright.ck' 'bright light'
+
 # ---- damage -------------------------------------------------------------------------------------------------------
 
 # damaged WHAT: more.ck was damaged; its previous one leads to the same picture, and stays until there is a new one.
@@ -227,6 +234,27 @@ if command -v zstd >/dev/null; then
     expect 1 'more.ck cannot be resumed: it is no checkpoint of Twinlight' render --integrator=pt --resolution=48x36 \
         --samples=16 --resume=more.ck -o no.exr "$scene"
     file_missing no.exr
+
+    # planted OFFSET BYTES TEXT: a value that no rendering saves, in a file whose checksum is right. One sentence says so, and
+    # what has been written stays. (Of state, tests/render/test_restore.c.)
+    planted() {
+        cp state wrong
+        # shellcheck disable=SC2059 # the bytes are a format
+        printf "$2" | dd of=wrong bs=1 seek="$1" conv=notrunc 2>copied
+        zstd -qf wrong -o more.ck
+        cp more.ck kept.ck
+        cp more.exr kept.exr
+        expect 1 "more.ck cannot be resumed: $3" render --integrator=pt --resolution=48x36 --samples=16 --no-png \
+            --resume=more.ck -o more.exr "$scene"
+        [ "$(grep -c 'error: ' err)" -eq 1 ]
+        result "$3: not one sentence" $?
+        cmp -s kept.ck more.ck && cmp -s kept.exr more.exr && [ ! -e more.ck.previous ]
+        result "$3: files have changed" $?
+    }
+    rm -f more.ck.previous
+    planted 2088 '\377\377\377\177' "the film's quantum is out of range"
+    planted 2100 '\377\377\377\377\377\377\377\377' 'seconds of rendering: NaN was saved, but there can be 0 to 1e+15'
+    planted 2112 '\001\000\020\000' 'photons: 1048577 were saved, but there can be 0 to 1048576'
 else
     echo 'skipped: there is no zstd to make checkpoints that differ'
 fi

@@ -444,6 +444,40 @@ START_TEST(test_visits_known)
 }
 END_TEST
 
+/* Variances of very bright light are infinite, and what follows from them may be NaN; weights are weights all the same, and
+ * importances are numbers. */
+START_TEST(test_wild_numbers)
+{
+    static const double WILD[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300, 0.0};
+    const double samples[ESTIMATOR_COUNT] = {64.0, 6.0, 48.0};
+    const size_t count = sizeof WILD / sizeof WILD[0];
+    float importance[IMPORTANCE_CELLS];
+    Known known;
+    known_init(&known, 17);
+    for (size_t kind = 0; kind < count * count; ++kind) {
+        CombinationTile *tile = &known.combination.known[kind % combination_tile_count(&known.combination)];
+        const CombinationTile kept = *tile;
+        for (int s = 0; s < SERIES_COUNT; ++s)
+            tile->spread[s] = WILD[s % 2 ? kind % count : kind / count];
+        known.combination.rare_chains = WILD[kind % count];
+        tile->light = WILD[kind % count];
+        TEST_TRUE(combination_weights_set(&known.combination, samples) >= 1);
+        double sum = 0.0;
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+            TEST_TRUE(tile->weight[s] >= 0.0 && tile->weight[s] <= 1.0);
+            sum += tile->weight[s];
+        }
+        TEST_NEAR(sum, 1.0, 1e-9);
+        TEST_TRUE(tile->paths_rare >= 0.0 && tile->paths_rare <= 1.0);
+        importance_learn(&known.combination, importance);
+        for (uint cell = 0; cell < IMPORTANCE_CELLS; ++cell)
+            TEST_TRUE((double)importance[cell] >= IMPORTANCE_LEAST && (double)importance[cell] <= IMPORTANCE_MOST);
+        *tile = kept;
+    }
+    known_destroy(&known);
+}
+END_TEST
+
 TCase *combination_known_tests(void)
 {
     TCase *tcase = tcase_create("known");
@@ -454,6 +488,7 @@ TCase *combination_known_tests(void)
     tcase_add_test(tcase, test_plan_known);
     tcase_add_test(tcase, test_worth_known);
     tcase_add_test(tcase, test_importance_known);
+    tcase_add_test(tcase, test_wild_numbers);
     tcase_add_loop_test(tcase, test_visits_known, 0, 2);
     return tcase;
 }

@@ -209,16 +209,18 @@ likely() {
     host/scene/light_setup.c | host/scene/aim_setup.c) echo test_light test_emit test_numerics:lights ;;
     shared/math/*.h | shared/layout/distribution.h | shared/path/path_random.h) echo test_math test_light test_emit ;;
     shared/chain/chain_numbers.h) echo test_chain test_partition test_emit ;;
-    shared/camera/film_s*.h | shared/camera/splat_offset.h | host/film/*) echo test_film test_layers test_emit test_shard ;;
+    shared/camera/film_s*.h | shared/camera/splat_offset.h | host/film/*) echo test_film test_restore test_layers test_emit test_shard ;;
     shared/camera/pixel_filter.h | shared/layout/item.h) echo test_film test_bidirectional:film ;;
-    host/mmlt/chain_population.c) echo test_chain_population test_layers ;;
+    host/mmlt/chain_population.c) echo test_chain_population test_restore test_layers ;;
     host/mmlt/plan.c) echo test_plan test_combination:known ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;
     host/render/shard.c | host/render/merge.c | host/render/part.c | host/command/part_output.c | host/command/cmd_merge.c)
         echo test_shard command/test_merge.sh ;;
     host/base/archive* | host/render/checkpoint.c | host/render/identity.c | host/render/run.c | host/mmlt/mmlt_archive.c)
-        echo test_archive test_checkpoint command/test_checkpoint.sh command/test_merge.sh ;;
-    host/*) echo test_combination test_pool test_layers ;;
+        echo test_archive test_restore test_checkpoint command/test_checkpoint.sh command/test_merge.sh ;;
+    host/base/sample_statistics.c) echo test_bench ;;
+    host/render/error_watch.c | host/render/layers.c | host/render/aov_image.c) echo test_restore test_layers test_error ;;
+    host/*) echo test_combination test_restore test_pool test_layers ;;
     esac
 }
 others() {

@@ -6,8 +6,6 @@
 
 #include "backend_cpu.h"
 #include "base/log.h"
-#include "chain/chain.h"
-#include "mmlt/chain_groups.h"
 #include "render/checkpoint.h"
 #include "render/layers.h"
 
@@ -264,133 +262,6 @@ START_TEST(test_other_sizes)
 }
 END_TEST
 
-/* ---- wrong values and a right checksum ---------------------------------------------------------------------------- */
-
-/* What an offset is counted from. */
-typedef enum Place {
-    FILE_BEGIN, /* bytes; the head has 2088 */
-    PLAN, /* bytes from its rates on */
-    CHAIN_WORDS, /* CHAIN_PASS_*, of the second chain of the first replica */
-    GUIDE, /* bytes from the target importance of the first replica on */
-    PLACES
-} Place;
-
-typedef enum ValueKind { WORD, FLOAT, DOUBLE } ValueKind;
-
-typedef struct WrongValue {
-    Place place;
-    long offset;
-    ValueKind kind;
-    double value;
-    const char *message;
-} WrongValue;
-
-static const WrongValue WRONG[] = {
-    {FILE_BEGIN, 2088, WORD, 5000, "the film's quantum is out of range"},
-    {FILE_BEGIN, 2100, DOUBLE, (double)NAN, "seconds of rendering: NaN was saved"},
-    {FILE_BEGIN, 2100, DOUBLE, 1e300, "seconds of rendering: 1e+300 was saved"},
-    {FILE_BEGIN, 2112, WORD, 4e9, "photons: 4000000000 were saved"},
-    {FILE_BEGIN, 2116 + 16 + 8 * DIAGNOSTIC_COUNT, DOUBLE, -1.0, "the estimated error is negative"},
-    {PLAN, 0, DOUBLE, (double)NAN, "samples of path tracing per step: NaN was saved"},
-    {PLAN, 0, DOUBLE, 1e9, "samples of path tracing per step: 1e+09 was saved"},
-    {PLAN, 8, DOUBLE, 1e9, "samples of a pool per step: 1e+09 was saved"},
-    {PLAN, 8, DOUBLE, 0.0, "samples of a pool per step: 0 was saved"},
-    {PLAN, 32, WORD, 65, "chains of a generation: 65 were saved, but there can be 1 to 64"},
-    {PLAN, 32, WORD, 0, "chains of a generation: 0 were saved"},
-    {PLAN, -4, WORD, 0, "generations: 0 were saved"},
-    {PLAN, 76, DOUBLE, 1e9, "samples of path tracing: "},
-    {PLAN, 76, DOUBLE, -7.0, "samples of path tracing that are wanted: -7 was saved"},
-    {PLAN, 56, WORD, 9, "samples of path tracing: "}, /* the upper half of `done` */
-    {PLAN, 116, DOUBLE, (double)INFINITY, "the brightness of a pool: inf was saved"},
-    {PLAN, 148, DOUBLE, -1.0, "the brightness of the pilot pool: -1 was saved"},
-    {PLAN, 156, DOUBLE, (double)NAN, "the brightness of all pools: NaN was saved"},
-    {PLAN, 180, WORD, 9, "the words of a chain: "},
-    {PLAN, 188, WORD, 4e9, "chains: 4000000000 were saved, but there can be 0 to 64"},
-    {PLAN, 192, DOUBLE, (double)NAN, "the samples behind chains: NaN was saved"},
-    {PLAN, 200, DOUBLE, (double)INFINITY, "the brightness of chains: inf was saved"},
-    {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 2, "chain 2 of 8: its path is too short or too long"},
-    {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 33, "chain 2 of 8: its path is too short or too long"},
-    {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 0x503, "chain 2 of 8: its path has more vertices from the light"},
-    {CHAIN_WORDS, CHAIN_PASS_LUMINANCE, FLOAT, (double)NAN, "the luminance of its path is negative or not finite"},
-    {CHAIN_WORDS, CHAIN_PASS_LUMINANCE, FLOAT, -1.0, "the luminance of its path is negative or not finite"},
-    {CHAIN_WORDS, CHAIN_PASS_CELL, WORD, IMPORTANCE_CELLS, "its place on the film does not exist"},
-    {GUIDE, 0, FLOAT, 0.0, "the target importance: 0 was saved"},
-    {GUIDE, 4, FLOAT, (double)NAN, "the target importance: NaN was saved"},
-    {GUIDE, 4 * (3 * IMPORTANCE_CELLS), WORD, 5, "the visits of a pool's pixels do not add up"},
-    {GUIDE, 4 * (2 * IMPORTANCE_CELLS + IMPORTANCE_CELLS), WORD, 5, "the visits of a pool's pixels do not add up"},
-};
-
-/* Where the rates of a plan that has learnt nothing yet are. */
-static size_t rates_find(const unsigned char *bytes, size_t size)
-{
-    const double rates[2] = {1.0, 1.0 / 12.0};
-    const unsigned char *found = memmem(bytes, size, rates, sizeof rates);
-    ck_assert_ptr_nonnull(found);
-    ck_assert_ptr_null(memmem(found + 1, size - (size_t)(found + 1 - bytes), rates, sizeof rates));
-    return (size_t)(found - bytes);
-}
-
-/* The size of the population that begins with the number of a chain's words. */
-static size_t population_bytes(const unsigned char *population)
-{
-    uint64_t words;
-    uint32_t count;
-    memcpy(&words, population, sizeof words);
-    memcpy(&count, population + sizeof words, sizeof count);
-    return sizeof words + sizeof count + 2 * sizeof(double) + words * count * sizeof(uint);
-}
-
-static size_t place_of(const WrongValue *wrong, const unsigned char *bytes, size_t size)
-{
-    size_t rates = rates_find(bytes, size), chains = rates + 180, words = chains + 28, second;
-    uint32_t count;
-    memcpy(&count, bytes + chains + 8, sizeof count);
-    second = chains + population_bytes(bytes + chains);
-    const size_t places[PLACES] = {[FILE_BEGIN] = 0,
-                                   [PLAN] = rates,
-                                   [CHAIN_WORDS] = words + 4,
-                                   [GUIDE] = second + population_bytes(bytes + second) + sizeof(ChainGroups)};
-    long scale = wrong->place == CHAIN_WORDS ? 4 * (long)count : 1;
-    return (size_t)((long)places[wrong->place] + wrong->offset * scale);
-}
-
-/* Resuming fails with one message that says what is wrong, and changes neither the file nor the picture. */
-START_TEST(test_wrong_values)
-{
-    static const CheckpointCase FEW = {"cornell", integrator_mmlt, 3, 0, 0, {.chains = 64}, 0.0};
-    static Rendering rendering;
-    Error error = {0};
-    size_t size, written_size, kept_size;
-    rendering_begin(&rendering, &FEW);
-    log_sink_set(quiet, NULL);
-    ck_assert(rendering_run(&rendering, -1, test_path("c"), 1, &error));
-    unlink(test_path("c.previous"));
-    unsigned char *bytes = contents_read(test_path("c"), &size), *kept = malloc(size);
-    for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; ++i) {
-        const WrongValue *wrong = &WRONG[i];
-        const float single = (float)wrong->value;
-        const uint32_t word = wrong->kind == WORD ? (uint32_t)wrong->value : 0;
-        const void *sources[] = {[WORD] = &word, [FLOAT] = &single, [DOUBLE] = &wrong->value};
-        memcpy(kept, bytes, size);
-        memcpy(kept + place_of(wrong, bytes, size), sources[wrong->kind], wrong->kind == DOUBLE ? 8 : 4);
-        contents_write(test_path("c"), kept, size);
-        unsigned char *written = test_file_read(test_path("c"), &written_size);
-        bool resumed = rendering_run(&rendering, -1, test_path("c"), 1, &error);
-        if (resumed || !strstr(error.message, "c cannot be resumed: ") || !strstr(error.message, wrong->message))
-            ck_abort_msg("not \"%s\" but \"%s\"", wrong->message, resumed ? "" : error.message);
-        TEST_TRUE(rendering.result.samples == 0);
-        unsigned char *left = test_file_read(test_path("c"), &kept_size);
-        TEST_TRUE(kept_size == written_size && memcmp(left, written, kept_size) == 0);
-        free(left);
-        free(written);
-    }
-    free(kept);
-    free(bytes);
-    rendering_end(&rendering);
-    log_sink_set(NULL, NULL);
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("checkpoint");
@@ -399,7 +270,6 @@ int main(void)
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_loop_test(tcase, test_stopped, 0, sizeof CASES / sizeof CASES[0]);
     tcase_add_test(tcase, test_other_sizes);
-    tcase_add_test(tcase, test_wrong_values);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }
