@@ -1,10 +1,10 @@
-# The readers of scenes, images, command lines and parts against arbitrary bytes. tests/fuzz_NAME is a test that runs the
-# inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
-# scenes, 7e6 on images and 3e7 on command lines; parts have seeds alone, from which 3e5 executions found nothing). `make fuzz` builds them with libFuzzer and sanitizers and runs each
-# for FUZZ_SECONDS, starting from these.
+# The readers of scenes, images, command lines, parts and checkpoints against arbitrary bytes. tests/fuzz_NAME is a test that
+# runs the inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
+# scenes, 7e6 on images and 3e7 on command lines; parts and checkpoints have seeds alone, from which 3e5 and 1e5 executions
+# found nothing). `make fuzz` builds them with libFuzzer and sanitizers and runs each for FUZZ_SECONDS, starting from these.
 EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
-FUZZ_TARGETS = scene image options part
-check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part
+FUZZ_TARGETS = scene image options part checkpoint
+check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part tests/fuzz_checkpoint
 tests_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c tests/fuzz/fuzz_replay.c
 tests_fuzz_scene_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/scene bad"'
 tests_fuzz_scene_LDADD = libtwinlight_host.la
@@ -14,25 +14,36 @@ tests_fuzz_image_LDADD = libtwinlight_host.la
 tests_fuzz_options_SOURCES = tests/fuzz/fuzz_options.c tests/fuzz/fuzz_replay.c
 tests_fuzz_options_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/options"'
 tests_fuzz_options_LDADD = libtwinlight_host.la
-tests_fuzz_part_SOURCES = tests/fuzz/fuzz_part.c tests/fuzz/fuzz_replay.c
+tests_fuzz_part_SOURCES = tests/fuzz/fuzz_part.c tests/fuzz/fuzz_file.c tests/fuzz/fuzz_file.h tests/fuzz/fuzz_replay.c
 tests_fuzz_part_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/part"'
 tests_fuzz_part_LDADD = libtwinlight_host.la $(ZSTD_LIBS)
+tests_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c tests/fuzz/fuzz_file.c tests/fuzz/fuzz_replay.c
+tests_fuzz_checkpoint_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/checkpoint"'
+tests_fuzz_checkpoint_LDFLAGS = $(AM_LDFLAGS) $(FUZZ_WRAP)
+tests_fuzz_checkpoint_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(ZSTD_LIBS)
+
+# So that fuzz_checkpoint.c sees the fields that are read.
+FUZZ_WRAP = -Wl,--wrap=archive_reader_open
 
 # A larger image would take the time of thousands of others.
 FUZZ_CC = clang
 FUZZ_SECONDS = 60
-FUZZ_SANITIZERS = fuzzer,address,undefined
-FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=$(FUZZ_SANITIZERS) -fno-sanitize-recover=undefined \
+FUZZ_SANITIZERS = fuzzer,address,undefined,float-cast-overflow
+FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=$(FUZZ_SANITIZERS) -fno-sanitize-recover=undefined,float-cast-overflow \
 	-DIMAGE_PIXELS_MAX=65536u
 FUZZ_COMPILE = $(FUZZ_CC) $(FUZZ_CFLAGS) $(DEFS) -I. $(AM_CPPFLAGS) -pthread $(OPENEXR_CFLAGS) $(PNG_CFLAGS) \
 	$(ZLIB_CFLAGS) $(STB_CFLAGS)
 .PHONY: fuzz fuzz-programs
 fuzz-programs: build_commit.h
 	$(MKDIR_P) fuzz-objects
-	for file in $(libtwinlight_host_la_SOURCES); do case $$file in *.c) \
-	  $(FUZZ_COMPILE) -c $(srcdir)/$$file -o fuzz-objects/$$(echo $${file%.c} | tr / _).o || exit 1;; \
+	for file in $(libtwinlight_host_la_SOURCES) $(libtwinlight_cpu_la_SOURCES) $(libtwinlight_kernels_la_SOURCES) \
+	  $(libtwinlight_wide_la_SOURCES) tests/fuzz/fuzz_file.c; do \
+	  case $$file in *_wide.c) wide="$(WIDE_CFLAGS)";; *) wide=;; esac; \
+	  case $$file in *.c) $(FUZZ_COMPILE) $$wide -c $(srcdir)/$$file \
+	    -o fuzz-objects/$$(echo $${file%.c} | tr / _).o || exit 1;; \
 	esac; done
-	for target in $(FUZZ_TARGETS); do $(FUZZ_COMPILE) $(srcdir)/tests/fuzz/fuzz_$$target.c fuzz-objects/*.o -o fuzz_$$target \
+	for target in $(FUZZ_TARGETS); do case $$target in checkpoint) wrap=$(FUZZ_WRAP);; *) wrap=;; esac; \
+	  $(FUZZ_COMPILE) $$wrap $(srcdir)/tests/fuzz/fuzz_$$target.c fuzz-objects/*.o -o fuzz_$$target \
 	  $(libtwinlight_host_la_LIBADD) || exit 1; done
 
 fuzz: fuzz-programs
@@ -40,7 +51,7 @@ fuzz: fuzz-programs
 	  ./fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=1 \
 	    -artifact_prefix=fuzz-found/$$target- $$(test -f $$dictionary && echo -dict=$$dictionary) \
 	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
-CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part
+CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part fuzz_checkpoint
 
 # The readers and small renderings on the CPU under valgrind, which detects what sanitizers do not: uninitialised
 # values, and errors inside libraries. Takes half a minute.
