@@ -25,8 +25,8 @@ typedef struct NumberRange {
     double least, most;
 } NumberRange;
 
-#define RANGE_FLOATS ((NumberRange){-FLT_MAX, FLT_MAX}) /* all finite floats */
-#define RANGE_FLOATS_POSITIVE ((NumberRange){0.0, FLT_MAX}) /* and those without a sign */
+#define RANGE_FLOATS ((NumberRange){-(double)FLT_MAX, (double)FLT_MAX}) /* all finite floats */
+#define RANGE_FLOATS_POSITIVE ((NumberRange){0.0, (double)FLT_MAX}) /* and those without a sign */
 
 /* Saves or restores `size` bytes. */
 void archive_bytes(Archive *archive, void *bytes, size_t size);

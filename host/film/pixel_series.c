@@ -34,7 +34,7 @@ void pixel_series_archive(Archive *archive, PixelSeries *series)
     archive_same(archive, weights, "the number of weights in a series of images");
     archive_floats(archive, series->mean, values, RANGE_FLOATS, "the means of a series of images");
     /* Squares of very bright light are infinite. */
-    archive_floats(archive, series->spread, values, (NumberRange){-FLT_MAX, INFINITY},
+    archive_floats(archive, series->spread, values, (NumberRange){-(double)FLT_MAX, (double)INFINITY},
                    "the spreads of a series of images");
     archive_floats(archive, series->weight, weights, RANGE_FLOATS_POSITIVE, "the weights of a series of images");
     archive_bytes(archive, series->pictures, weights * sizeof *series->pictures);

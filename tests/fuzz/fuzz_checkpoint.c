@@ -253,8 +253,9 @@ static Change change_read(const uint8_t bytes[CHANGE_BYTES])
     return change;
 }
 
-static const double SPECIAL[] = {0.0,   -0.0,   NAN,  HUGE_VAL, -HUGE_VAL, -1.0, 0.5,   1.0,  1.5,          1e-300,
-                                 1e300, -1e300, 3e38, -3e38,    1e-38,     1e20, -1e20, 1e10, 4294967296.0, 0x1p64};
+static const double SPECIAL[] = {0.0,   -0.0, (double)NAN, HUGE_VAL, -HUGE_VAL,    -1.0,  0.5,
+                                 1.0,   1.5,  1e-300,      1e300,    -1e300,       3e38,  -3e38,
+                                 1e-38, 1e20, -1e20,       1e10,     4294967296.0, 0x1p64};
 
 /* Changes an element of the type that the change is of, unless the field is smaller. */
 static void change_make(const State *state, Change change, unsigned char *bytes)
