@@ -17,7 +17,7 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     }
     size_t tiles = combination_tile_count(combination);
     combination->threads = 1;
-    combination->exponents[0] = combination->exponents[1] = 1.0;
+    combination->exponents[0] = combination->exponents[1] = combination->chains_correlation = 1.0;
     combination->known = calloc(tiles, sizeof *combination->known);
     combination->rows = calloc((size_t)combination->tiles[1], sizeof *combination->rows);
     combination->ratios = malloc(tiles * sizeof *combination->ratios);
@@ -66,6 +66,7 @@ void combination_archive(Archive *archive, Combination *combination)
     ARCHIVE_FIELD(archive, combination->earlier_samples);
     ARCHIVE_FIELD(archive, combination->exponents);
     archive_flags(archive, combination->ready, SERIES_COUNT, "which variances are known");
+    ARCHIVE_FIELD(archive, combination->chains_correlation);
     ARCHIVE_FIELD(archive, combination->rare_chains);
     ARCHIVE_FIELD(archive, combination->rare_paths);
     ARCHIVE_FIELD(archive, combination->best);
@@ -96,33 +97,43 @@ static double weight_against(double own, double other)
     return spread_clamp(other) / (spread_clamp(own) + spread_clamp(other));
 }
 
-/* The largest weight that path tracing's own rare light may have in a tile, against the chains': that by the variances of
- * all tiles together. A tile states too small a variance as long as it has not met one of the paths, which are
- * fireflies. factor: of the chains' variance. */
-static double paths_rare_most(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
+/* What the combinations of all tiles have in common. */
+typedef struct CombinationTerms {
+    const double *samples; /* of each estimator */
+    double correlation; /* Combination.chains_correlation */
+    double rare_most; /* largest weight of path tracing's own rare light */
+} CombinationTerms;
+
+/* The terms for these numbers of samples. The largest weight that path tracing's own rare light may have in a tile, against
+ * the chains', is that by the variances of all tiles together: a tile states too small a variance as long as it has not met
+ * one of the paths, which are fireflies. factor: of the chains' variance. */
+static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
 {
-    return samples[ESTIMATOR_PATHS] > 0.0
-               ? weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
-                                factor * combination->rare_chains / samples[ESTIMATOR_CHAINS])
-               : 0.0;
+    CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
+    if (samples[ESTIMATOR_PATHS] > 0.0)
+        terms.rare_most = weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
+                                         RARE_DOUBT * terms.correlation * factor * combination->rare_chains /
+                                             samples[ESTIMATOR_CHAINS]);
+    return terms;
 }
 
 /* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Rare light
  * is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence the
- * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c. Weights are in [0, 1]
- * for any variances, those that are infinite or NaN included. */
-static TileCombination tile_combination(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
-                                        double rare_most)
+ * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c, the variance of the
+ * whole tile's mean: hence the correlation. Weights are in [0, 1] for any variances, those that are infinite or NaN
+ * included. */
+static TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms)
 {
-    const double *spread = tile->spread;
+    const double *spread = tile->spread, *samples = terms->samples;
     double by_chains = samples[ESTIMATOR_CHAINS] / spread_clamp(spread[ESTIMATOR_CHAINS]);
     double by_pool = samples[ESTIMATOR_POOL] / spread_clamp(spread[ESTIMATOR_POOL]);
-    double a = 1.0 / (by_chains + by_pool) + spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
+    double a = terms->correlation * (1.0 / (by_chains + by_pool) + spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS]);
     TileCombination best = {.chains = by_chains / (by_chains + by_pool), .variance = a};
     if (!(samples[ESTIMATOR_PATHS] > 0.0))
         return best;
-    double rare = spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
-           own = spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS], v = fmin(weight_against(own, rare), rare_most),
+    double rare = terms->correlation * spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
+           own = spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS],
+           v = fmin(weight_against(own, RARE_DOUBT * rare), terms->rare_most),
            c = (1.0 - v) * best.chains * fmin(rare, a);
     double b = fmax(spread[ESTIMATOR_PATHS], SPREAD_MIN) / samples[ESTIMATOR_PATHS] + (1.0 - v) * (1.0 - v) * rare +
                v * v * own,
@@ -157,15 +168,15 @@ static double chains_factor(const Combination *combination, const double samples
 static double error_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool with_direct,
                        size_t every)
 {
-    double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples),
-           rare_most = paths_rare_most(combination, samples, factor);
+    double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples);
+    const CombinationTerms terms = terms_of(combination, samples, factor);
     for (size_t i = 0; i < combination_tile_count(combination); i += every) {
         CombinationTile tile = combination->known[i];
         tile.spread[ESTIMATOR_CHAINS] *= factor;
         tile.spread[SERIES_EXCESS] *= factor;
         tile.spread[SERIES_RARE] *= factor;
         double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
-        sum += (tile_combination(&tile, samples, rare_most).variance + direct) /
+        sum += (tile_combination(&tile, &terms).variance + direct) /
                fmax(tile.light * tile.light + DARK_PART * light * light, SPREAD_MIN);
     }
     return sum;
@@ -183,10 +194,11 @@ static bool combination_known(const Combination *combination, const double sampl
 /* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
  * the weight of the pool they start from; rare light is the chains' alone. So a large picture, of which the first pools
  * visit few pixels, shows mostly path tracing at first. */
-static void weights_set(const Combination *combination, CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
-                        bool known, double rare_most)
+static void weights_set(const Combination *combination, CombinationTile *tile, bool known,
+                        const CombinationTerms *terms)
 {
     const int shown = combination->shown;
+    const double *samples = terms->samples;
     memset(tile->weight, 0, sizeof tile->weight);
     tile->paths_rare = 0.0;
     if (shown == SHOWN_PATHS_ALONE && samples[ESTIMATOR_PATHS] > 0.0) {
@@ -194,7 +206,7 @@ static void weights_set(const Combination *combination, CombinationTile *tile, c
     } else if (shown > 0 && shown <= ESTIMATOR_COUNT && samples[shown - 1] > 0.0) {
         tile->weight[shown - 1] = 1.0;
     } else if (known) {
-        TileCombination best = tile_combination(tile, samples, rare_most);
+        TileCombination best = tile_combination(tile, terms);
         tile->weight[ESTIMATOR_PATHS] = best.paths;
         tile->weight[ESTIMATOR_CHAINS] = (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
@@ -236,9 +248,9 @@ static void weights_average(Combination *combination)
 uint64_t combination_weights_set(Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
     bool known = combination_known(combination, samples);
-    double rare_most = known ? paths_rare_most(combination, samples, 1.0) : 0.0;
+    const CombinationTerms terms = terms_of(combination, samples, 1.0);
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        weights_set(combination, &combination->known[i], samples, known, rare_most);
+        weights_set(combination, &combination->known[i], known, &terms);
     weights_average(combination);
     return (uint64_t)fmax(1.0, rint(generation_worth(combination, samples, known)));
 }
@@ -247,16 +259,17 @@ uint64_t combination_weights_set(Combination *combination, const double samples[
 
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors)
 {
-    double light = combination_mean_light(combination), rare_most = paths_rare_most(combination, samples, 1.0);
+    double light = combination_mean_light(combination);
+    const CombinationTerms terms = terms_of(combination, samples, 1.0);
     bool known = combination_known(combination, samples) && light > 0.0;
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         const CombinationTile *tile = &combination->known[i];
         double square = tile->light * tile->light + DARK_PART * light * light;
-        errors[i] = known ? tile_combination(tile, samples, rare_most).variance / square : 0.0;
+        errors[i] = known ? tile_combination(tile, &terms).variance / square : 0.0;
     }
 }
 
-/* The best division of work for each part of path tracing. */
+/* The best division of work for each part of path tracing. Chains and pools have one part each or more, or half a part each. */
 typedef struct RatesSearch {
     const Combination *combination;
     size_t every;
@@ -269,10 +282,10 @@ static void rates_of_paths(void *context, size_t paths)
 {
     RatesSearch *search = context;
     search->best[paths].error = HUGE_VAL;
-    for (size_t pool = 1; paths > 0 && paths + pool < PLAN_PARTS; ++pool) {
-        double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = (double)(PLAN_PARTS - paths - pool),
-                                           [ESTIMATOR_POOL] = (double)pool,
-                                           [ESTIMATOR_PATHS] = (double)paths};
+    const double rest = (double)(PLAN_PARTS - paths);
+    for (double pool = fmin(1.0, 0.5 * rest); paths > 0 && pool < rest; pool += 1.0) {
+        double samples[ESTIMATOR_COUNT] = {
+            [ESTIMATOR_CHAINS] = rest - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = (double)paths};
         for (int s = 0; s < ESTIMATOR_COUNT; ++s)
             samples[s] /= estimator_cost((EstimatorKind)s);
         double error = error_of(search->combination, samples, true, search->every);
@@ -283,10 +296,10 @@ static void rates_of_paths(void *context, size_t paths)
     }
 }
 
-/* The most samples of an estimator per step of a chain. */
+/* The most samples of an estimator per step of a chain: chains have half a part or more. */
 static double rate_most(EstimatorKind kind)
 {
-    return PLAN_PARTS * estimator_cost(ESTIMATOR_CHAINS) / estimator_cost(kind);
+    return 2.0 * PLAN_PARTS * estimator_cost(ESTIMATOR_CHAINS) / estimator_cost(kind);
 }
 
 void step_rates_archive(Archive *archive, StepRates *rates)

@@ -14,6 +14,9 @@
  * alike in neighbouring pixels, and an eye or a denoiser sees those that are; docs/TUNING.md. */
 #define PATCH_SIDE 4
 
+/* Patches in a tile. */
+#define TILE_PATCHES ((double)(TILE_SIDE * TILE_SIDE) / (PATCH_SIDE * PATCH_SIDE))
+
 /* Avoids division by zero in tiles without variance or light (black ones). */
 #define SPREAD_MIN 1e-30
 
@@ -46,6 +49,7 @@ typedef struct CombinationRow {
     double indirect_sum, direct_sum; /* of stratified path tracing ... */
     PixelVariances indirect, direct; /* ... and its variances (mmlt/combination_stratified.c) */
     size_t full; /* saturated pixels */
+    double patches, tiles; /* the chains' variances of patches and of tiles (mmlt/combination_variances.c) */
 } CombinationRow;
 
 typedef struct Combination {
@@ -64,6 +68,9 @@ typedef struct Combination {
     double earlier_samples, exponents[2];
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
+    /* Variance of the chains' light in a tile over the sum of those in its patches: 1 for errors that are independent (or not
+     * known), TILE_PATCHES for errors that are alike. */
+    double chains_correlation;
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */

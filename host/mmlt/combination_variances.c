@@ -36,7 +36,7 @@ static double light_bound_best(const Combination *combination, size_t tile, doub
 }
 
 /* The part of a tile's pixels that a patch has. */
-#define PATCH_PART ((double)(PATCH_SIDE * PATCH_SIDE) / (TILE_SIDE * TILE_SIDE))
+#define PATCH_PART (1.0 / TILE_PATCHES)
 
 /* Squared luminance of a patch, clamped to LIGHT_OVER_TILE times its tile's mean, plus `dark`. While chains have made
  * few steps per pixel, their mean of a patch is pulled toward that of its tile: otherwise the few patches they have
@@ -67,11 +67,46 @@ static void row_light(void *context, size_t row)
     }
 }
 
-/* A combination, and DARK_PART of the squared mean luminance of a patch. */
+/* A combination, the mean luminance of a tile, and DARK_PART of the squared mean luminance of a patch. */
 typedef struct TilesSum {
     Combination *combination;
-    double dark;
+    double light, dark;
 } TilesSum;
+
+/* What a tile's variance is relative to. */
+static double relative_square(const CombinationTile *tile, double mean_light)
+{
+    return fmax(tile->light * tile->light + DARK_PART * mean_light * mean_light, SPREAD_MIN);
+}
+
+/* The chains' variances of a row's patches and of its tiles, both relative to the tiles' light. */
+static void row_correlation(const TilesSum *sum, size_t row)
+{
+    const Combination *combination = sum->combination;
+    CombinationRow *sums = &combination->rows[row];
+    RowRange patches = combination_row_patches(combination, row), tiles = combination_row_tiles(combination, row);
+    sums->patches = sums->tiles = 0.0;
+    for (size_t i = patches.first; i < patches.end; ++i) {
+        const CombinationTile *tile = &combination->known[combination_tile_of_patch(combination, i)];
+        sums->patches +=
+            pixel_series_spread(&combination->light[ESTIMATOR_CHAINS], i) / relative_square(tile, sum->light);
+    }
+    for (size_t i = tiles.first; i < tiles.end; ++i) {
+        const CombinationTile *tile = &combination->known[i];
+        sums->tiles += pixel_series_spread(&combination->sums[ESTIMATOR_CHAINS], i) / relative_square(tile, sum->light);
+    }
+}
+
+/* The ratio of both in the whole image. */
+static double chains_correlation(const Combination *combination)
+{
+    double patches = 0.0, tiles = 0.0;
+    for (int row = 0; row < combination->tiles[1]; ++row) {
+        patches += combination->rows[row].patches;
+        tiles += combination->rows[row].tiles;
+    }
+    return patches > 0.0 && tiles > patches ? fmin(tiles / patches, TILE_PATCHES) : 1.0;
+}
 
 static void row_spreads(void *context, size_t row)
 {
@@ -86,15 +121,17 @@ static void row_spreads(void *context, size_t row)
             tile->spread[s] += weight * pixel_series_spread(&combination->light[s], i);
         tile->direct += weight * pixel_series_spread(&combination->direct, i);
     }
+    row_correlation(sum, row);
 }
 
 /* Sums the tiles' variances, each patch's weighted by the squared luminance of its tile over its own. */
 static void tiles_sum(Combination *combination)
 {
     combination_rows_run(combination, row_light, combination);
-    double patch = combination_mean_light(combination) * PATCH_PART;
-    TilesSum sum = {combination, DARK_PART * patch * patch};
+    double light = combination_mean_light(combination), patch = light * PATCH_PART;
+    TilesSum sum = {combination, light, DARK_PART * patch * patch};
     combination_rows_run(combination, row_spreads, &sum);
+    combination->chains_correlation = chains_correlation(combination);
 }
 
 /* Median over the tiles (the upper one of an even number) of an estimator's variance over light. ratios: scratch. */
@@ -165,12 +202,6 @@ static void stratification_apply(Combination *combination, const Combination *ot
         combination->known[i].spread[ESTIMATOR_PATHS] *= left.indirect;
         combination->known[i].direct *= left.direct;
     }
-}
-
-/* What a tile's variance is relative to. */
-static double relative_square(const CombinationTile *tile, double mean_light)
-{
-    return fmax(tile->light * tile->light + DARK_PART * mean_light * mean_light, SPREAD_MIN);
 }
 
 /* A series' variance relative to light, of all tiles together. */

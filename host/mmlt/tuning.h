@@ -94,6 +94,11 @@
 #define VISIT_STEPS 64.0
 #define VISITS_KNOWN 1.0
 
+/* The chains' variance of rare light counts this many times against path tracing's: it is learnt from few visits, and two
+ * replicas' estimates of it differ by a factor of two or three. More shows fireflies of path tracing, less shows places where
+ * a chain has stayed; docs/TUNING.md. */
+#define RARE_DOUBT 2.0
+
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
  * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0

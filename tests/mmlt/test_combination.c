@@ -135,10 +135,13 @@ START_TEST(test_stratified)
     } else {
         ck_assert_double_lt(exponent[0], 1.15);
     }
+    /* 4 / 1 and 1 / 0.25, against 2 / 4; chains' errors in neighbouring pixels are independent but for chance. */
+    double correlation = replicas[0].combination.chains_correlation, chains = correlation / 8.0;
+    ck_assert_double_lt(correlation, 1.15);
     if (_i == 1 || _i == 2)
         ck_assert_double_gt(weight, _i == 1 ? 0.7 : 0.5);
     else
-        ck_assert_double_eq_tol(weight, 0.5 / 8.5, 0.02);
+        ck_assert_double_eq_tol(weight, chains / (chains + 2.0), 0.02);
     for (int r = 0; r < 2; ++r)
         estimators_destroy(&replicas[r]);
 }
@@ -171,8 +174,9 @@ START_TEST(test_visits_few)
 }
 END_TEST
 
-/* Chains whose error is the same in all pixels of a tile: the variance of the sum over a patch, by which estimators are
- * weighted, is 16 times that of independent pixels. */
+/* Chains whose error is the same in all pixels of a tile: the variance of the sum over a patch, by which chains are weighted
+ * against the pool, is 16 times that of independent pixels. Against path tracing that of the tile counts, which is four times
+ * the sum of its patches'. */
 START_TEST(test_correlated)
 {
     Estimators estimators;
@@ -191,11 +195,14 @@ START_TEST(test_correlated)
         }
         generation(&estimators);
     }
-    /* 4 / 16, 1 / 0.25, 2 / 4 */
-    const double *weight = estimators.combination.weight, chains = 4.0 / 16.0, all = chains + 4.5;
-    printf("correlated: weights %.3f %.3f %.3f\n", weight[0], weight[1], weight[2]);
-    ck_assert_double_eq_tol(weight[ESTIMATOR_CHAINS], chains / all, 0.01);
-    ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], 4.0 / all, 0.02);
+    /* 4 / 16 and 1 / 0.25, against 2 / 4 */
+    const double *weight = estimators.combination.weight, chains = 4.0 / 16.0, pool = 1.0 / 0.25,
+                 others = 4.0 / (chains + pool), paths = others / (others + 2.0);
+    printf("correlated: %.3f, weights %.3f %.3f %.3f\n", estimators.combination.chains_correlation, weight[0],
+           weight[1], weight[2]);
+    ck_assert_double_eq_tol(estimators.combination.chains_correlation, 4.0, 0.01);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_CHAINS], (1.0 - paths) * chains / (chains + pool), 0.01);
+    ck_assert_double_eq_tol(weight[ESTIMATOR_POOL], (1.0 - paths) * pool / (chains + pool), 0.02);
     estimators_destroy(&estimators);
 }
 END_TEST
@@ -351,7 +358,7 @@ START_TEST(test_excess)
 }
 END_TEST
 
-/* Rare light that chains and path tracing both find: each counts by its variance (_i 0), also where path tracing has not
+/* Rare light that chains and path tracing both find: each counts by its variance, the chains' by twice that (_i 0), also where path tracing has not
  * found it, whose variance is then that of finding it once (_i 1). */
 START_TEST(test_rare)
 {
@@ -376,10 +383,10 @@ START_TEST(test_rare)
     if (_i == 1)
         ck_assert_double_lt(rare, 0.02);
     else
-        ck_assert_double_eq_tol(rare, 0.25 / (0.25 + 1.0), 0.02);
-    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light, of the covariance with the chains' .8 times
-     * (1 - rare) / 4. */
-    double chains = 1.8, own = 0.005 + (_i == 1 ? 0.25 : 0.2), both = _i == 1 ? 0.2 : 0.16;
+        ck_assert_double_eq_tol(rare, 0.5 / (0.5 + 1.0), 0.02);
+    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light of the variance (1 - rare)^2 / 4 + rare^2, of the
+     * covariance with the chains' .8 times (1 - rare) / 4. */
+    double chains = 1.8, own = 0.005 + (_i == 1 ? 0.25 : 2.0 / 9.0), both = _i == 1 ? 0.2 : 0.2 * 2.0 / 3.0;
     ck_assert_double_eq_tol(estimators.combination.weight[ESTIMATOR_PATHS],
                             (chains - both) / (chains + own - 2.0 * both), 0.01);
     estimators_destroy(&estimators);

@@ -44,6 +44,7 @@ static void known_tell(Known *known, double range)
         known->combination.sums[s].weight[0] = (float)octaves(known, 3.0);
     known->combination.rare_chains = octaves(known, range);
     known->combination.rare_paths = octaves(known, range);
+    known->combination.chains_correlation = 2.0 * octaves(known, 1.0);
 }
 
 static void known_init(Known *known, unsigned seed)
@@ -68,29 +69,39 @@ static void known_destroy(Known *known)
 /* ---- weights ------------------------------------------------------------------------------------------------------ */
 
 /* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in the
- * tile or, if that is less, in all tiles together. factor: of the chains' variance in `all`. */
+ * tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are correlated.
+ * factor: of the chains' variance in `all`. */
 static double rare_weight(const Combination *all, const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                           double factor)
 {
-    double chains = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
-           all_chains = factor * all->rare_chains / samples[ESTIMATOR_CHAINS];
+    double doubt = 2.0 * all->chains_correlation / samples[ESTIMATOR_CHAINS],
+           chains = doubt * tile->spread[SERIES_RARE], all_chains = doubt * factor * all->rare_chains;
     return fmin(chains / (chains + tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS]),
                 all_chains / (all_chains + all->rare_paths / samples[ESTIMATOR_PATHS]));
 }
 
+/* A tile, samples of each estimator, the weight of path tracing's own rare light, and the correlation of the chains' errors. */
+typedef struct TileTerms {
+    const CombinationTile *tile;
+    const double *samples;
+    double v, correlation;
+} TileTerms;
+
 /* Variance of a tile in which path tracing has the weight w and the rest is split between chains (weight c) and pool.
  * The excess that pools clamp comes from chains and goes with chains and pool; the rare remainder of path tracing goes
  * with path tracing. Model of mmlt/combination.c: the rare remainder is correlated with the other estimate through the
- * chains' weight c in it. */
-static double combined_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, double w,
-                                double c)
+ * chains' weight c in it. What chains have part in has the variance of correlated errors. */
+static double combined_variance(const TileTerms *terms, double w, double c)
 {
-    double by_chains = tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
+    const CombinationTile *tile = terms->tile;
+    const double *samples = terms->samples, v = terms->v;
+    double by_chains = terms->correlation * tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
            rare =
                v * v * tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS] + (1.0 - v) * (1.0 - v) * by_chains;
     double others = c * c * tile->spread[ESTIMATOR_CHAINS] / samples[ESTIMATOR_CHAINS] +
                     (1.0 - c) * (1.0 - c) * tile->spread[ESTIMATOR_POOL] / samples[ESTIMATOR_POOL] +
                     tile->spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
+    others *= terms->correlation;
     double paths = tile->spread[ESTIMATOR_PATHS] / samples[ESTIMATOR_PATHS] + rare;
     if (!(w > 0.0))
         return others; /* also if path tracing has no samples */
@@ -100,27 +111,23 @@ static double combined_variance(const CombinationTile *tile, const double sample
 
 /* Ternary search in [0, 1] for the weight with the least variance, which is convex in either: of path tracing
  * (of_paths), or of chains relative to the pool. */
-static double weight_search(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, bool of_paths,
-                            double c)
+static double weight_search(const TileTerms *terms, bool of_paths, double c)
 {
     double low = 0.0, high = 1.0;
     for (int step = 0; step < 100; ++step) {
         double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-        double at_a =
-            of_paths ? combined_variance(tile, samples, v, a, c) : combined_variance(tile, samples, v, 0.0, a);
-        double at_b =
-            of_paths ? combined_variance(tile, samples, v, b, c) : combined_variance(tile, samples, v, 0.0, b);
+        double at_a = of_paths ? combined_variance(terms, a, c) : combined_variance(terms, 0.0, a);
+        double at_b = of_paths ? combined_variance(terms, b, c) : combined_variance(terms, 0.0, b);
         *(at_a < at_b ? &high : &low) = at_a < at_b ? b : a;
     }
     return 0.5 * (low + high);
 }
 
-static double least_variance(const CombinationTile *tile, const double samples[ESTIMATOR_COUNT], double v, double *w,
-                             double *c)
+static double least_variance(const TileTerms *terms, double *w, double *c)
 {
-    *c = weight_search(tile, samples, v, false, 0.0);
-    *w = weight_search(tile, samples, v, true, *c);
-    return combined_variance(tile, samples, v, *w, *c);
+    *c = weight_search(terms, false, 0.0);
+    *w = weight_search(terms, true, *c);
+    return combined_variance(terms, *w, *c);
 }
 
 /* The estimator's value in a channel of pixel i, in units of the film: different for all estimators, channels and
@@ -163,10 +170,11 @@ START_TEST(test_weights_known)
     TEST_NEAR(work * PIXELS, FIRST_WORTH * estimators_work(samples), 1.0);
     for (size_t i = 0; i < (_i == 2 ? PIXELS - 1 : PIXELS); ++i) {
         const CombinationTile *tile = &teacher.combination.known[combination_tile_of(&teacher.combination, i)];
-        double w = 0.0, v = _i == 1 ? 0.0 : rare_weight(&teacher.combination, tile, samples, 1.0),
-               c = weight_search(tile, samples, v, false, 0.0);
+        double w = 0.0, v = _i == 1 ? 0.0 : rare_weight(&teacher.combination, tile, samples, 1.0);
+        const TileTerms terms = {tile, samples, v, teacher.combination.chains_correlation};
+        double c = weight_search(&terms, false, 0.0);
         if (_i != 1)
-            least_variance(tile, samples, v, &w, &c);
+            least_variance(&terms, &w, &c);
         for (size_t k = 0; k < 3; ++k) {
             double expected =
                 (1.0 - w) * (c * estimator_value(ESTIMATOR_CHAINS, i, k) +
@@ -205,9 +213,10 @@ START_TEST(test_errors_known)
     combination_errors(&known.combination, samples, errors);
     for (size_t i = 0; i < tiles; ++i) {
         const CombinationTile *tile = &known.combination.known[i];
-        double v = rare_weight(&known.combination, tile, samples, 1.0);
+        const TileTerms terms = {tile, samples, rare_weight(&known.combination, tile, samples, 1.0),
+                                 known.combination.chains_correlation};
         double expected =
-            least_variance(tile, samples, v, &w, &c) / (tile->light * tile->light + dark_square(&known.combination));
+            least_variance(&terms, &w, &c) / (tile->light * tile->light + dark_square(&known.combination));
         TEST_NEAR(errors[i] / expected, 1.0, 1e-6);
     }
     known_destroy(&known);
@@ -238,20 +247,22 @@ static double picture_error(const Combination *combination, const double samples
         tile.spread[ESTIMATOR_CHAINS] *= factor;
         tile.spread[SERIES_EXCESS] *= factor;
         tile.spread[SERIES_RARE] *= factor;
-        double v = rare_weight(combination, &tile, samples, factor);
-        sum += (least_variance(&tile, samples, v, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
+        const TileTerms terms = {&tile, samples, rare_weight(combination, &tile, samples, factor),
+                                 combination->chains_correlation};
+        sum += (least_variance(&terms, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
                (tile.light * tile.light + dark);
     }
     return sum;
 }
 
-/* Among all divisions of the time into twentieths, the plan has the least error. */
+/* Among all divisions of the time into twentieths, and one that leaves chains and pool half of one each, the plan has the least
+ * error. */
 START_TEST(test_plan_known)
 {
     Known known;
     double costs[ESTIMATOR_COUNT];
     known_init(&known, 11);
-    known.combination.tiles[0] = 2; /* only two tiles, so that 171 plans are searched quickly */
+    known.combination.tiles[0] = 2; /* only two tiles, so that 172 plans are searched quickly */
     known.combination.tiles[1] = 1;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
         double one[ESTIMATOR_COUNT] = {0.0};
@@ -263,8 +274,8 @@ START_TEST(test_plan_known)
         StepRates best = {0};
         known_tell(&known, 4.0);
         for (int paths = 1; paths < 20; ++paths)
-            for (int pool = 1; paths + pool < 20; ++pool) {
-                double samples[ESTIMATOR_COUNT] = {(20 - paths - pool) / costs[ESTIMATOR_CHAINS],
+            for (double pool = paths < 19 ? 1.0 : 0.5; paths + pool < 20.0; ++pool) {
+                double samples[ESTIMATOR_COUNT] = {(20.0 - paths - pool) / costs[ESTIMATOR_CHAINS],
                                                    pool / costs[ESTIMATOR_POOL], paths / costs[ESTIMATOR_PATHS]};
                 double error = picture_error(&known.combination, samples, costs);
                 if (error < least) {
@@ -314,9 +325,10 @@ START_TEST(test_worth_known)
                 tile.spread[SERIES_EXCESS] *= factor;
                 tile.spread[SERIES_RARE] *= factor;
                 bool paths = of[ESTIMATOR_PATHS] > 0.0;
-                double v = paths ? rare_weight(&teacher.combination, &tile, of, factor) : 0.0;
-                double least = paths ? least_variance(&tile, of, v, &w, &c)
-                                     : combined_variance(&tile, of, v, 0.0, weight_search(&tile, of, v, false, 0.0));
+                const TileTerms terms = {&tile, of, paths ? rare_weight(&teacher.combination, &tile, of, factor) : 0.0,
+                                         teacher.combination.chains_correlation};
+                double least = paths ? least_variance(&terms, &w, &c)
+                                     : combined_variance(&terms, 0.0, weight_search(&terms, false, 0.0));
                 errors[k] += least / (tile.light * tile.light + dark);
             }
         Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
