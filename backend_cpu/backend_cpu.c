@@ -1,5 +1,6 @@
 #include "backend_cpu.h"
 
+#include "base/processors.h"
 #include "worker.h"
 
 #include <embree3/rtcore.h>
@@ -164,7 +165,7 @@ static void backend_cpu_close(Backend *backend)
 
 static uint thread_count_of(const BackendOptions *options)
 {
-    long count = options && options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    int count = options && options->threads > 0 ? options->threads : processors_usable();
     return count < 1 ? 1u : count > THREADS_MAX ? THREADS_MAX : (uint)count;
 }
 

@@ -113,6 +113,12 @@ static void worker_run_kernel(Worker *worker, const Step *step, void *const *arg
     worker->live_list = step->live_only && worker->live_list != LIVE_ANY ? LIVE_FEWER : LIVE_ANY;
 }
 
+static void splats_hand_on(Worker *worker, const Job *job, uint count)
+{
+    if (!job->inspect && job->sink->splats)
+        job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+}
+
 /* Runs step i of the list; returns the index of the next. */
 static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *const *arguments, uint count)
 {
@@ -134,8 +140,7 @@ static size_t worker_run_step(Worker *worker, const Job *job, size_t i, void *co
             return step->target;
         break;
     case STEP_SPLAT:
-        if (!job->inspect)
-            job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+        splats_hand_on(worker, job, count);
         worker->splatted = true;
         break;
     }
@@ -192,7 +197,7 @@ bool worker_run_chunk(Worker *worker, const Job *job, uint first, uint count)
     if (done && job->inspect)
         worker_show_state(worker, job, first, count);
     else if (done && job->list->words_per_item[BUFFER_SPLATS] > 0)
-        job->sink->splats(job->sink->context, worker->buffers[BUFFER_SPLATS], count, CHUNK_STRIDE);
+        splats_hand_on(worker, job, count);
     worker_sum_diagnostics(worker);
     return done;
 }

@@ -2,6 +2,7 @@
 
 #include "backend/bvh.h"
 #include "base/log.h"
+#include "base/processors.h"
 #include "device_film.h"
 #include "film_adders.h"
 #include "inspect.h"
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Default number of threads that add splats to the film; more would exceed what one device keeps busy. */
 #define ADDERS_DEFAULT 8
@@ -72,8 +72,8 @@ static void rounding_ask(OclDevice *device)
 
 static int adder_count(const BackendOptions *options)
 {
-    long count = options->threads > 0 ? options->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : options->threads > 0 || count < ADDERS_DEFAULT ? (int)count : ADDERS_DEFAULT;
+    int count = options->threads > 0 ? options->threads : processors_usable();
+    return options->threads > 0 || count < ADDERS_DEFAULT ? count : ADDERS_DEFAULT;
 }
 
 static bool environment_is(const char *name, const char *value)
@@ -236,7 +236,7 @@ static bool pass_run(Backend *backend, const FrameParams *frame, const StepList 
                      const atomic_int *stop, Error *error)
 {
     Launcher *launcher = &backend->launcher;
-    bool splats = list->words_per_item[BUFFER_SPLATS] > 0;
+    bool splats = list->words_per_item[BUFFER_SPLATS] > 0 && sink->splats;
     launcher->adds = splats && sink->sums && film_is_on_device(backend, frame, list, sink);
     launcher->stop = stop;
     launcher->whole = sink->whole;

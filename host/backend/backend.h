@@ -113,7 +113,7 @@ typedef enum FilmPlace {
 } FilmPlace;
 
 typedef struct BackendOptions {
-    int threads; /* 0: one per processor */
+    int threads; /* 0: by processors_usable (base/processors.h) */
     const char *device; /* device number or part of its name, for backends with several devices; NULL: the first */
     uint batch; /* items that a device takes through the list at a time; 0: chosen by the backend */
     FilmPlace film;
@@ -162,7 +162,8 @@ typedef struct BackendStatistics {
 
 /* Receives splats. Functions are called by many threads concurrently. */
 typedef struct SplatSink {
-    /* Receives the splat buffer of a finished chunk: `count` items at `stride`, fields as in layout/state.h. */
+    /* Receives the splat buffer of a finished chunk: `count` items at `stride`, fields as in layout/state.h. NULL: nobody
+     * needs the splats. */
     void (*splats)(void *context, const uint *splats, uint count, uint stride);
     /* Receives instead the sums made on a device (BackendOptions.film): `sum_words` words, laid out as in
      * camera/film_sum.h for the crop and film_exponent of the pass. NULL: not supported. */

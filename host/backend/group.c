@@ -1,23 +1,13 @@
 #include "backend/group.h"
 
+#include "backend/shares.h"
 #include "base/timing.h"
 #include "layout/diagnostics.h"
 
 #include <assert.h>
-#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Weight of the latest pass in a member's measured speed: averages over a few passes, so that one outlier has little
- * effect. */
-#define SPEED_BLEND 0.3
-
-/* Least share of a member, relative to the mean: a member that was slow once must be measured again. */
-#define SHARE_MIN 0.02
-
-/* Shares are multiples of this many items, to keep members' batches and chunks full. */
-#define SHARE_GRAIN 512u
 
 typedef struct GroupMember {
     BackendMember member;
@@ -62,37 +52,11 @@ static void *member_run(void *argument)
     return NULL;
 }
 
-/* Divides `items` in proportion to speed; members not yet measured count with the mean of the others. */
-static void shares_make(const Group *group, uint items, uint shares[BACKEND_GROUP_MAX])
-{
-    double known = 0.0, sum = 0.0, speeds[BACKEND_GROUP_MAX];
-    size_t measured = 0;
-    for (size_t i = 0; i < group->count; ++i) {
-        known += group->members[i].speed;
-        measured += group->members[i].speed > 0.0;
-    }
-    double mean = measured > 0 ? known / (double)measured : 1.0;
-    for (size_t i = 0; i < group->count; ++i) {
-        double speed = group->members[i].speed > 0.0 ? group->members[i].speed : mean;
-        speeds[i] = fmax(speed, SHARE_MIN * mean);
-        sum += speeds[i];
-    }
-    uint left = items;
-    for (size_t i = 0; i + 1 < group->count; ++i) {
-        double exact = (double)items * speeds[i] / sum;
-        uint share = (uint)(exact / SHARE_GRAIN + 0.5) * SHARE_GRAIN;
-        shares[i] = share < left ? share : left;
-        left -= shares[i];
-    }
-    shares[group->count - 1] = left;
-}
-
 static void member_learn(GroupMember *member)
 {
     if (!member->done || member->delivered < member->frame.pass.item_count || member->delivered == 0)
         return; /* stopped or failed, so its speed is unknown */
-    double speed = (double)member->delivered / fmax(member->seconds, 1e-6);
-    member->speed = member->speed > 0.0 ? member->speed + SPEED_BLEND * (speed - member->speed) : speed;
+    shares_learn(&member->speed, member->delivered, member->seconds);
 }
 
 /* Runs the first member on the calling thread, each other one on a thread of its own. A member whose thread cannot be
@@ -102,23 +66,25 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
 {
     Group *group = group_of(backend);
     const GroupRun run = {list, sink, stop};
-    uint shares[BACKEND_GROUP_MAX] = {0}, first = frame->pass.first_item;
+    double speeds[BACKEND_GROUP_MAX];
+    uint starts[BACKEND_GROUP_MAX + 1];
     pthread_t threads[BACKEND_GROUP_MAX];
     bool started[BACKEND_GROUP_MAX] = {false};
-    shares_make(group, frame->pass.item_count, shares);
+    for (size_t i = 0; i < group->count; ++i)
+        speeds[i] = group->members[i].speed;
+    shares_make(speeds, group->count, frame->pass.item_count, starts);
     for (size_t i = 0; i < group->count; ++i) {
         GroupMember *member = &group->members[i];
         member->frame = *frame;
-        member->frame.pass.first_item = first;
-        member->frame.pass.item_count = shares[i];
+        member->frame.pass.first_item += starts[i];
+        member->frame.pass.item_count = starts[i + 1] - starts[i];
         member->run = &run;
         member->delivered = 0;
         member->done = true;
         member->error = (Error){0};
-        first += shares[i];
     }
     for (size_t i = 1; i < group->count; ++i)
-        if (shares[i] > 0)
+        if (starts[i + 1] > starts[i])
             started[i] = pthread_create(&threads[i], NULL, member_run, &group->members[i]) == 0;
     bool done = true;
     uint64_t delivered = 0;
@@ -126,7 +92,7 @@ static bool group_run(Backend *backend, const FrameParams *frame, const StepList
         GroupMember *member = &group->members[i];
         if (started[i])
             pthread_join(threads[i], NULL);
-        else if (shares[i] > 0)
+        else if (starts[i + 1] > starts[i])
             member_run(member);
         member_learn(member);
         delivered += member->delivered;
@@ -168,6 +134,18 @@ static void device_append(char *out, size_t size, const char *name)
     }
 }
 
+void backend_statistics_add(BackendStatistics *sum, const BackendStatistics *own)
+{
+    sum->closest_rays += own->closest_rays;
+    sum->shadow_rays += own->shadow_rays;
+    sum->ray_seconds += own->ray_seconds;
+    sum->build_seconds += own->build_seconds;
+    sum->bytes += own->bytes;
+    sum->threads += own->threads;
+    sum->width += own->width;
+    device_append(sum->device, sizeof sum->device, own->device);
+}
+
 static void group_statistics(Backend *backend, BackendStatistics *statistics)
 {
     const Group *group = group_of(backend);
@@ -175,14 +153,7 @@ static void group_statistics(Backend *backend, BackendStatistics *statistics)
     for (size_t i = 0; i < group->count; ++i) {
         BackendStatistics own;
         group->members[i].member.interface->statistics(group->members[i].member.backend, &own);
-        statistics->closest_rays += own.closest_rays;
-        statistics->shadow_rays += own.shadow_rays;
-        statistics->ray_seconds += own.ray_seconds;
-        statistics->build_seconds += own.build_seconds;
-        statistics->bytes += own.bytes;
-        statistics->threads += own.threads;
-        statistics->width += own.width;
-        device_append(statistics->device, sizeof statistics->device, own.device);
+        backend_statistics_add(statistics, &own);
     }
 }
 

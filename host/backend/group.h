@@ -19,6 +19,9 @@ Backend *backend_group_create(const BackendMember *members, size_t count, Error 
 /* Its `open` is NULL: a group is made from open backends. */
 const BackendInterface *backend_group_interface(void);
 
+/* Adds the statistics of a member; "+" joins the names of devices. */
+void backend_statistics_add(BackendStatistics *sum, const BackendStatistics *own);
+
 /* The members if `of` is a group, else `of` itself. Returns their number; `out` has room for BACKEND_GROUP_MAX. */
 size_t backend_group_members(BackendMember of, BackendMember *out);
 

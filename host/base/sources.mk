@@ -20,6 +20,7 @@ libtwinlight_host_la_SOURCES += \
 	host/base/output_file.c host/base/output_file.h \
 	host/base/parallel.c host/base/parallel.h \
 	host/base/path_name.c host/base/path_name.h \
+	host/base/processors.c host/base/processors.h \
 	host/base/sample_statistics.c host/base/sample_statistics.h \
 	host/base/startup.c host/base/startup.h \
 	host/base/student.c host/base/student.h \

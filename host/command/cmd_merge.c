@@ -3,6 +3,7 @@
 
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "base/processors.h"
 #include "command/output_check.h"
 #include "command/part_output.h"
 #include "command/render_options.h"
@@ -12,7 +13,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const RenderOptionUse USES[] = {
     {OPTION_OUTPUT, NULL, "the image (required)"},
@@ -47,7 +47,7 @@ typedef struct MergeJob {
 
 static int threads_of(const RenderCommand *command)
 {
-    return command->threads > 0 ? command->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    return command->threads > 0 ? command->threads : processors_usable();
 }
 
 /* Neither image nor PNG may overwrite a part. */

@@ -1,5 +1,6 @@
 #include "mmlt/estimator.h"
 
+#include "backend/film_sink.h"
 #include "mmlt/tuning.h"
 
 static const double COSTS[ESTIMATOR_COUNT] = {
@@ -25,20 +26,12 @@ void estimator_film_params(const Estimator *estimator, FilmParams *params)
     params->reconstruction = estimator->film->reconstruction;
 }
 
-static void splats_drop(void *context, const uint *splats, uint count, uint stride)
-{
-    (void)context;
-    (void)splats;
-    (void)count;
-    (void)stride;
-}
-
 bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *frame, bool parts, uint64_t *delivered,
                     Error *error)
 {
-    SplatSink sink = {.splats = splats_drop};
+    SplatSink sink = {.splats = NULL};
     if (!estimator->hidden)
-        sink = render_run_sink(estimator->film);
+        sink = film_sink(estimator->film);
     sink.whole = !parts;
     *delivered = 0;
     return run->interface->run(run->backend, frame, &estimator->list, &sink, render_run_stop(run), delivered, error);

@@ -34,15 +34,10 @@ void photon_pass_destroy(PhotonPass *pass)
     free(pass->words);
 }
 
-static void no_splats(void *context, const uint *splats, uint count, uint stride)
-{
-    (void)context, (void)splats, (void)count, (void)stride;
-}
-
 bool photon_pass_run(PhotonPass *pass, uint count, bool *whole, Error *error)
 {
     const RenderRun *run = pass->run;
-    const SplatSink sink = {.splats = no_splats, .whole = true};
+    const SplatSink sink = {.whole = true};
     FrameParams frame = run->frame;
     uint64_t delivered = 0;
     frame.pass.first_item = 0;

@@ -3,6 +3,7 @@
 #include "render/layers.h"
 #include "render/run.h"
 
+#include "backend/film_sink.h"
 #include "backend/step_recorder.h"
 #include "base/timing.h"
 #include "layout/diagnostics.h"
@@ -88,7 +89,7 @@ static bool pass_run(PassLoop *loop, const SampleSpan *span, uint items, Error *
     run->frame.pass.item_count = items;
     run->frame.path.sobol = run->frame.path.sobol > 0 ? 1 + sequence : 0;
     run->frame.film.exponent = run->film->quantum_exponent;
-    const SplatSink sink = render_run_sink(run->halves ? &run->halves[span->half] : run->film);
+    const SplatSink sink = film_sink(run->halves ? &run->halves[span->half] : run->film);
     if (!run->interface->run(run->backend, &run->frame, &loop->list, &sink, render_run_stop_between(run), &delivered,
                              error)) {
         run->done += delivered; /* these are in the film all the same */

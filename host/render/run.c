@@ -8,16 +8,6 @@
 /* A number of seconds that no rendering takes, and that fits all integers. */
 #define SECONDS_MOST 1e15
 
-static void film_splats(void *context, const uint *splats, uint count, uint stride)
-{
-    film_add_splats(context, splats, count, stride);
-}
-
-static void film_sums(void *context, ulong *words)
-{
-    film_add_sums(context, words);
-}
-
 static const atomic_int NEVER = 0;
 
 const atomic_int *render_run_stop(const RenderRun *run)
@@ -67,11 +57,6 @@ void render_frame_seed(FrameParams *frame, uint64_t seed)
 {
     frame->pass.seed_low = (uint)seed;
     frame->pass.seed_high = (uint)(seed >> 32);
-}
-
-SplatSink render_run_sink(Film *film)
-{
-    return (SplatSink){.splats = film_splats, .sums = film_sums, .sum_words = film_sum_words(film), .context = film};
 }
 
 bool render_run_gather(RenderRun *run, Error *error)

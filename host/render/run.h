@@ -55,10 +55,6 @@ void render_totals_archive(Archive *archive, RenderTotals *totals);
 /* Sets the seed of a frame's random numbers. */
 void render_frame_seed(FrameParams *frame, uint64_t seed);
 
-/* A sink that adds splats to the film. Passes that use it must set frame.film.exponent to the film's
- * quantum_exponent. */
-SplatSink render_run_sink(Film *film);
-
 /* Brings the film up to date with its halves, if it has any. */
 bool render_run_gather(RenderRun *run, Error *error);
 

@@ -79,7 +79,7 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
         backend->pilot = false;
     } else {
         sequence_record(backend, frame);
-        if (backend->bright)
+        if (backend->bright && sink->splats)
             paths_record(frame, sink);
     }
     *items_done = frame->pass.item_count;
