@@ -7,6 +7,8 @@
 #include "base/startup.h"
 #include "command/cmd_compare.h"
 #include "command/command.h"
+#include "ranks/launcher.h"
+#include "ranks/ranks.h"
 
 #ifdef HAVE_EMBREE
 #include "backend_cpu.h"
@@ -85,7 +87,8 @@ static void version_print(FILE *stream, const BackendTable *backends)
     fprintf(stream, PACKAGE_NAME " " PACKAGE_VERSION " (commit %s)\nBackends:", build_commit());
     for (int i = 0; i < backends->count; ++i)
         fprintf(stream, " %s", backends->backends[i]->name);
-    fputs("\nLicence: Apache-2.0\n", stream);
+    const char *ranks = ranks_library();
+    fprintf(stream, "\nSeveral processes: %s\nLicence: Apache-2.0\n", ranks ? ranks : "no, it was built without MPI");
 }
 
 static int usage_fail(Error *error, const char *word)
@@ -108,6 +111,8 @@ static int usage_fail(Error *error, const char *word)
 static int command_run(const BackendTable *backends, int argc, char **argv, Error *error)
 {
     const char *word = argc > 1 ? argv[1] : NULL;
+    if (launcher_rank() > 0 && (!word || strcmp(word, "render") != 0))
+        return EXIT_OK; /* rank 0 alone does it */
     if (!word)
         return usage_fail(error, NULL);
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {

@@ -4,6 +4,7 @@ include host/base/sources.mk
 include host/image/sources.mk
 include host/film/sources.mk
 include host/backend/sources.mk
+include host/ranks/sources.mk
 include host/compare/sources.mk
 include host/scene/sources.mk
 include host/pbrt/sources.mk
@@ -12,7 +13,7 @@ include host/mmlt/sources.mk
 include host/serve/sources.mk
 include host/bench/sources.mk
 include host/command/sources.mk
-libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) $(MICROHTTPD_LIBS) -lm
+libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) $(MICROHTTPD_LIBS) $(MPI_LIBS) -lm
 
 # The commit goes into reports of measurements; the file changes only when that does.
 host/base/build_info.lo: build_commit.h

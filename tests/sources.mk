@@ -37,6 +37,7 @@ check_PROGRAMS += \
 	tests/test_platform_bits \
 	tests/test_plan \
 	tests/test_pool \
+	tests/test_ranks \
 	tests/test_reference \
 	tests/test_render \
 	tests/test_restore \
@@ -150,6 +151,7 @@ tests_test_options_SOURCES = tests/command/test_options.c
 tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
 tests_test_plan_SOURCES = tests/mmlt/test_plan.c
 tests_test_pool_SOURCES = tests/mmlt/test_pool.c
+tests_test_ranks_SOURCES = tests/ranks/test_ranks.c
 tests_test_reference_SOURCES = tests/render/test_reference.c
 tests_test_render_SOURCES = tests/render/test_render.c
 tests_test_restore_SOURCES = tests/render/test_restore.c
@@ -211,7 +213,8 @@ tests_test_emit_SOURCES = tests/light/test_emit.c \
 tests_test_film_SOURCES = tests/film/test_film.c \
 	tests/film/test_film_files.c \
 	tests/film/test_film_output.c \
-	tests/film/test_film_spread.c
+	tests/film/test_film_spread.c \
+	tests/film/test_film_words.c
 
 tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
 	tests/geometry/test_geometry_backend.c \
@@ -291,6 +294,7 @@ script_tests = \
 	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \
 	tests/command/test_merge.sh \
+	tests/command/test_mpi.sh \
 	tests/command/test_outputs.sh \
 	tests/command/test_readme.sh
 dist_check_SCRIPTS += $(script_tests)

@@ -148,6 +148,14 @@ typedef struct BackendSpan {
     uint64_t begin, end; /* nanoseconds from an arbitrary origin; one clock for all tracks */
 } BackendSpan;
 
+/* What the processes of a rendering have sent each other in its passes (ranks/ranks.h); zeros for a single one. */
+typedef struct ExchangeStatistics {
+    uint ranks;
+    int threads; /* of all ranks */
+    uint64_t passes, bytes; /* of all ranks together */
+    double seconds, latest_seconds; /* in which nothing was computed: in all passes, in the latest one */
+} ExchangeStatistics;
+
 /* Rays and time since the backend was opened. */
 typedef struct BackendStatistics {
     uint64_t closest_rays;
@@ -155,9 +163,10 @@ typedef struct BackendStatistics {
     double ray_seconds; /* in ray queries, summed over threads */
     double build_seconds; /* time to build the acceleration structure */
     size_t bytes; /* memory of device or backend now in use */
-    int threads;
+    int threads; /* of this process */
     uint width; /* items that a device must work on at a time to be busy: a pass of few takes as long as one of these */
     char device[256]; /* its name */
+    ExchangeStatistics exchange;
 } BackendStatistics;
 
 /* Receives splats. Functions are called by many threads concurrently. */

@@ -52,21 +52,31 @@ static bool signal_catch(int signal_number, const struct sigaction *action)
            (old.sa_handler == SIG_IGN || sigaction(signal_number, action, NULL) == 0);
 }
 
-bool interrupt_install(Error *error)
+static bool signals_catch(const int *signals, size_t count, Error *error)
 {
-    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGPIPE};
-    const size_t count = sizeof SIGNALS / sizeof SIGNALS[0];
     struct sigaction action;
     memset(&action, 0, sizeof action);
     action.sa_handler = interrupt_handle;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     for (size_t i = 0; i < count; ++i)
-        sigaddset(&action.sa_mask, SIGNALS[i]);
+        sigaddset(&action.sa_mask, signals[i]);
     for (size_t i = 0; i < count; ++i)
-        if (!signal_catch(SIGNALS[i], &action))
+        if (!signal_catch(signals[i], &action))
             return error_errno(error, "install", "signal handlers");
     return true;
+}
+
+bool interrupt_install(Error *error)
+{
+    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGPIPE};
+    return signals_catch(SIGNALS, sizeof SIGNALS / sizeof SIGNALS[0], error);
+}
+
+bool interrupt_install_user(Error *error)
+{
+    static const int SIGNALS[] = {SIGUSR1, SIGUSR2};
+    return signals_catch(SIGNALS, sizeof SIGNALS / sizeof SIGNALS[0], error);
 }
 
 const atomic_int *interrupt_flag(void)

@@ -12,6 +12,7 @@
 #include "mmlt/chain_list.h"
 #include "mmlt/scheme.h"
 #include "pbrt/import.h"
+#include "ranks/ranks.h"
 #include "render/checkpoint.h"
 #include "render/report.h"
 #include "render/shard.h"
@@ -77,15 +78,21 @@ static bool scene_load(RenderJob *job, Error *error)
     return true;
 }
 
+static BackendOptions backend_options(const RenderCommand *command)
+{
+    return (BackendOptions){.threads = command->threads,
+                            .batch = command->batch,
+                            .film = command->film_place,
+                            .record_spans = command->trace != NULL};
+}
+
 static bool backend_build(RenderJob *job, Error *error)
 {
     const BackendScene view = scene_backend_view(&job->scene);
     const RenderCommand *command = job->command;
-    const BackendOptions options = {.threads = command->threads,
-                                    .batch = command->batch,
-                                    .film = command->film_place,
-                                    .record_spans = command->trace != NULL};
-    return backend_choices_open(&command->backends, &view, &options, &job->backend, error);
+    const BackendOptions options = backend_options(command);
+    const RankSetup setup = {.choices = &command->backends, .options = &options};
+    return ranks_open(&view, &setup, &job->backend, error);
 }
 
 /* ---- rendering -------------------------------------------------------------------------------------------------- */
@@ -229,6 +236,16 @@ static bool shards_check(RenderJob *job, Error *error)
     return !shard_given(&options) || shard_check(&options, !job->integrator->render, pixels, error);
 }
 
+/* Whether ranks can share what the command asks for. */
+static bool ranks_suit(const RenderCommand *command, Error *error)
+{
+    const char *option = command->verify ? "verify" : command->trace ? "trace" : NULL;
+    if (ranks_count() == 1 || !option)
+        return true;
+    error_set(error, "--%s is for a single process, but there are %d ranks", option, ranks_count());
+    return error_fix(error, "start the program without a launcher");
+}
+
 static int job_run(RenderJob *job, Error *error)
 {
     const RenderCommand *command = job->command;
@@ -236,8 +253,11 @@ static int job_run(RenderJob *job, Error *error)
     if (!job->integrator || !render_settings_check(command, job->integrator, error) ||
         !render_settings_layers(command, job->integrator, &job->layers.wanted, error))
         return EXIT_USAGE;
-    if (!job_names_fill(job, error))
+    if (!ranks_suit(command, error) || !job_names_fill(job, error))
         return EXIT_USAGE;
+    int status;
+    if (!ranks_greet(&status, error))
+        return status;
     if (command->output && !output_check(command->output, error))
         return EXIT_FAILED; /* checked before loading the scene, which may take long */
     const CheckpointOptions checkpoint = job_checkpoint_options(command);
@@ -253,6 +273,7 @@ static int job_run(RenderJob *job, Error *error)
         return job_verify(job, error);
     if (!job_outputs_name(job, error) || !job_outputs_check(job, error) ||
         !stage_run(backend_build, job, &job->build, error) || !interrupt_install(error) ||
+        (ranks_count() > 1 && !interrupt_install_user(error)) ||
         !bad_chains_begin(&job->bad_chains, command->dump_bad, error))
         return EXIT_FAILED;
     if (!stage_run(film_render, job, &job->rendering, error)) {
@@ -269,19 +290,15 @@ static int job_run(RenderJob *job, Error *error)
     return job->result.stopped ? EXIT_STOPPED : EXIT_OK;
 }
 
-int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
+/* The main function of rank 0. */
+static int command_render(RenderCommand *command, Error *error)
 {
-    RenderCommand command = {
-        .png = true, .frame = -1, .photons = PHOTONS_DEFAULT, .reconstruction = RECONSTRUCTION_SPLAT};
-    OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, error);
-    if (end != OPTIONS_READ)
-        return options_status(end);
-    if (!command.integrator)
-        command.integrator = "mmlt";
-    log_level_set(command.quiet ? LOG_WARNING : LOG_INFO);
     RenderJob job;
+    if (!command->integrator)
+        command->integrator = "mmlt";
+    log_level_set(command->quiet ? LOG_WARNING : LOG_INFO);
     memset(&job, 0, sizeof job);
-    job.command = &command;
+    job.command = command;
     job.start = timing_now();
     scene_init(&job.scene);
     int status = job_run(&job, error);
@@ -294,5 +311,36 @@ int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error
     render_layers_destroy(&job.layers);
     film_destroy(&job.film);
     scene_destroy(&job.scene);
+    return status;
+}
+
+/* The main function of the other ranks, which need the options of backends alone. What is wrong with them is told by rank 0. */
+static int command_serve(const RenderCommand *command, OptionsEnd end, const Error *error)
+{
+    const BackendOptions options = backend_options(command);
+    const RankSetup setup = {.choices = &command->backends,
+                             .options = &options,
+                             .status = end == OPTIONS_WRONG ? options_status(end) : EXIT_OK,
+                             .error = *error};
+    ranks_serve(&setup);
+    return EXIT_OK;
+}
+
+int cmd_render(const BackendTable *backends, int argc, char **argv, Error *error)
+{
+    RenderCommand command = {
+        .png = true, .frame = -1, .photons = PHOTONS_DEFAULT, .reconstruction = RECONSTRUCTION_SPLAT};
+    Error own = {0};
+    if (!ranks_begin(error))
+        return EXIT_FAILED;
+    OptionsEnd end = render_options_parse(&command, &OPTIONS, backends, argc, argv, &own);
+    int status;
+    if (ranks_number() > 0) {
+        status = command_serve(&command, end, &own);
+    } else {
+        *error = own;
+        status = end == OPTIONS_READ ? command_render(&command, error) : options_status(end);
+    }
+    ranks_end();
     return status;
 }

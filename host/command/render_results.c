@@ -19,6 +19,16 @@ static void goal_report(const RenderJob *job)
                     percent * job->command->error.goal);
 }
 
+/* What ranks have exchanged. */
+static void exchange_report(const RenderResult *result)
+{
+    const ExchangeStatistics *exchange = &result->backend.exchange;
+    if (exchange->ranks > 0 && exchange->passes > 0)
+        log_message(LOG_INFO, "%u ranks exchanged %.3g MB per pass in %.3g s of %.3g s (%llu passes)", exchange->ranks,
+                    1e-6 * (double)exchange->bytes / (double)exchange->passes, exchange->seconds, result->seconds,
+                    (unsigned long long)exchange->passes);
+}
+
 void job_summary(const RenderJob *job)
 {
     const RenderResult *result = &job->result;
@@ -29,6 +39,7 @@ void job_summary(const RenderJob *job)
     progress_rate((double)(result->backend.closest_rays + result->backend.shadow_rays) * per_second, rays, sizeof rays);
     log_message(LOG_INFO, "%s%.6g samples per pixel in %s (%ssamples/s, %srays/s)", result->stopped ? "stopped: " : "",
                 result->samples_per_pixel, seconds, samples, rays);
+    exchange_report(result);
     if (job->command->error.goal > 0.0)
         goal_report(job);
     if (job->left)

@@ -248,6 +248,13 @@ void film_add_sums(Film *film, ulong *words)
     counters_add(&adding);
 }
 
+void film_words_add(ulong *words, const ulong *more, size_t count)
+{
+    const FilmAdding alone = {.shared = false};
+    for (size_t i = 0; i < count; ++i)
+        word_add(&alone, words + i, more[i]);
+}
+
 static bool film_merge_check(const Film *film, const Film *from, Error *error)
 {
     if (film->width != from->width || film->height != from->height)

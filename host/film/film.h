@@ -81,6 +81,9 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride);
 size_t film_sum_words(const Film *film);
 void film_add_sums(Film *film, ulong *words);
 
+/* Adds sums to others of the same kind, saturating as those of films do. */
+void film_words_add(ulong *words, const ulong *more, size_t count);
+
 /* Adds the sums and counts of `from`. Fails, naming the difference, unless size, crop, quantum and the presence of
  * light sums agree. */
 bool film_merge(Film *film, const Film *from, Error *error);

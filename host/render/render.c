@@ -22,6 +22,9 @@
 
 /* Target duration of a pass: short, so that saving, stopping and progress are prompt. */
 #define PASS_SECONDS 0.25
+/* Where ranks exchange sums after a pass, it is so long that this takes no more than a part of it, up to a limit. */
+#define EXCHANGE_PART 0.05
+#define PASS_SECONDS_MOST 4.0
 #define PASS_ITEMS_MIN 16384u
 #define PASS_ITEMS_MAX (1u << 28)
 
@@ -100,11 +103,22 @@ static bool pass_run(PassLoop *loop, const SampleSpan *span, uint items, Error *
     return true;
 }
 
+/* Duration of the next pass: no longer than what is left of the time, unless that is less than PASS_SECONDS. */
+static double pass_seconds(const RenderRun *run, double elapsed)
+{
+    BackendStatistics statistics;
+    run->interface->statistics(run->backend, &statistics);
+    double seconds = fmin(statistics.exchange.latest_seconds / EXCHANGE_PART, PASS_SECONDS_MOST);
+    if (run->options->seconds > 0.0)
+        seconds = fmin(seconds, run->options->seconds - elapsed);
+    return fmax(seconds, PASS_SECONDS);
+}
+
 /* Size of the next pass, in items, from the speed so far; at most `left`. */
 static uint pass_items(const PassLoop *loop, double elapsed, uint64_t left)
 {
     uint64_t fresh = loop->run->done - loop->run->past.done;
-    double wanted = elapsed > 0.0 ? PASS_SECONDS * (double)fresh / elapsed : PASS_ITEMS_MIN;
+    double wanted = elapsed > 0.0 ? pass_seconds(loop->run, elapsed) * (double)fresh / elapsed : PASS_ITEMS_MIN;
     uint items = wanted < PASS_ITEMS_MIN ? PASS_ITEMS_MIN : wanted > PASS_ITEMS_MAX ? PASS_ITEMS_MAX : (uint)wanted;
     return left < items ? (uint)left : items;
 }

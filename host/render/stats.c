@@ -52,6 +52,16 @@ static void stats_rays(JsonWriter *json, const RenderResult *result)
     json_object_end(json);
 }
 
+static void stats_ranks(JsonWriter *json, const ExchangeStatistics *exchange)
+{
+    json_object_begin(json, "ranks");
+    json_unsigned(json, "count", exchange->ranks);
+    json_unsigned(json, "passes", exchange->passes);
+    json_unsigned(json, "exchanged_bytes", exchange->bytes);
+    json_number(json, "exchange_seconds", exchange->seconds);
+    json_object_end(json);
+}
+
 const char *stats_chain_kind(int kind)
 {
     static const char *const KINDS[CHAIN_KINDS] = {"all", "light", "camera", "large"};
@@ -180,7 +190,8 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_string(&json, "backend", stats->backend);
     json_string(&json, "device", result->backend.device);
     json_unsigned(&json, "seed", stats->seed);
-    json_integer(&json, "threads", result->backend.threads);
+    json_integer(&json, "threads",
+                 result->backend.exchange.ranks > 0 ? result->backend.exchange.threads : result->backend.threads);
     json_number(&json, "samples_per_pixel", result->samples_per_pixel);
     json_unsigned(&json, "samples", result->samples);
     json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
@@ -190,6 +201,8 @@ static void stats_print(FILE *stream, const RenderStats *stats)
         stats_error(&json, stats);
     stats_seconds(&json, stats);
     stats_rays(&json, result);
+    if (result->backend.exchange.ranks > 0)
+        stats_ranks(&json, &result->backend.exchange);
     if (result->chains.steps > 0)
         stats_chains(&json, &result->chains);
     json_unsigned(&json, "peak_memory_bytes", timing_peak_memory());

@@ -3,6 +3,7 @@
 #include "support/test_util.h"
 
 #include "backend/choice.h"
+#include "backend/shares.h"
 #include "layout/diagnostics.h"
 
 #include <stdlib.h>
@@ -133,6 +134,24 @@ START_TEST(test_shares_by_speed)
     ck_assert_uint_lt(backends[2].count, backends[1].count / 4);
     ck_assert_int_eq(backends[2].passes, 8);
     backend_group_interface()->close(group);
+}
+END_TEST
+
+/* With fewer grains of items than members, shares differ by no more than one grain. */
+START_TEST(test_shares_of_many)
+{
+    enum { MEMBERS = 1000 };
+    double speeds[MEMBERS];
+    uint starts[MEMBERS + 1];
+    for (int i = 0; i < MEMBERS; ++i)
+        speeds[i] = 1.0 + 1e-3 * (double)(i % 7);
+    for (uint grains = 1; grains < 3 * MEMBERS; grains += 500) {
+        shares_make(speeds, MEMBERS, grains * SHARE_GRAIN + 5, starts);
+        ck_assert_uint_eq(starts[0], 0);
+        ck_assert_uint_eq(starts[MEMBERS], grains * SHARE_GRAIN + 5);
+        for (int i = 0; i < MEMBERS; ++i)
+            ck_assert_uint_le(starts[i + 1] - starts[i], (grains / MEMBERS + 2) * SHARE_GRAIN);
+    }
 }
 END_TEST
 
@@ -309,6 +328,7 @@ int main(void)
     tcase_set_timeout(tcase, 60.0);
     tcase_add_test(tcase, test_items_once);
     tcase_add_test(tcase, test_shares_by_speed);
+    tcase_add_test(tcase, test_shares_of_many);
     tcase_add_test(tcase, test_failure);
     tcase_add_test(tcase, test_stop);
     tcase_add_test(tcase, test_sums);

@@ -10,6 +10,7 @@
 TCase *film_output_tcase(void);
 TCase *film_spread_tcase(void);
 TCase *film_files_tcase(void);
+TCase *film_words_tcase(void);
 
 static const int CROP_WHOLE[4] = {0, 0, 4, 3};
 
@@ -628,5 +629,6 @@ int main(void)
     suite_add_tcase(suite, film_output_tcase());
     suite_add_tcase(suite, film_spread_tcase());
     suite_add_tcase(suite, film_files_tcase());
+    suite_add_tcase(suite, film_words_tcase());
     return test_run(suite);
 }
