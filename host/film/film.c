@@ -240,11 +240,18 @@ size_t film_sum_words(const Film *film)
            film_depth_words(pixels, film->depth_kinds, film->depth_last);
 }
 
+static void row_merge(void *context, size_t row)
+{
+    const FilmAdding *adding = context;
+    size_t width = adding->film.x1 - adding->film.x0;
+    pixels_add(adding, row * width, (row + 1) * width);
+}
+
 void film_add_sums(Film *film, ulong *words)
 {
     FilmAdding adding = {.film = film_view(film), .from = film_view(film), .pixels = film_pixels(film), .shared = true};
     film_view_words(&adding.from, words, (uint)adding.pixels);
-    pixels_add(&adding, 0, adding.pixels);
+    rows_run(film, row_merge, &adding);
     counters_add(&adding);
 }
 
@@ -276,13 +283,6 @@ static bool film_merge_check(const Film *film, const Film *from, Error *error)
             return error_set(error, "merged films have more than %llu samples in a pixel",
                              (unsigned long long)film_samples_most(film->reconstruction));
     return true;
-}
-
-static void row_merge(void *context, size_t row)
-{
-    const FilmAdding *adding = context;
-    size_t width = adding->film.x1 - adding->film.x0;
-    pixels_add(adding, row * width, (row + 1) * width);
 }
 
 bool film_merge(Film *film, const Film *from, Error *error)

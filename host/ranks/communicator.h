@@ -50,6 +50,12 @@ typedef struct PassWords {
     uint first, count, fields, stride;
 } PassWords;
 
+/* Whether there are any: only then may they be sent and received. */
+static inline bool pass_words_any(const PassWords *words)
+{
+    return words->fields > 0 && words->count > 0;
+}
+
 void pass_words_send(int to, const PassWords *words);
 void pass_words_receive(int from, const PassWords *words);
 

@@ -133,12 +133,13 @@ bool ranks_open(const BackendScene *scene, const RankSetup *setup, BackendMember
     scene_send(scene);
     bool good = backend_choices_open(setup->choices, scene, setup->options, &local, error);
     good = reports_receive(reports, good, error);
+    *opened = (BackendMember){ranks_backend_interface(), NULL};
     if (good)
-        good = ranks_backend_create(local, reports, scene->tables, opened, error);
+        opened->backend = ranks_backend_create(local, reports, scene->tables, error);
     else if (local.backend)
         local.interface->close(local.backend);
     free(reports);
-    return good;
+    return opened->backend != NULL;
 }
 
 void ranks_end(void)

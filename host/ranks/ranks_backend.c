@@ -57,7 +57,7 @@ static void pass_send(RanksBackend *ranks, const FrameParams *frame, const StepL
     pass_order_send(&ranks->cache, &ranks->broadcast, list);
     for (int rank = 1; rank < ranks->count; ++rank) {
         const PassWords words = words_of(ranks, frame, list, rank);
-        if (words.fields > 0 && words.count > 0)
+        if (pass_words_any(&words))
             pass_words_send(rank, &words);
     }
 }
@@ -88,7 +88,7 @@ static void pass_collect(RanksBackend *ranks, const FrameParams *frame, const St
 {
     for (int rank = 1; rank < ranks->count; ++rank) {
         const PassWords words = words_of(ranks, frame, list, rank);
-        if (words.fields > 0 && words.count > 0)
+        if (pass_words_any(&words))
             pass_words_receive(rank, &words);
     }
 }
@@ -201,35 +201,44 @@ static void ranks_close(Backend *backend)
     free(ranks);
 }
 
-static const BackendInterface INTERFACE = {.name = "ranks",
-                                           .close = ranks_close,
-                                           .run = ranks_run,
-                                           .diagnostics = ranks_diagnostics,
-                                           .statistics = ranks_statistics};
+const BackendInterface *ranks_backend_interface(void)
+{
+    static const BackendInterface interface = {.name = "ranks",
+                                               .close = ranks_close,
+                                               .run = ranks_run,
+                                               .diagnostics = ranks_diagnostics,
+                                               .statistics = ranks_statistics};
+    return &interface;
+}
 
-bool ranks_backend_create(BackendMember local, const RankReport *reports, const uint *tables, BackendMember *made,
-                          Error *error)
+/* Allocates what has an entry for each rank. */
+static bool arrays_make(RanksBackend *ranks, size_t count, Error *error)
+{
+    ranks->speeds = calloc(count, sizeof *ranks->speeds);
+    ranks->starts = calloc(count + 1, sizeof *ranks->starts);
+    ranks->reports = calloc(count, sizeof *ranks->reports);
+    return (ranks->speeds && ranks->starts && ranks->reports) ||
+           error_memory(error, count * sizeof *ranks->reports, "the ranks");
+}
+
+Backend *ranks_backend_create(BackendMember local, const RankReport *reports, const uint *tables, Error *error)
 {
     size_t count = (size_t)communicator_count();
     RanksBackend *ranks = calloc(1, sizeof *ranks);
-    if (ranks) {
-        *ranks = (RanksBackend){.local = local,
-                                .count = (int)count,
-                                .speeds = calloc(count, sizeof *ranks->speeds),
-                                .starts = calloc(count + 1, sizeof *ranks->starts),
-                                .reports = calloc(count, sizeof *ranks->reports),
-                                .tables = tables,
-                                .broadcast = communicator_broadcast(),
-                                .exchange = {.ranks = (uint)count}};
-        *made = (BackendMember){&INTERFACE, (Backend *)(void *)ranks};
-        if (ranks->speeds && ranks->starts && ranks->reports) {
-            memcpy(ranks->reports, reports, count * sizeof *reports);
-            return true;
-        }
-        ranks_close(made->backend);
-    } else {
+    if (!ranks) {
+        error_memory(error, sizeof *ranks, "the ranks");
         local.interface->close(local.backend);
+        return NULL;
     }
-    *made = (BackendMember){NULL, NULL};
-    return error_memory(error, count * sizeof(RankReport), "the ranks");
+    ranks->local = local;
+    ranks->count = (int)count;
+    ranks->tables = tables;
+    ranks->broadcast = communicator_broadcast();
+    ranks->exchange.ranks = (uint)count;
+    if (!arrays_make(ranks, count, error)) {
+        ranks_close((Backend *)(void *)ranks);
+        return NULL;
+    }
+    memcpy(ranks->reports, reports, count * sizeof *reports);
+    return (Backend *)(void *)ranks;
 }

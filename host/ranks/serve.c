@@ -22,6 +22,7 @@ typedef struct RankServer {
     Archive broadcast;
     FilmWords film; /* of the current pass */
     bool films; /* it has one */
+    PassWords words; /* of this rank's items */
     bool stopped; /* the stop of the current pass has been received */
     RankReport report;
 } RankServer;
@@ -76,31 +77,35 @@ static void slice_watch(RankServer *server, Slice *slice, atomic_int *stop)
     slice_join(slice);
 }
 
-static void pass_compute(RankServer *server, const RankCommand *command)
+/* Receives a pass and the words of this rank's items; aborts if there is no memory for them. */
+static void pass_receive(RankServer *server, const RankCommand *command)
 {
-    RankReport *report = &server->report;
     PassCache *cache = &server->cache;
     const PassOrder *order = &cache->order;
     Error error = {0};
-    server->film.count = 0;
-    server->stopped = false;
     if (!pass_order_receive(cache, &server->broadcast, &error))
         communicator_abort(&error);
     server->films = order->sum_words > 0;
+    server->stopped = false;
     if (server->films && !pass_film_begin(cache, &server->film, server->scene.tables, &error))
         communicator_abort(&error);
-    const PassWords words = {cache->list.pass_words, command->first, command->count, order->pass_fields,
-                             order->pass_stride};
-    bool has_words = words.fields > 0 && words.count > 0;
-    if (has_words)
-        pass_words_receive(0, &words);
+    server->words =
+        (PassWords){cache->list.pass_words, command->first, command->count, order->pass_fields, order->pass_stride};
+    if (pass_words_any(&server->words))
+        pass_words_receive(0, &server->words);
+}
+
+static void pass_compute(RankServer *server, const RankCommand *command)
+{
+    RankReport *report = &server->report;
+    const PassOrder *order = &server->cache.order;
     SplatSink sink = {.splats = NULL};
     if (server->films)
         sink = film_sink(&server->film.film);
     sink.whole = order->whole;
     atomic_int stop = 0;
     Slice slice = {
-        .backend = server->backend, .frame = order->frame, .list = &cache->list, .sink = &sink, .stop = &stop};
+        .backend = server->backend, .frame = order->frame, .list = &server->cache.list, .sink = &sink, .stop = &stop};
     slice.frame.pass.first_item = command->first;
     slice.frame.pass.item_count = command->count;
     slice_start(&slice);
@@ -110,8 +115,8 @@ static void pass_compute(RankServer *server, const RankCommand *command)
     report->good = slice.good;
     report->error = slice.error;
     report_send(server);
-    if (has_words)
-        pass_words_send(0, &words);
+    if (pass_words_any(&server->words))
+        pass_words_send(0, &server->words);
 }
 
 static void pass_finish(RankServer *server, const RankCommand *command)
@@ -144,6 +149,7 @@ static void commands_follow(RankServer *server)
             backend_open(server);
             break;
         case COMMAND_PASS:
+            pass_receive(server, &command);
             pass_compute(server, &command);
             break;
         case COMMAND_FINISH:

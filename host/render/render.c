@@ -103,13 +103,13 @@ static bool pass_run(PassLoop *loop, const SampleSpan *span, uint items, Error *
     return true;
 }
 
-/* Duration of the next pass: no longer than what is left of the time, unless that is less than PASS_SECONDS. */
+/* Duration of the next pass. One that is longer because of an exchange should not outlast the time given. */
 static double pass_seconds(const RenderRun *run, double elapsed)
 {
     BackendStatistics statistics;
     run->interface->statistics(run->backend, &statistics);
     double seconds = fmin(statistics.exchange.latest_seconds / EXCHANGE_PART, PASS_SECONDS_MOST);
-    if (run->options->seconds > 0.0)
+    if (run->options->seconds > elapsed)
         seconds = fmin(seconds, run->options->seconds - elapsed);
     return fmax(seconds, PASS_SECONDS);
 }
