@@ -5,6 +5,8 @@
 #   bench_opencl.sh  samples/s of a device with and without overlap, with its own film, and of the CPU; rays/s of both
 #   bench_mmlt.sh    gains of sorting and grouping chains, acceptance rates by depth, on the CPU and the first device
 #   bench_error.sh   variance against time of all integrators on BENCH_SCENES
+# By hand, under Open MPI:
+#   bench_mpi.sh     two ranks against one process, what they exchange, and a model of many nodes
 # By hand, with a second program built with --enable-double:
 #   bench_double.sh  differences between pictures of both
 # By hand, with a compiler's cache in PATH, for an hour:
@@ -28,7 +30,7 @@ EXTRA_PROGRAMS += bench/block_difference
 bench_block_difference_SOURCES = bench/block_difference.c
 bench_block_difference_LDADD = libtwinlight_host.la -lm
 CLEANFILES += bench/block_difference$(EXEEXT) bench/bench_bvh$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT)
-EXTRA_DIST += bench/ablation.txt bench/ablation_summary.awk bench/bench_ablation.sh bench/bench.sh bench/bench_util.h bench/bench_double.sh bench/bench_error.sh bench/bench_mmlt.sh bench/bench_opencl.sh bench/bench_real.sh bench/bench_render.sh
+EXTRA_DIST += bench/ablation.txt bench/ablation_summary.awk bench/bench_ablation.sh bench/bench.sh bench/bench_util.h bench/bench_double.sh bench/bench_error.sh bench/bench_mmlt.sh bench/bench_mpi.sh bench/bench_opencl.sh bench/bench_real.sh bench/bench_render.sh
 
 .PHONY: bench
 bench: twinlight$(EXEEXT) bench/make_ply$(EXEEXT) bench/bench_rays$(EXEEXT) bench/bench_bvh$(EXEEXT)

@@ -28,6 +28,7 @@ static const RenderOptionSet OPTIONS = {
     .footer = "Switches of mmlt (--mlt=KEY=VALUE,...):\n" MLT_HELP "\n"
               "SIGINT, SIGTERM and SIGHUP end the rendering early: what is finished is written, and the exit status\n"
               "is 130. Another such signal at least a second later ends the program at once.\n"
+              "Under mpirun several processes render one picture.\n"
               "More: man twinlight-render.",
     .output_ending = ".exr",
     .depth_low = 1,

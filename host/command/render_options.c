@@ -50,7 +50,7 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_NO_BLEND] = {"no-blend", 0, NULL, NULL},
     [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print how much memory its chains take, and exit"},
     [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
-    [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor)"},
+    [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor that may be used)"},
     [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
     [OPTION_PHOTONS] =
         {"photons", 0, "N",

@@ -214,6 +214,9 @@ likely() {
     host/mmlt/chain_population.c) echo test_chain_population test_restore test_layers ;;
     host/mmlt/plan.c) echo test_plan test_combination:known ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;
+    host/ranks/* | host/base/processors.c | host/main.c) echo test_ranks command/test_mpi.sh ;;
+    host/backend/shares.c) echo test_group ;;
+    host/render/render.c) echo test_render:determinism ;;
     host/render/shard.c | host/render/merge.c | host/render/part.c | host/command/part_output.c | host/command/cmd_merge.c)
         echo test_shard command/test_merge.sh ;;
     host/base/archive* | host/render/checkpoint.c | host/render/identity.c | host/render/run.c | host/mmlt/mmlt_archive.c)

@@ -1,10 +1,12 @@
 /* Whole images: analytic scenes, furnaces, determinism, references. */
+#include "backend_cpu.h"
 #include "film/pixel_order.h"
 #include "layout/item.h"
 #include "support/render_fixture.h"
 #include "support/test_util.h"
 
 #include <string.h>
+#include <time.h>
 
 #define CAMERA_INSIDE                                                                                                  \
     "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"                                             \
@@ -368,6 +370,57 @@ START_TEST(test_crop_has_the_bits_of_the_whole)
 }
 END_TEST
 
+/* ---- the length of passes ---------------------------------------------------------------------------------------- */
+
+static double exchange_seconds; /* that a pass is said to have taken */
+static uint items_most; /* of a pass */
+
+/* A million items a second, without a picture. */
+static bool steady_run(Backend *backend, const FrameParams *frame, const StepList *list, const SplatSink *sink,
+                       const atomic_int *stop, uint64_t *items_done, Error *error)
+{
+    (void)backend, (void)list, (void)sink, (void)stop, (void)error;
+    uint items = frame->pass.item_count;
+    const struct timespec pause = {items / 1000000u, items % 1000000u * 1000L};
+    nanosleep(&pause, NULL);
+    items_most = items > items_most ? items : items_most;
+    if (items_done)
+        *items_done = items;
+    return true;
+}
+
+static void exchanging_statistics(Backend *backend, BackendStatistics *statistics)
+{
+    backend_cpu()->statistics(backend, statistics);
+    statistics->exchange.latest_seconds = exchange_seconds;
+}
+
+/* Passes take a quarter of a second, or 20 times as long as an exchange. */
+START_TEST(test_passes_are_long_where_exchanges_are)
+{
+    BackendInterface steady = *backend_cpu();
+    steady.run = steady_run;
+    steady.statistics = exchanging_statistics;
+    const RenderSetup setup = {.text = "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n",
+                               .width = 100,
+                               .height = 100,
+                               .samples = 120,
+                               .threads = 1,
+                               .backend = &steady};
+    static const double EXCHANGES[] = {0.0, 0.005, 0.05, 100.0};
+    static const uint LEAST[] = {50000, 50000, 450000, 450000}, MOST[] = {420000, 420000, 1200000, 1200000};
+    for (int i = 0; i < 4; ++i) {
+        RenderedImage image;
+        exchange_seconds = EXCHANGES[i];
+        items_most = 0;
+        fixture_render(&setup, &image);
+        ck_assert_msg(items_most >= LEAST[i] && items_most <= MOST[i], "%u items with an exchange of %g s", items_most,
+                      EXCHANGES[i]);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
 START_TEST(test_seeds_differ)
 {
     static const char TEXT[] = CAMERA_INSIDE "Material \"diffuse\"\n"
@@ -404,6 +457,7 @@ int main(void)
     tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
     tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
     tcase_add_test(determinism, test_seeds_differ);
+    tcase_add_test(determinism, test_passes_are_long_where_exchanges_are);
     tcase_add_loop_test(determinism, test_pixels_in_bands, 0, 6);
     tcase_add_loop_test(determinism, test_reconstruction, 0, 6);
     tcase_add_loop_test(determinism, test_pixel_order, 0, 11);
