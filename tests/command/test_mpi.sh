@@ -216,8 +216,7 @@ for integrator in pt mmlt; do
         wait_for resumed.exr
         wait_for ranks.ck
         kill -s KILL "$(pgrep -P "$(pgrep -P $process mpirun)" twinlight | tail -n 1)"
-        wait $process
-        [ $? -ne 0 ]
+        if wait $process; then false; else true; fi
         result "$integrator: $number ranks, of which one was killed: exit status 0" $?
     done
     resumed 1 --integrator=$integrator --samples=1000
