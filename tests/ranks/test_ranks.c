@@ -6,6 +6,7 @@
 #include "base/processors.h"
 #include "ranks/greeting.h"
 #include "ranks/launcher.h"
+#include "ranks/pass_cache.h"
 #include "ranks/slice.h"
 
 #include <sched.h>
@@ -150,6 +151,33 @@ START_TEST(test_slice)
 }
 END_TEST
 
+/* ---- what ranks have ------------------------------------------------------------------------------------------------ */
+
+/* Lists of steps and maps of photons are sent once each, and lists of as many steps are told apart. */
+START_TEST(test_pass_order)
+{
+    enum { STEPS = 3 };
+    Step steps[2][STEPS];
+    uint words[4] = {0};
+    PhotonMap photons = {.words = words, .word_count = 4, .number = 7};
+    FrameParams frame;
+    PassCache cache = {.next = 0};
+    Error error = {0};
+    memset(steps, 0, sizeof steps);
+    memset(&frame, 0, sizeof frame);
+    steps[1][2].kernel = 1;
+    for (int turn = 0; turn < 4; ++turn) {
+        const StepList list = {.steps = steps[turn % 2], .count = STEPS, .photons = &photons};
+        photons.number = turn == 3 ? 8 : 7;
+        ck_assert(pass_order_make(&cache, &frame, &list, 0, false, &error));
+        ck_assert_uint_eq(cache.order.steps, (uint)turn % 2);
+        ck_assert(cache.order.steps_new == (turn < 2));
+        ck_assert(cache.order.photons && cache.order.photons_new == (turn == 0 || turn == 3));
+    }
+    pass_cache_destroy(&cache);
+}
+END_TEST
+
 /* ---- processors -------------------------------------------------------------------------------------------------- */
 
 START_TEST(test_processors)
@@ -181,6 +209,7 @@ int main(void)
     tcase_add_test(tcase, test_greeting);
     tcase_add_test(tcase, test_greeting_of_a_rank_that_cannot);
     tcase_add_test(tcase, test_slice);
+    tcase_add_test(tcase, test_pass_order);
     tcase_add_test(tcase, test_processors);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
