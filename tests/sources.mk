@@ -37,6 +37,7 @@ check_PROGRAMS += \
 	tests/test_platform_bits \
 	tests/test_plan \
 	tests/test_pool \
+	tests/test_progress \
 	tests/test_ranks \
 	tests/test_reference \
 	tests/test_render \
@@ -148,6 +149,7 @@ tests_test_layers_SOURCES = tests/render/test_layers.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
 tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c
 tests_test_options_SOURCES = tests/command/test_options.c
+tests_test_progress_SOURCES = tests/render/test_progress.c
 tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
 tests_test_plan_SOURCES = tests/mmlt/test_plan.c
 tests_test_pool_SOURCES = tests/mmlt/test_pool.c

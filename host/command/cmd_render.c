@@ -120,9 +120,11 @@ static void job_publish(void *context, RenderRun *run, const RenderProgress *pro
 /* Writes what is finished: the part or the image. */
 static bool target_write(RenderJob *job, const RenderTotals *totals, Error *error)
 {
-    if (job->part.path[0])
-        return part_output_write(&job->part, &job->film, totals, error);
-    return render_output_write(&job->output, &job->film, (double)totals->done / (double)film_pixels(&job->film), error);
+    double start = timing_now(), samples = (double)totals->done / (double)film_pixels(&job->film);
+    bool written = job->part.path[0] ? part_output_write(&job->part, &job->film, totals, error)
+                                     : render_output_write(&job->output, &job->film, samples, error);
+    job->progress.writing_seconds = timing_now() - start;
+    return written;
 }
 
 static bool job_save(void *context, const Film *film, const RenderTotals *totals, Error *error)
@@ -164,7 +166,9 @@ static bool film_render(RenderJob *job, Error *error)
     bool pictures = !job->part.path[0] || watch_wanted(&command->watch);
     bool rendered = film_init(&job->film, settings->width, settings->height, settings->crop, error) &&
                     (!pictures || render_output_reserve(&job->output, settings->crop, statistics.threads, error)) &&
-                    job_watch(job, error) && render_film(&task, &job->film, &job->result, error);
+                    job_watch(job, error);
+    job->progress.writing_seconds = render_output_seconds(&job->output);
+    rendered = rendered && render_film(&task, &job->film, &job->result, error);
     progress_end(&job->progress);
     if (rendered)
         watch_finish(&job->watch, &job->film);

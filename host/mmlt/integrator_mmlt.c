@@ -47,6 +47,8 @@ static bool generation_next(Mmlt *mmlt, Error *error)
         return false;
     mmlt->seconds = timing_now() - begin;
     weights_tell(mmlt);
+    render_run_expect(run, 0.0);
+    run->pass_last = false;
     render_run_report(run, plan->timed ? 0.0 : (double)plan->done / (double)plan->total);
     if (!mmlt->whole)
         return true;

@@ -146,13 +146,26 @@ static bool pool_due(const Mmlt *mmlt)
     return mmlt->scheme->renews || mmlt->generation.index == 0;
 }
 
+/* Tells how long the generation still takes after an estimator has run: by what was expected in the first half of its work,
+ * then by the time that the work so far took. */
+static void estimator_tell(Mmlt *mmlt, EstimatorKind kind)
+{
+    double taken = timing_now() - mmlt->begun, left = mmlt->expected - taken;
+    mmlt->work += estimator_cost(kind) * mmlt->samples[kind];
+    double rest = fmax(estimators_work(mmlt->samples) - mmlt->work, 0.0);
+    if ((rest < mmlt->work || !(left > 0.0)) && mmlt->work > 0.0)
+        left = taken * rest / mmlt->work;
+    render_run_expect(mmlt->run, left);
+    render_run_tell(mmlt->run);
+}
+
 /* Takes what an estimator has left in the film, which is then empty, into the generation's image. Without a combination all
  * estimators stay in the film. */
 static void estimator_take(Mmlt *mmlt, EstimatorKind kind)
 {
-    if (mmlt->options.chains_only)
-        return;
-    combined_image_take(&mmlt->combined, kind, &mmlt->film);
+    if (!mmlt->options.chains_only)
+        combined_image_take(&mmlt->combined, kind, &mmlt->film);
+    estimator_tell(mmlt, kind);
 }
 
 static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
@@ -213,11 +226,12 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
-/* The samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its path
+/* Sets the samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its path
  * tracing. */
-static void generation_samples(Mmlt *mmlt, uint count, double samples[ESTIMATOR_COUNT])
+static void generation_samples(Mmlt *mmlt, uint count)
 {
     bool chains = chains_needed(mmlt);
+    double *samples = mmlt->samples;
     paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
     mmlt->chains.own.samples = (uint64_t)count * mmlt->options.steps; /* also if no path is long enough for any */
     samples[ESTIMATOR_CHAINS] = chains ? (double)mmlt->chains.own.samples : 0.0;
@@ -225,15 +239,28 @@ static void generation_samples(Mmlt *mmlt, uint count, double samples[ESTIMATOR_
     samples[ESTIMATOR_PATHS] = (double)mmlt->paths.own.samples;
 }
 
-static void generation_begin(Mmlt *mmlt, const double samples[ESTIMATOR_COUNT])
+/* Tells how long the generation will take, which begins now. */
+static void generation_tell(Mmlt *mmlt)
+{
+    const Plan *plan = &mmlt->plan;
+    mmlt->begun = timing_now();
+    mmlt->expected = plan_seconds(plan, mmlt->seconds);
+    mmlt->work = 0.0;
+    mmlt->run->pass_last = !plan->timed && (double)plan->done + estimators_work(mmlt->samples) >= (double)plan->total;
+    render_run_expect(mmlt->run, mmlt->expected);
+    render_run_tell(mmlt->run);
+}
+
+static void generation_begin(Mmlt *mmlt)
 {
     const Generation *generation = &mmlt->generation;
+    generation_tell(mmlt);
     mmlt_guide_show(&mmlt->guide, generation->replica);
     clamp_threshold_set(mmlt);
     film_clear(&mmlt->film);
     if (!mmlt->options.chains_only)
         combined_image_begin(&mmlt->combined, &mmlt->combinations[generation->replica],
-                             &mmlt->combinations[generation->other], samples);
+                             &mmlt->combinations[generation->other], mmlt->samples);
 }
 
 /* Makes one film of the estimators: mmlt->film. */
@@ -281,13 +308,12 @@ static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error)
 {
     bool whole = true;
-    double samples[ESTIMATOR_COUNT];
-    generation_samples(mmlt, count, samples);
-    generation_begin(mmlt, samples);
+    generation_samples(mmlt, count);
+    generation_begin(mmlt);
     if (!generation_passes(mmlt, count, &whole, error))
         return false;
     if (whole) {
-        double work = fmax(estimators_work(samples), 1.0);
+        double work = fmax(estimators_work(mmlt->samples), 1.0);
         if (!generation_take(mmlt, error))
             return false;
         generation_count(mmlt, count, (uint64_t)work);

@@ -24,6 +24,9 @@ typedef struct Mmlt {
     Plan plan;
     Generation generation; /* under way */
     double seconds; /* that the latest generation took */
+    /* Of the generation under way: samples of each estimator, when it began (timing_now), the seconds that it was then expected
+     * to take (0: not known), and its work so far (estimators_work). */
+    double samples[ESTIMATOR_COUNT], begun, expected, work;
     bool whole; /* the latest generation was not stopped before its end */
     ArchiveMemory
         kept; /* the state between generations for a checkpoint (mmlt/mmlt_archive.h); empty before the first */

@@ -148,9 +148,14 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
     plan->chains = left < next ? (uint)left : next;
 }
 
+double plan_seconds(const Plan *plan, double seconds)
+{
+    return plan->last > 0 ? seconds * chain_work(plan) * plan->chains / (double)plan->last : 0.0;
+}
+
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit)
 {
-    double expected = seconds * chain_work(plan) * plan->chains / (double)plan->last;
+    double expected = plan_seconds(plan, seconds);
     if (left <= 0.0 || (plan->scheme->grows && (left < LAST_PART * expected || least > left + LATE_PART * limit)))
         return false;
     if (plan->scheme->grows && left < expected)

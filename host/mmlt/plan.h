@@ -44,6 +44,9 @@ void plan_count(Plan *plan, uint64_t work, double owed);
  * elapsed: in all. */
 void plan_next(Plan *plan, uint index, double seconds, double elapsed);
 
+/* The seconds that the next generation takes, if the latest one took `seconds`; 0: there was none. */
+double plan_seconds(const Plan *plan, double seconds);
+
 /* Fits the next generation into what is left of the time, unless that is so little that none should follow (false).
  * With the published scheme, whose generations have one size, it is only whether there is time left. seconds: of the latest
  * generation, which tells what work takes. least: what the next one takes with any number of chains. limit: all of the

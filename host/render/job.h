@@ -93,6 +93,8 @@ typedef struct RenderProgress {
     double fraction_before; /* what of `fraction` and `samples` is of earlier runs (--resume) */
     uint64_t samples_before;
     double error; /* estimated relative error, if there is a goal; 0 before the first estimate */
+    double left; /* estimated seconds until the last pass ends, the one under way included; negative: not known */
+    bool finishing; /* the pass or generation under way is the last, as far as can be told */
 } RenderProgress;
 
 /* What has been done, in all runs of a rendering that was interrupted and resumed. */
@@ -108,7 +110,8 @@ typedef struct RenderTotals {
 struct RenderRun;
 
 typedef struct RenderCallbacks {
-    void (*progress)(void *context, const RenderProgress *progress); /* a few times a second; may be NULL */
+    /* A few times a second, and when parts of a generation begin or end; may be NULL. */
+    void (*progress)(void *context, const RenderProgress *progress);
     /* Called as soon as there is an image, then every save_every seconds, also after failures; may be NULL. */
     bool (*save)(void *context, const Film *film, const RenderTotals *totals, Error *error);
     /* Called after `progress`: between passes, when nothing changes the film and its layers; may be NULL. The film may have to

@@ -46,6 +46,7 @@ bool picture_memory_init(PictureMemory *memory, const PictureSettings *settings,
     size_t plane = groups * EXR_BAND_ROWS * row, values = plane + 2 * row; /* despeckling reads a row above and below */
     *memory = (PictureMemory){.lane_count = threads < PICTURE_LANES_MAX ? threads : PICTURE_LANES_MAX};
     memory->lane_count = memory->lane_count > 1 ? memory->lane_count : 1;
+    memory->picture_values = groups * row * (size_t)height;
     size_t lanes = (size_t)memory->lane_count;
     memory->spare_bytes =
         SPARE_BANDS * lanes * plane * sizeof(float) + lanes * SPARE_BYTES + sizeof(uint64_t) * (size_t)height;

@@ -29,6 +29,7 @@ typedef struct PictureMemory {
     int lane_count;
     void *spare; /* reserve of spare_bytes for the libraries that write the file; freed meanwhile */
     size_t spare_bytes;
+    size_t picture_values; /* of a whole picture, 3 per pixel of every group */
 } PictureMemory;
 
 /* Allocates the memory for pictures of this size, with layers by depth for paths of up to `depth` segments, which up to

@@ -18,6 +18,7 @@ void progress_init(Progress *progress, FILE *stream, bool quiet)
     progress->terminal = stream_is_terminal(stream);
     progress->last_shown = 0.0;
     progress->line_open = false;
+    progress->writing_seconds = 0.0;
 }
 
 void progress_time(double seconds, char *text, size_t size)
@@ -45,24 +46,31 @@ void progress_rate(double rate, char *text, size_t size)
     snprintf(text, size, "%.*f %s", decimals, rate, PREFIXES[prefix]);
 }
 
+/* text = ", 12.3 s left", or "" if so little is left that it is not worth saying. `size` >= 32. */
+static void left_text(double left, char *text, size_t size)
+{
+    char time[24] = "?";
+    text[0] = '\0';
+    if (left >= 0.0)
+        progress_time(left, time, sizeof time);
+    if (!(left >= 0.0 && left < 0.05))
+        snprintf(text, size, ", %s left", time);
+}
+
 void progress_line(const RenderProgress *now, int columns, char *text, size_t size)
 {
-    char elapsed[24], remaining[32] = "?", samples[24], rays[24], found[32] = "", figures[192];
+    char elapsed[24], left[40], samples[24], rays[24], found[32] = "", figures[192];
     progress_time(now->elapsed, elapsed, sizeof elapsed);
-    double fresh = now->fraction - now->fraction_before;
-    double left = fresh > 0.0 ? now->elapsed * (1.0 - now->fraction) / fresh : 0.0;
-    bool finishing = now->fraction >= 1.0 || (fresh > 0.0 && left < 0.05);
-    if (fresh > 0.0)
-        progress_time(left, remaining, sizeof remaining);
+    left_text(now->left, left, sizeof left);
     double per_second = now->elapsed > 0.0 ? 1.0 / now->elapsed : 0.0;
     progress_rate((double)(now->samples - now->samples_before) * per_second, samples, sizeof samples);
     progress_rate((double)now->rays * per_second, rays, sizeof rays);
     if (now->error > 0.0)
         snprintf(found, sizeof found, "error %.3g %%, ", 100.0 * now->error);
     /* at most 99 %: the rendering is not done while this line is shown */
-    snprintf(figures, sizeof figures, "%3.0f %%  %s%s, %s%s  %ssamples/s  %srays/s",
-             fmin(99.0, floor(100.0 * now->fraction)), found, elapsed, finishing ? "finishing" : remaining,
-             finishing ? "" : " left", samples, rays);
+    snprintf(figures, sizeof figures, "%3.0f %%  %s: %s%s%s  %ssamples/s  %srays/s",
+             fmin(99.0, floor(100.0 * now->fraction)), now->finishing ? "finishing a pass" : "rendering", found,
+             elapsed, left, samples, rays);
 
     int width = columns - (int)strlen(figures) - 4; /* brackets, a blank, and a free last column */
     width = width > BAR_MAX ? BAR_MAX : width;
@@ -89,16 +97,18 @@ static int terminal_columns(FILE *stream)
 void progress_update(Progress *progress, const RenderProgress *now)
 {
     char text[320];
+    RenderProgress all = *now;
     if (progress->quiet)
         return;
+    all.left += all.left >= 0.0 ? progress->writing_seconds : 0.0;
     if (progress->terminal) {
         int columns = terminal_columns(progress->stream);
-        progress_line(now, columns, text, sizeof text);
+        progress_line(&all, columns, text, sizeof text);
         fprintf(progress->stream, "\r%.*s\033[K", columns - 1, text);
         fflush(progress->stream);
         progress->line_open = true;
     } else if (now->elapsed - progress->last_shown >= PROGRESS_PLAIN_SECONDS) {
-        progress_line(now, 0, text, sizeof text);
+        progress_line(&all, 0, text, sizeof text);
         fprintf(progress->stream, "%s\n", text);
         progress->last_shown = now->elapsed;
     }
@@ -106,6 +116,7 @@ void progress_update(Progress *progress, const RenderProgress *now)
 
 void progress_writing(Progress *progress, const char *path, double part)
 {
+    char left[40] = "";
     double now = timing_now();
     if (!(part > 0.0)) {
         progress->writing_since = now;
@@ -113,13 +124,16 @@ void progress_writing(Progress *progress, const char *path, double part)
     }
     if (progress->quiet || now - progress->writing_since < PROGRESS_WRITING_SECONDS)
         return;
+    if (part > 0.0)
+        left_text((now - progress->writing_since) * (1.0 - part) / part, left, sizeof left);
     if (progress->terminal) {
         int columns = terminal_columns(progress->stream);
-        fprintf(progress->stream, "\rwriting %.*s: %3.0f %%\033[K", columns - 16, path, floor(100.0 * part));
+        fprintf(progress->stream, "\rwriting %.*s: %3.0f %%%s\033[K", columns - 16 - (int)strlen(left), path,
+                floor(100.0 * part), left);
         fflush(progress->stream);
         progress->line_open = true;
     } else if (!progress->writing_told) {
-        fprintf(progress->stream, "writing %s\n", path);
+        fprintf(progress->stream, "writing %s%s\n", path, left);
     }
     progress->writing_told = true;
 }

@@ -149,10 +149,22 @@ static bool passes_end(const PassLoop *loop, double elapsed)
     return spent || *render_run_stop(run) || error_watch_reached(run);
 }
 
+/* Tells what has been done, and how long the next pass will take: it is under way until the next report. */
+static void passes_report(const PassLoop *loop)
+{
+    RenderRun *run = loop->run;
+    double elapsed = timing_now() - run->start;
+    uint64_t fresh = run->done - run->past.done;
+    bool more = loop->next < loop->total && !passes_end(loop, elapsed);
+    uint items = more ? pass_items(loop, elapsed, span_next(loop).items) : 0;
+    run->pass_last = loop->total - loop->next <= items;
+    render_run_expect(run, fresh > 0 ? elapsed * (double)items / (double)fresh : 0.0);
+    render_run_report(run, run->options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
+}
+
 static bool passes_run(PassLoop *loop, Error *error)
 {
     RenderRun *run = loop->run;
-    const RenderOptions *options = run->options;
     const CheckpointState state = {loop_archive, loop};
     if (!checkpoint_restore(run, state, error) || !render_layers_sample(run, run->done, error))
         return false;
@@ -163,7 +175,7 @@ static bool passes_run(PassLoop *loop, Error *error)
         const SampleSpan span = span_next(loop);
         if (!pass_run(loop, &span, pass_items(loop, elapsed, span.items), error) || !look_if_due(loop, error))
             return false;
-        render_run_report(run, options->samples > 0 ? (double)run->done / (double)loop->total : 0.0);
+        passes_report(loop);
         if (!render_layers_sample(run, run->done, error))
             return false;
         render_run_save_if_due(run);

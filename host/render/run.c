@@ -76,16 +76,34 @@ double render_run_error_fraction(const RenderRun *run)
     return fmin(1.0, (double)run->done / (double)watch->work * (goal / error) * (goal / error));
 }
 
-void render_run_report(RenderRun *run, double fraction)
+/* A pass that is expected to take this part of the seconds that are left, or more, is taken for the last. */
+#define LAST_PASS_PART 0.9
+
+/* The seconds that are left of the budget; negative: not known. */
+static double budget_left(const RenderRun *run, const RenderProgress *progress)
 {
-    const RenderCallbacks *callbacks = run->callbacks;
-    if (!callbacks || (!callbacks->progress && !callbacks->publish))
-        return;
+    double fresh = progress->fraction - progress->fraction_before;
+    if (fresh > 0.0)
+        return progress->elapsed * (1.0 - progress->fraction) / fresh;
+    return run->options->seconds > 0.0 ? fmax(run->options->seconds - progress->elapsed, 0.0) : -1.0;
+}
+
+/* A pass under way is finished even if the budget is spent before. */
+static void left_set(const RenderRun *run, double now, RenderProgress *progress)
+{
+    double budget = budget_left(run, progress), pass = run->pass_end > 0.0 ? fmax(run->pass_end - now, 0.0) : -1.0;
+    progress->left = fmax(budget, pass);
+    progress->finishing =
+        progress->fraction >= 1.0 || run->pass_last || (budget >= 0.0 && pass >= LAST_PASS_PART * budget);
+}
+
+static RenderProgress progress_now(const RenderRun *run)
+{
     BackendStatistics statistics;
     run->interface->statistics(run->backend, &statistics);
-    double elapsed = timing_now() - run->start;
+    double now = timing_now(), elapsed = now - run->start;
     double by_time = run->options->seconds > 0.0 ? elapsed / run->options->seconds : 0.0;
-    fraction = fmax(fraction, render_run_error_fraction(run));
+    double fraction = fmax(run->fraction, render_run_error_fraction(run));
     RenderProgress progress = {.elapsed = elapsed,
                                .fraction = fmin(1.0, fmax(fraction, by_time)),
                                .samples = run->done,
@@ -94,10 +112,34 @@ void render_run_report(RenderRun *run, double fraction)
                                .error = run->error.estimate};
     if (run->done > 0 && fraction > by_time)
         progress.fraction_before = progress.fraction * (double)run->past.done / (double)run->done;
+    left_set(run, now, &progress);
+    return progress;
+}
+
+void render_run_report(RenderRun *run, double fraction)
+{
+    const RenderCallbacks *callbacks = run->callbacks;
+    run->fraction = fraction;
+    if (!callbacks || (!callbacks->progress && !callbacks->publish))
+        return;
+    const RenderProgress progress = progress_now(run);
     if (callbacks->progress)
         callbacks->progress(callbacks->context, &progress);
     if (callbacks->publish)
         callbacks->publish(callbacks->context, run, &progress);
+}
+
+void render_run_expect(RenderRun *run, double seconds)
+{
+    run->pass_end = seconds > 0.0 ? timing_now() + seconds : 0.0;
+}
+
+void render_run_tell(const RenderRun *run)
+{
+    if (!run->callbacks || !run->callbacks->progress)
+        return;
+    const RenderProgress progress = progress_now(run);
+    run->callbacks->progress(run->callbacks->context, &progress);
 }
 
 void render_run_save_if_due(RenderRun *run)

@@ -32,6 +32,9 @@ typedef struct RenderRun {
     bool resumed;
     RenderTotals past; /* of the runs before this one; zeros, but for photons, unless resumed */
     double start, last_save;
+    double fraction; /* of the samples wanted, at the latest render_run_report; 0 if their number is not limited */
+    double pass_end; /* when the pass or generation under way is expected to end (timing_now); 0: not known */
+    bool pass_last; /* no other follows it, as far as is known before it ends */
     bool save_failed; /* the latest call of `save` failed */
     ChainStatistics chains;
     ErrorWatch error;
@@ -64,6 +67,12 @@ double render_run_error_fraction(const RenderRun *run);
 
 /* Calls `progress` and `publish`. fraction: of the samples wanted; 0 if their number is not limited. */
 void render_run_report(RenderRun *run, double fraction);
+
+/* Sets how many seconds the pass or generation under way is expected to take from now on; 0: not known. */
+void render_run_expect(RenderRun *run, double seconds);
+
+/* Calls `progress` alone, with the fraction of the latest report: while a generation is under way. */
+void render_run_tell(const RenderRun *run);
 
 /* Calls `save` if it is due. A failure causes a warning; the next attempt is made when the next save is due. */
 void render_run_save_if_due(RenderRun *run);

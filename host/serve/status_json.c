@@ -17,10 +17,7 @@ static void facts_write(JsonWriter *json, const Snapshot *snapshot, const Render
 static void progress_write(JsonWriter *json, const RenderStatus *status)
 {
     const RenderProgress *progress = &status->progress;
-    double part = progress->fraction - progress->fraction_before;
-    double left = status->ended ? 0.0
-                  : part > 0.0  ? progress->elapsed * (1.0 - progress->fraction) / part
-                                : (double)NAN;
+    double known = progress->left >= 0.0 ? progress->left : (double)NAN, left = status->ended ? 0.0 : known;
     double rate = progress->elapsed > 0.0 ? 1.0 / progress->elapsed : 0.0;
     json_bool(json, "ended", status->ended);
     json_number(json, "elapsed", progress->elapsed);

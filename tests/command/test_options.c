@@ -299,28 +299,75 @@ END_TEST
 START_TEST(test_progress_line_fits_its_terminal)
 {
     char text[320];
-    const RenderProgress now = {.elapsed = 100.0, .fraction = 0.25, .samples = 100000000, .rays = 900000000};
+    const RenderProgress now = {
+        .elapsed = 100.0, .fraction = 0.25, .samples = 100000000, .rays = 900000000, .left = 300.0};
     progress_line(&now, 0, text, sizeof text);
-    ck_assert_str_eq(text, " 25 %  1:40, 5:00 left  1.00 Msamples/s  9.00 Mrays/s");
-    for (int columns = 70; columns < 200; ++columns) {
+    ck_assert_str_eq(text, " 25 %  rendering: 1:40, 5:00 left  1.00 Msamples/s  9.00 Mrays/s");
+    for (int columns = 80; columns < 200; ++columns) {
         progress_line(&now, columns, text, sizeof text);
         ck_assert_int_eq(text[0], '[');
         ck_assert_int_lt((int)strlen(text), columns);
     }
-    const RenderProgress late = {.elapsed = 100.0, .fraction = 0.9999, .samples = 100, .rays = 100};
+    const RenderProgress late = {
+        .elapsed = 100.0, .fraction = 1.0, .samples = 100, .rays = 100, .left = 2.5, .finishing = true};
     progress_line(&late, 0, text, sizeof text);
-    ck_assert_str_eq(text, " 99 %  1:40, finishing  1.00 samples/s  1.00 rays/s");
-    const RenderProgress over = {.elapsed = 100.0, .fraction = 1.0, .samples = 100, .rays = 100};
+    ck_assert_str_eq(text, " 99 %  finishing a pass: 1:40, 2.5 s left  1.00 samples/s  1.00 rays/s");
+    const RenderProgress over = {
+        .elapsed = 100.0, .fraction = 1.0, .samples = 100, .rays = 100, .left = 0.04, .finishing = true};
     progress_line(&over, 0, text, sizeof text);
-    ck_assert_str_eq(text, " 99 %  1:40, finishing  1.00 samples/s  1.00 rays/s");
-    /* Half of what there is to do was done by earlier runs: rate and time left are this one's. */
+    ck_assert_str_eq(text, " 99 %  finishing a pass: 1:40  1.00 samples/s  1.00 rays/s");
+    /* What earlier runs made does not count as speed. */
     const RenderProgress resumed = {
-        .elapsed = 100.0, .fraction = 0.75, .samples = 300, .rays = 100, .fraction_before = 0.5, .samples_before = 200};
+        .elapsed = 100.0, .fraction = 0.75, .samples = 300, .rays = 100, .samples_before = 200, .left = 100.0};
     progress_line(&resumed, 0, text, sizeof text);
-    ck_assert_str_eq(text, " 75 %  1:40, 1:40 left  1.00 samples/s  1.00 rays/s");
-    const RenderProgress start = {0};
+    ck_assert_str_eq(text, " 75 %  rendering: 1:40, 1:40 left  1.00 samples/s  1.00 rays/s");
+    const RenderProgress start = {.left = -1.0};
     progress_line(&start, 0, text, sizeof text);
-    ck_assert_str_eq(text, "  0 %  0.0 s, ? left  0.00 samples/s  0.00 rays/s");
+    ck_assert_str_eq(text, "  0 %  rendering: 0.0 s, ? left  0.00 samples/s  0.00 rays/s");
+}
+END_TEST
+
+/* Gives what is shown on a terminal as text to be freed. */
+static Progress progress_to_text(char **text, size_t *size)
+{
+    Progress progress;
+    progress_init(&progress, open_memstream(text, size), false);
+    progress.terminal = true;
+    return progress;
+}
+
+START_TEST(test_progress_counts_writing)
+{
+    char *text = NULL;
+    size_t size = 0;
+    Progress progress = progress_to_text(&text, &size);
+    const RenderProgress now = {.elapsed = 10.0, .fraction = 0.5, .left = 10.0}, start = {.left = -1.0};
+    progress.writing_seconds = 2.5;
+    progress_update(&progress, &now);
+    fflush(progress.stream);
+    ck_assert_ptr_nonnull(strstr(text, " rendering: 10.0 s, 12.5 s left "));
+    progress_update(&progress, &start);
+    fflush(progress.stream);
+    ck_assert_ptr_nonnull(strstr(text, " rendering: 0.0 s, ? left "));
+    fclose(progress.stream);
+    free(text);
+}
+END_TEST
+
+START_TEST(test_progress_of_writing)
+{
+    char *text = NULL;
+    size_t size = 0;
+    Progress progress = progress_to_text(&text, &size);
+    progress_writing(&progress, "a.exr", 0.0);
+    fflush(progress.stream);
+    ck_assert_uint_eq(size, 0);
+    progress.writing_since -= 1000.0;
+    progress_writing(&progress, "a.exr", 0.25);
+    fflush(progress.stream);
+    ck_assert_ptr_nonnull(strstr(text, "writing a.exr:  25 %, 50:0")); /* and a few seconds, if the machine is busy */
+    fclose(progress.stream);
+    free(text);
 }
 END_TEST
 
@@ -345,6 +392,8 @@ int main(void)
     tcase_add_test(text, test_json);
     tcase_add_test(text, test_progress_text);
     tcase_add_test(text, test_progress_line_fits_its_terminal);
+    tcase_add_test(text, test_progress_counts_writing);
+    tcase_add_test(text, test_progress_of_writing);
     suite_add_tcase(suite, text);
     return test_run(suite);
 }

@@ -219,8 +219,10 @@ likely() {
     host/render/render.c) echo test_render:determinism ;;
     host/render/shard.c | host/render/merge.c | host/render/part.c | host/command/part_output.c | host/command/cmd_merge.c)
         echo test_shard command/test_merge.sh ;;
-    host/base/archive* | host/render/checkpoint.c | host/render/identity.c | host/render/run.c | host/mmlt/mmlt_archive.c)
+    host/base/archive* | host/render/checkpoint.c | host/render/identity.c | host/mmlt/mmlt_archive.c)
         echo test_archive test_restore test_checkpoint command/test_checkpoint.sh command/test_merge.sh ;;
+    host/render/run.c | host/mmlt/mmlt.c) echo test_progress test_combination test_restore test_checkpoint test_pool test_layers ;;
+    host/render/progress.c) echo test_options ;;
     host/base/sample_statistics.c) echo test_bench ;;
     host/render/error_watch.c | host/render/layers.c | host/render/aov_image.c) echo test_restore test_layers test_error ;;
     host/*) echo test_combination test_restore test_pool test_layers ;;
