@@ -279,7 +279,7 @@ static bool film_merge_check(const Film *film, const Film *from, Error *error)
     if (!film->light_sums != !from->light_sums)
         return error_set(error, "films of integrators with and without paths from the light cannot be merged");
     for (size_t i = 0; i < film_pixels(film); ++i)
-        if ((uint64_t)film->counts[i] + from->counts[i] > UINT32_MAX)
+        if ((uint64_t)film_count(film, i) + film_count(from, i) > UINT32_MAX)
             return error_set(error, "merged films have more than %llu samples in a pixel",
                              (unsigned long long)film_samples_most(film->reconstruction));
     return true;
@@ -293,17 +293,25 @@ bool film_merge(Film *film, const Film *from, Error *error)
     rows_run(film, row_merge, &adding);
     counters_add(&adding);
     film->light_samples += from->light_samples;
+    film->every_count += from->every_count;
     return true;
 }
 
 void film_swap_own(Film *a, Film *b)
 {
     int64_t *sums = a->sums;
-    uint32_t *counts = a->counts;
+    uint32_t every = a->every_count;
     a->sums = b->sums;
-    a->counts = b->counts;
     b->sums = sums;
-    b->counts = counts;
+    a->every_count = b->every_count;
+    b->every_count = every;
+    for (size_t i = 0; i < film_pixels(a); ++i) {
+        uint32_t count = a->counts[i];
+        if (count != b->counts[i]) {
+            a->counts[i] = b->counts[i];
+            b->counts[i] = count;
+        }
+    }
 }
 
 /* Multiplies a pixel's sums of one kind. Full ones stay full. */
@@ -322,14 +330,15 @@ typedef struct FilmNormalizing {
 static void pixel_normalize(const FilmNormalizing *normalizing, size_t pixel)
 {
     Film *film = normalizing->film;
-    double factor = film->counts[pixel] > 0 ? (double)normalizing->count / film->counts[pixel] : 1.0;
+    uint32_t count = film_count(film, pixel);
+    double factor = count > 0 ? (double)normalizing->count / count : 1.0;
     sums_scale(film->sums, pixel, factor);
     sums_scale(film->light_sums, pixel, factor);
     sums_scale(film->rare_sums, pixel, factor);
     for (uint depth = SPLAT_DEPTH_MIN; film->depth_kinds > 0 && depth <= film->depth_last; ++depth)
         for (uint kind = 0; kind < film->depth_kinds; ++kind)
             sums_scale(film_depth_sums(film, depth, kind), pixel, factor);
-    film->counts[pixel] = normalizing->count;
+    film->counts[pixel] = 0;
 }
 
 static void row_normalize(void *context, size_t row)
@@ -343,8 +352,10 @@ static void row_normalize(void *context, size_t row)
 void film_normalize(Film *film, uint64_t samples)
 {
     FilmNormalizing normalizing = {film, (uint32_t)(samples * film_sample_units(film->reconstruction))};
-    if (film->reconstruction == RECONSTRUCTION_SPLAT && samples > 0)
-        rows_run(film, row_normalize, &normalizing);
+    if (film->reconstruction != RECONSTRUCTION_SPLAT || samples == 0)
+        return;
+    rows_run(film, row_normalize, &normalizing);
+    film->every_count = normalizing.count;
 }
 
 static void sums_clear(int64_t *sums, size_t first, size_t end)
@@ -361,7 +372,9 @@ void film_pixels_clear(Film *film, size_t first, size_t end)
     for (uint depth = SPLAT_DEPTH_MIN; film->depth_kinds > 0 && depth <= film->depth_last; ++depth)
         for (uint kind = 0; kind < film->depth_kinds; ++kind)
             sums_clear(film_depth_sums(film, depth, kind), first, end);
-    memset(film->counts + first, 0, (end - first) * sizeof *film->counts);
+    for (size_t i = first; i < end; ++i)
+        if (film->counts[i] > 0)
+            film->counts[i] = 0;
 }
 
 static void row_clear(void *context, size_t row)
@@ -374,6 +387,7 @@ static void row_clear(void *context, size_t row)
 void film_counters_clear(Film *film)
 {
     film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
+    film->every_count = 0;
 }
 
 void film_clear(Film *film)

@@ -26,7 +26,9 @@ typedef struct Film {
     uint64_t light_samples; /* number of paths behind light_sums; 0: as many as samples of pixels */
     uint reconstruction; /* RECONSTRUCTION_*, with the pixel filter: film_filter_set */
     FilmAxis axis_x, axis_y;
-    uint32_t *counts; /* samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h) */
+    /* Samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h), and more that every pixel has
+     * (film_normalize): film_count. The memory for counts that have always been zero is not used. */
+    uint32_t *counts, every_count;
     uint64_t saturated; /* contributions clamped because they were too large */
     uint64_t vanished; /* contributions that are not black, but below half a unit in every channel */
     uint64_t not_finite; /* contributions that were NaN or infinite and counted as zero */
@@ -63,6 +65,12 @@ bool film_depths_reserve(Film *film, uint last, Error *error);
 
 /* Sums of paths of `segments` segments (at most depth_last), 3 per pixel. kind: FILM_KIND_*, below depth_kinds. */
 int64_t *film_depth_sums(const Film *film, uint segments, uint kind);
+
+/* Samples of a pixel of the crop, in units of film_sample_units. */
+static inline uint32_t film_count(const Film *film, size_t pixel)
+{
+    return film->counts[pixel] + film->every_count;
+}
 
 /* Number of pixels of the crop. */
 size_t film_pixels(const Film *film);

@@ -30,6 +30,7 @@ void film_archive(Archive *archive, Film *film)
     size_t words = film_depth_words((uint)film_pixels(film), film->depth_kinds, film->depth_last);
     sums_archive(archive, film->depth_sums, film->depth_sums ? words : 0, "the film's sums by depth");
     archive_bytes(archive, film->counts, film_pixels(film) * sizeof *film->counts);
+    ARCHIVE_FIELD(archive, film->every_count);
     ARCHIVE_FIELD(archive, film->light_samples);
     ARCHIVE_FIELD(archive, film->saturated);
     ARCHIVE_FIELD(archive, film->vanished);

@@ -45,7 +45,7 @@ size_t film_empty_pixels(const Film *film)
 {
     size_t empty = 0;
     for (size_t i = 0; i < film_pixels(film); ++i)
-        empty += film->counts[i] == 0;
+        empty += film_count(film, i) == 0;
     return empty;
 }
 
@@ -55,7 +55,7 @@ static double light_unit_of(const Film *film, double unit)
     size_t pixels = film_pixels(film);
     uint64_t samples = film->light_samples;
     for (size_t i = 0; film->light_sums && film->light_samples == 0 && i < pixels; ++i)
-        samples += film->counts[i];
+        samples += film_count(film, i);
     if (film->light_samples == 0)
         unit *= film_sample_units(film->reconstruction);
     return samples > 0 ? unit * (double)pixels / (double)samples : 0.0;
@@ -70,7 +70,7 @@ FilmScale film_scale_of(const Film *film, float scale)
 /* Resolves value v (3 per pixel) of a part of the film. */
 static float value_resolve(const Film *film, FilmPart part, FilmScale scale, size_t v)
 {
-    uint32_t count = film->counts[v / 3];
+    uint32_t count = film_count(film, v / 3);
     double value = count && part != FILM_LIGHT ? (double)film_sum_shown(film->sums[v]) * scale.own / count : 0.0;
     if (film->light_sums && part != FILM_OWN)
         value += (double)film_sum_shown(film->light_sums[v]) * scale.light;

@@ -89,6 +89,15 @@ void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t 
     }
 }
 
+void pixel_series_add_counted(PixelSeries *series, const float *picture, const uint32_t *weights, uint32_t more)
+{
+    for (size_t i = 0; i < series->pixels; ++i) {
+        double own = (double)weights[i] + more;
+        if (own > 0.0)
+            pixel_add(series, picture, i, own, own / weight_add(series, i, own));
+    }
+}
+
 /* ---- two series -------------------------------------------------------------------------------------------------- */
 
 /* Of a value's images; `spread` is here the sum of squared deviations. */

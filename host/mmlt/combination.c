@@ -35,6 +35,26 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
     return pixel_series_init(&combination->direct, combination_patch_count(combination), 1, true, error);
 }
 
+static void shareable_destroy(Combination *combination)
+{
+    free(combination->known);
+    free(combination->rows);
+    free(combination->ratios);
+    free(combination->tile_sums);
+    free(combination->patch_sums);
+}
+
+void combination_share(Combination *combination, const Combination *other)
+{
+    shareable_destroy(combination);
+    combination->known = other->known;
+    combination->rows = other->rows;
+    combination->ratios = other->ratios;
+    combination->tile_sums = other->tile_sums;
+    combination->patch_sums = other->patch_sums;
+    combination->shares = true;
+}
+
 void combination_destroy(Combination *combination)
 {
     for (int s = 0; s < SERIES_COUNT; ++s) {
@@ -42,11 +62,8 @@ void combination_destroy(Combination *combination)
         pixel_series_destroy(&combination->sums[s]);
     }
     pixel_series_destroy(&combination->direct);
-    free(combination->known);
-    free(combination->rows);
-    free(combination->ratios);
-    free(combination->tile_sums);
-    free(combination->patch_sums);
+    if (!combination->shares)
+        shareable_destroy(combination);
     free(combination->earlier[0]);
     free(combination->earlier[1]);
     *combination = (Combination){0};
@@ -59,7 +76,8 @@ void combination_archive(Archive *archive, Combination *combination)
         pixel_series_archive(archive, &combination->sums[s]);
     }
     pixel_series_archive(archive, &combination->direct);
-    archive_bytes(archive, combination->known, combination_tile_count(combination) * sizeof *combination->known);
+    if (!combination->shares)
+        archive_bytes(archive, combination->known, combination_tile_count(combination) * sizeof *combination->known);
     for (int i = 0; i < 2; ++i)
         archive_bytes(archive, combination->earlier[i],
                       combination_patch_count(combination) * sizeof *combination->earlier[i]);

@@ -18,6 +18,11 @@
 bool combination_init(Combination *combination, const Film *film, Error *error);
 void combination_destroy(Combination *combination);
 
+/* From now on `combination` uses the memory of `other`, which must outlive it, for what is known of tiles and for scratch.
+ * For two replicas that take turns: a generation's weights are set from what is known after the one before it, and what was
+ * known before that is not needed any more. Both must be for the same crop and not have learnt anything. */
+void combination_share(Combination *combination, const Combination *other);
+
 /* Saves what is known, or restores it into a combination for films of the same size. Any numbers will do: weights are in
  * [0, 1] whatever variances are, and light that is not finite counts as unknown. */
 void combination_archive(Archive *archive, Combination *combination);

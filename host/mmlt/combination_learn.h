@@ -56,10 +56,11 @@ typedef struct Combination {
     int size[2], patches[2], tiles[2];
     PixelSeries light[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances summed over patches, and over tiles */
     PixelSeries direct; /* over patches */
-    CombinationTile *known; /* one per tile */
+    CombinationTile *known; /* one per tile; may be shared, see combination_share */
     CombinationRow *rows; /* scratch */
     double *ratios; /* scratch, one per tile */
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
+    bool shares; /* `known` and scratch are those of another combination */
     /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of its
      * indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent a of the
      * variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */

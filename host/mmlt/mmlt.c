@@ -74,6 +74,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
         mmlt->combinations[replica].shown = mmlt->options.shown;
         mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;
     }
+    combination_share(&mmlt->combinations[1], &mmlt->combinations[0]);
     return combined_image_init(&mmlt->combined, &mmlt->film, error);
 }
 

@@ -2,26 +2,32 @@
 
 #include <stdlib.h>
 
-bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error)
+bool aov_image_init(AovImage *image, const Film *film, AovKind kind, const AovImage *counted, Error *error)
 {
     size_t pixels = film_pixels(film);
     const int *crop = film->crop;
-    *image = (AovImage){.channels = channels,
+    *image = (AovImage){.channels = kind.channels,
                         .film = {.width = (uint)film->width,
                                  .x0 = (uint)crop[0],
                                  .y0 = (uint)crop[1],
                                  .x1 = (uint)crop[2],
-                                 .y1 = (uint)crop[3]}};
-    image->sums = calloc(pixels * channels, sizeof *image->sums);
-    image->counts = calloc(pixels, sizeof *image->counts);
-    return (image->sums && image->counts) ||
-           error_memory(error, pixels * (channels * sizeof *image->sums + sizeof *image->counts), "layers");
+                                 .y1 = (uint)crop[3]},
+                        .counts_borrowed = counted != NULL};
+    if (kind.part)
+        image->trues = calloc(pixels, sizeof *image->trues);
+    else
+        image->sums = calloc(pixels * kind.channels, sizeof *image->sums);
+    image->counts = counted ? counted->counts : calloc(pixels, sizeof *image->counts);
+    return ((image->sums || image->trues) && image->counts) ||
+           error_memory(error, pixels * (kind.channels * sizeof *image->sums + sizeof *image->counts), "layers");
 }
 
 void aov_image_destroy(AovImage *image)
 {
     free(image->sums);
-    free(image->counts);
+    free(image->trues);
+    if (!image->counts_borrowed)
+        free(image->counts);
     *image = (AovImage){0};
 }
 
@@ -29,8 +35,12 @@ void aov_image_archive(Archive *archive, AovImage *image)
 {
     size_t pixels = (size_t)(image->film.x1 - image->film.x0) * (image->film.y1 - image->film.y0);
     archive_same(archive, pixels * image->channels, "the number of values in a layer");
-    archive_floats(archive, image->sums, pixels * image->channels, RANGE_FLOATS, "the values of a layer");
-    archive_bytes(archive, image->counts, pixels * sizeof *image->counts);
+    if (image->trues)
+        archive_bytes(archive, image->trues, pixels * sizeof *image->trues);
+    else
+        archive_floats(archive, image->sums, pixels * image->channels, RANGE_FLOATS, "the values of a layer");
+    if (!image->counts_borrowed)
+        archive_bytes(archive, image->counts, pixels * sizeof *image->counts);
 }
 
 static void sample_add(AovImage *image, uint pixel, Vec3 value)
@@ -39,9 +49,12 @@ static void sample_add(AovImage *image, uint pixel, Vec3 value)
     uint slot = film_slot(&image->film, pixel);
     if (slot == NONE)
         return;
-    for (size_t c = 0; c < 3 && c < image->channels && vec3_finite(value); ++c)
+    for (size_t c = 0; c < 3 && c < image->channels && image->sums && vec3_finite(value); ++c)
         image->sums[image->channels * slot + c] += values[c];
-    ++image->counts[slot];
+    if (image->trues && value.x > 0.5f)
+        ++image->trues[slot];
+    if (!image->counts_borrowed)
+        ++image->counts[slot];
 }
 
 void aov_images_add(AovImage *images, uint number, const uint *splats, uint count, uint stride)
@@ -60,6 +73,7 @@ void aov_image_resolve(const AovImage *image, size_t first, size_t count, float 
     for (size_t i = 0; i < count; ++i)
         for (size_t c = 0; c < 3; ++c) {
             size_t pixel = first + i, value = image->channels * pixel + (image->channels == 3 ? c : 0);
-            rgb[3 * i + c] = image->counts[pixel] > 0 ? image->sums[value] / (float)image->counts[pixel] : 0.0f;
+            float sum = image->trues ? (float)image->trues[pixel] : image->sums[value];
+            rgb[3 * i + c] = image->counts[pixel] > 0 ? sum / (float)image->counts[pixel] : 0.0f;
         }
 }

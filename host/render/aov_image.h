@@ -12,12 +12,21 @@
 typedef struct AovImage {
     FilmView film; /* size and crop alone */
     size_t channels; /* 1 or 3 */
-    float *sums; /* channels per pixel of the crop */
+    float *sums; /* channels per pixel of the crop; NULL: see trues */
+    unsigned char *trues; /* of an AOV_PART, whose samples are 0 or 1: their sum */
     unsigned char *counts; /* samples per pixel */
+    bool counts_borrowed;
 } AovImage;
 
-/* An empty image for the crop of `film`. Fails when out of memory. */
-bool aov_image_init(AovImage *image, const Film *film, size_t channels, Error *error);
+/* What the values of an image are. */
+typedef struct AovKind {
+    size_t channels; /* 1 or 3 */
+    bool part; /* AOV_PART; of one channel */
+} AovKind;
+
+/* An empty image for the crop of `film`. counted: an image that gets a sample of a pixel whenever this one does, whose counts
+ * it shares, and which must outlive it; NULL: none. Fails when out of memory. */
+bool aov_image_init(AovImage *image, const Film *film, AovKind kind, const AovImage *counted, Error *error);
 void aov_image_destroy(AovImage *image);
 
 /* Saves the samples so far, or restores them into an image of the same size. */

@@ -44,7 +44,7 @@ static void part_add(const Estimate *estimate, FilmPart part, size_t first, size
     for (size_t value = 0; value < 3 * count; ++value) {
         size_t pixel = first + value / 3;
         double a = (double)estimate->rgb[0][value], b = (double)estimate->rgb[1][value];
-        double p = by_samples ? share_of(halves[0].counts[pixel], halves[1].counts[pixel]) : share;
+        double p = by_samples ? share_of(film_count(&halves[0], pixel), film_count(&halves[1], pixel)) : share;
         estimate->planes[PICTURE][value] += (float)(p * a + (1.0 - p) * b);
         estimate->planes[DIFFERENCE][value] += (float)(sqrt(p * (1.0 - p)) * (a - b));
     }

@@ -37,6 +37,10 @@ _Static_assert(AOV_SAMPLES <= AOV_SAMPLES_MAX, "samples are counted in bytes");
 static const size_t AOV_CHANNELS[AOV_COUNT] = {AOV_LIST(CHANNELS_OF)};
 #undef CHANNELS_OF
 
+#define VALUES_OF(NAME, name, text, values, ...) [AOV_##NAME] = values,
+static const uint AOV_VALUES[AOV_COUNT] = {AOV_LIST(VALUES_OF)};
+#undef VALUES_OF
+
 static bool halves_init(RenderLayers *layers, const Film *film, Error *error)
 {
     for (int i = 0; i < 2; ++i)
@@ -75,9 +79,16 @@ static bool variance_init(RenderLayers *layers, const Film *film, Error *error)
 
 static bool aovs_init(RenderLayers *layers, const Film *film, Error *error)
 {
-    for (uint aov = 0; aov < AOV_COUNT; ++aov)
-        if (wants(layers, LAYER_OF_AOV[aov]) && !aov_image_init(&layers->aovs[aov], film, AOV_CHANNELS[aov], error))
+    const AovImage *counted = NULL; /* by which the others that have a sample of every ray count theirs */
+    for (uint aov = 0; aov < AOV_COUNT; ++aov) {
+        bool every = AOV_VALUES[aov] != AOV_DISTANCE;
+        const AovKind kind = {AOV_CHANNELS[aov], AOV_VALUES[aov] == AOV_PART};
+        if (!wants(layers, LAYER_OF_AOV[aov]))
+            continue;
+        if (!aov_image_init(&layers->aovs[aov], film, kind, every ? counted : NULL, error))
             return false;
+        counted = every && !counted ? &layers->aovs[aov] : counted;
+    }
     return true;
 }
 
@@ -151,7 +162,7 @@ static bool variance_add(RenderLayers *layers, const Film *part, unsigned half, 
     if (!rgb)
         return error_memory(error, bytes, "variances");
     film_resolve_part(part, FILM_OWN, 1.0f, rgb);
-    pixel_series_add(&layers->own[half], rgb, part->counts, 1.0);
+    pixel_series_add_counted(&layers->own[half], rgb, part->counts, part->every_count);
     if (part->light_samples > 0) {
         film_resolve_part(part, FILM_LIGHT, 1.0f, rgb);
         pixel_series_add(&layers->light[half], rgb, NULL, (double)part->light_samples);

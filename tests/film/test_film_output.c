@@ -272,7 +272,7 @@ START_TEST(test_bands)
     Error error;
     unsigned state = 5;
     ck_assert(film_init(&film, WIDTH + 9, ROWS + 9, crop, &error) &&
-              aov_image_init(&layers.aovs[AOV_ALBEDO], &film, 3, &error));
+              aov_image_init(&layers.aovs[AOV_ALBEDO], &film, (AovKind){.channels = 3}, NULL, &error));
     for (size_t i = 0; i < 3 * WIDTH * ROWS; ++i) {
         film.sums[i] = 2 * (int64_t)(test_random_unit(&state) * 0x1p31);
         layers.aovs[AOV_ALBEDO].sums[i] = (float)test_random_unit(&state);

@@ -160,6 +160,36 @@ START_TEST(test_constant)
 }
 END_TEST
 
+/* Samples that every pixel has are added up, exchanged and cleared like those of single pixels. */
+START_TEST(test_normalized_merge)
+{
+    const uint samples = 2;
+    LightFixture f;
+    Film film, sum;
+    Error error;
+    setup(&f, &FILTER_CASES[0].settings, RECONSTRUCTION_SPLAT, &film);
+    ck_assert(film_init_like(&sum, &film, &error));
+    samples_add(&f, &film, SPLAT_SAMPLE, samples, 0, vec3_splat(1.0f));
+    film_normalize(&film, samples);
+    ck_assert(film_merge(&sum, &film, &error) && film_merge(&sum, &film, &error));
+    film.counts[1] = 5;
+    film_swap_own(&film, &sum);
+    for (size_t i = 0; i < PIXELS; ++i) {
+        ck_assert_uint_eq(film_count(&film, i), 2 * samples * SPREAD_PARTS);
+        ck_assert_uint_eq(film_count(&sum, i), samples * SPREAD_PARTS + (i == 1 ? 5 : 0));
+        ck_assert_int_eq(film.sums[3 * i], 2 * sum.sums[3 * i]);
+    }
+    sum.every_count = UINT32_MAX - samples * SPREAD_PARTS;
+    ck_assert(!film_merge(&sum, &film, &error));
+    film_clear(&film);
+    film_clear(&sum);
+    for (size_t i = 0; i < PIXELS; ++i)
+        ck_assert_uint_eq(film_count(&film, i) + film_count(&sum, i), 0);
+    film_destroy(&sum);
+    teardown(&f, &film);
+}
+END_TEST
+
 /* film_normalize does the same for all layers of samples of which a part has SPLAT_LIGHT, and leaves films alone whose
  * splats are not spread. */
 START_TEST(test_normalized)
@@ -179,7 +209,7 @@ START_TEST(test_normalized)
     film_normalize(&film, samples);
     const double scale = 0x1p30 * samples;
     for (int i = 0; i < PIXELS; ++i) {
-        ck_assert_uint_eq(film.counts[i], samples * SPREAD_PARTS);
+        ck_assert_uint_eq(film_count(&film, (size_t)i), samples * SPREAD_PARTS);
         TEST_NEAR((double)film.sums[3 * i] / scale, (double)light[0], 1e-6);
         TEST_NEAR((double)film.rare_sums[3 * i] / scale, (double)light[1], 1e-6);
         TEST_NEAR((double)film.light_sums[3 * i] / scale, (double)light[1] + (double)light[2], 1e-6);
@@ -380,6 +410,7 @@ TCase *film_spread_tcase(void)
     tcase_add_loop_test(tcase, test_shares, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_normalized, 0, FILTER_CASE_COUNT);
+    tcase_add_test(tcase, test_normalized_merge);
     tcase_add_loop_test(tcase, test_uniform, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_merge);
     tcase_add_test(tcase, test_extremes);

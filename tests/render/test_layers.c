@@ -39,6 +39,28 @@ START_TEST(test_series)
 }
 END_TEST
 
+/* Weights that all pixels have more are like larger weights. */
+START_TEST(test_series_counted)
+{
+    const float values[2][3] = {{1.0f, 2.0f, 3.0f}, {4.0f, 1.0f, 5.0f}};
+    const uint32_t few[2][3] = {{0, 1, 2}, {3, 0, 1}}, many[2][3] = {{4, 5, 6}, {7, 4, 5}};
+    PixelSeries counted, series;
+    Error error;
+    ck_assert(pixel_series_init(&counted, 3, 1, false, &error) && pixel_series_init(&series, 3, 1, false, &error));
+    for (int i = 0; i < 2; ++i) {
+        pixel_series_add_counted(&counted, values[i], few[i], 4);
+        pixel_series_add(&series, values[i], many[i], 1.0);
+    }
+    for (size_t pixel = 0; pixel < 3; ++pixel) {
+        TEST_TRUE(pixel_series_weight(&counted, pixel) == pixel_series_weight(&series, pixel));
+        TEST_TRUE(pixel_series_spread(&counted, pixel) == pixel_series_spread(&series, pixel));
+        TEST_TRUE(counted.mean[pixel] == series.mean[pixel]);
+    }
+    pixel_series_destroy(&counted);
+    pixel_series_destroy(&series);
+}
+END_TEST
+
 /* Two series say together what one of all their images does. */
 START_TEST(test_series_together)
 {
@@ -134,20 +156,24 @@ START_TEST(test_variables)
 }
 END_TEST
 
-/* Where a wall ends, alpha is the part of the pixel that it covers; an environment is everywhere. */
+/* Where a wall ends, alpha is the part of the pixel that it covers; an environment is everywhere. The distance is the mean of
+ * the rays that meet the wall. */
 START_TEST(test_alpha)
 {
-    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALPHA)};
+    RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_DEPTH) | LAYER_BIT(LAYER_ALPHA)};
     RenderedImage image;
-    float alpha[3 * 64];
+    float alpha[3 * 64], depth[3 * 64];
     char text[sizeof LOW_WALL + 64];
     const char *light = strstr(LOW_WALL, "LightSource \"infinite\""), *rest = strchr(light, '\n');
     snprintf(text, sizeof text, "%.*s%s%s", (int)(light - LOW_WALL), LOW_WALL,
              _i == 0 ? "LightSource \"distant\" \"point3 from\" [ 0 0 -1 ]" : "LightSource \"infinite\"", rest);
     fixture_render(&(RenderSetup){.text = text, .samples = 8, .layers = &layers}, &image);
     aov_image_resolve(&layers.aovs[AOV_ALPHA], 0, 64, alpha);
-    for (size_t i = 0; i < 64; ++i)
+    aov_image_resolve(&layers.aovs[AOV_DEPTH], 0, 64, depth);
+    for (size_t i = 0; i < 64; ++i) {
         TEST_NEAR(alpha[3 * i], _i == 1 || i >= 40 ? 1.0f : i < 32 ? 0.0f : 0.5f, 0.0);
+        TEST_TRUE(i < 32 || depth[3 * i] > 4.99f); /* the wall is at 5 */
+    }
     render_layers_destroy(&layers);
     fixture_destroy(&image);
 }
@@ -177,7 +203,7 @@ START_TEST(test_direct_edge)
     RenderedImage image;
     double square = 0.0;
     fixture_render(&(RenderSetup){.text = LOW_WALL, .samples = 200, .integrator = integrator_mmlt()}, &image);
-    double samples = (double)image.film.counts[32];
+    double samples = (double)film_count(&image.film, 32);
     for (size_t i = 32; i < 40; ++i)
         square += pow((double)image.rgb[3 * i + 1] - 0.75, 2.0) / 8.0;
     double independent = 0.25 * 0.25 / samples;
@@ -203,7 +229,7 @@ START_TEST(test_first)
     ck_assert_uint_lt(layers.aov_samples, 8);
     double first = 0.0, all = 0.0;
     for (size_t i = 0; i < 3 * 64; ++i) {
-        ck_assert_uint_eq(image.film.counts[i / 3], layers.aov_samples);
+        ck_assert_uint_eq(film_count(&image.film, i / 3), layers.aov_samples);
         first += (double)saved[i];
         all += (double)image.rgb[i];
     }
@@ -234,8 +260,8 @@ START_TEST(test_halves)
     for (size_t i = 0; i < 3 * film_pixels(film); ++i) {
         TEST_TRUE(film->sums[i] == a->sums[i] + b->sums[i]);
         TEST_TRUE(film->light_sums[i] == a->light_sums[i] + b->light_sums[i]);
-        TEST_TRUE(film->counts[i / 3] == a->counts[i / 3] + b->counts[i / 3]);
-        TEST_TRUE(a->counts[i / 3] > 0 && b->counts[i / 3] > 0);
+        TEST_TRUE(film_count(film, i / 3) == film_count(a, i / 3) + film_count(b, i / 3));
+        TEST_TRUE(film_count(a, i / 3) > 0 && film_count(b, i / 3) > 0);
     }
     ck_assert_uint_eq(film->light_samples, a->light_samples + b->light_samples);
     double part = (double)a->light_samples / (double)film->light_samples;
@@ -347,6 +373,7 @@ int main(void)
     Suite *suite = suite_create("layers");
     TCase *tcase = tcase_create("layers");
     tcase_set_timeout(tcase, 120.0);
+    tcase_add_test(tcase, test_series_counted);
     tcase_add_test(tcase, test_series);
     tcase_add_loop_test(tcase, test_series_together, 0, 6); /* 0: the first is empty, 5: the second */
     tcase_add_test(tcase, test_despeckle);
