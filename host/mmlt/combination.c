@@ -300,10 +300,11 @@ static void rates_of_paths(void *context, size_t paths)
 {
     RatesSearch *search = context;
     search->best[paths].error = HUGE_VAL;
-    const double rest = (double)(PLAN_PARTS - paths);
-    for (double pool = fmin(1.0, 0.5 * rest); paths > 0 && pool < rest; pool += 1.0) {
+    const size_t rest = PLAN_PARTS - paths, most = rest > 1 ? rest - 1 : 1;
+    for (size_t pool = 1; paths > 0 && pool <= most; ++pool) {
+        const double part = rest > 1 ? (double)pool : 0.5;
         double samples[ESTIMATOR_COUNT] = {
-            [ESTIMATOR_CHAINS] = rest - pool, [ESTIMATOR_POOL] = pool, [ESTIMATOR_PATHS] = (double)paths};
+            [ESTIMATOR_CHAINS] = (double)rest - part, [ESTIMATOR_POOL] = part, [ESTIMATOR_PATHS] = (double)paths};
         for (int s = 0; s < ESTIMATOR_COUNT; ++s)
             samples[s] /= estimator_cost((EstimatorKind)s);
         double error = error_of(search->combination, samples, true, search->every);

@@ -274,7 +274,8 @@ START_TEST(test_plan_known)
         StepRates best = {0};
         known_tell(&known, 4.0);
         for (int paths = 1; paths < 20; ++paths)
-            for (double pool = paths < 19 ? 1.0 : 0.5; paths + pool < 20.0; ++pool) {
+            for (int whole = 1; whole == 1 || paths + whole < 20; ++whole) {
+                const double pool = paths < 19 ? whole : 0.5;
                 double samples[ESTIMATOR_COUNT] = {(20.0 - paths - pool) / costs[ESTIMATOR_CHAINS],
                                                    pool / costs[ESTIMATOR_POOL], paths / costs[ESTIMATOR_PATHS]};
                 double error = picture_error(&known.combination, samples, costs);
