@@ -68,8 +68,9 @@ void chain_population_archive(Archive *archive, ChainPopulation *population, Pop
         return;
     archive_bytes(archive, population->words, (size_t)population->count * population->fields * sizeof(uint));
     /* Without brightness there are no chains, and nothing reads the words. */
-    for (uint i = 0; !archive->saves && !archive->failed && population->brightness > 0.0 && i < population->count;
-         ++i) {
+    if (archive->saves || archive->failed || !population->words || !(population->brightness > 0.0))
+        return;
+    for (uint i = 0; i < population->count; ++i) {
         const char *fault = chain_fault(population, i, limits.depth);
         if (fault)
             archive_fail(archive, "chain %lu of %lu: %s", (unsigned long)i + 1, (unsigned long)population->count,
