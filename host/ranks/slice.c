@@ -35,9 +35,10 @@ void slice_start(Slice *slice)
     slice->seconds = 0.0;
     slice->good = true;
     slice->error = (Error){0};
-    slice->done = slice->frame.pass.item_count == 0;
-    slice->threaded = !slice->done && pthread_create(&slice->thread, NULL, slice_main, slice) == 0;
-    if (slice->threaded || slice->done)
+    const bool empty = slice->frame.pass.item_count == 0;
+    slice->done = empty;
+    slice->threaded = !empty && pthread_create(&slice->thread, NULL, slice_main, slice) == 0;
+    if (empty || slice->threaded)
         return;
     slice_run(slice);
     slice->done = true;
