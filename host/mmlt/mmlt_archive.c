@@ -64,7 +64,8 @@ static void pilot_archive(void *context, Archive *archive)
     mmlt_archive(archive, mmlt);
     StepRates rates = mmlt->plan.rates;
     mmlt->plan = plan;
-    plan_rates_set(&mmlt->plan, rates);
+    if (!archive->failed) /* otherwise they may be any numbers */
+        plan_rates_set(&mmlt->plan, rates);
     mmlt->paths = paths;
     mmlt->pool = pool;
     chains_estimator_clear(&mmlt->chains);
