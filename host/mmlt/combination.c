@@ -323,7 +323,8 @@ static double rate_most(EstimatorKind kind)
 
 void step_rates_archive(Archive *archive, StepRates *rates)
 {
-    archive_doubles(archive, &rates->paths, 1, (NumberRange){0.0, rate_most(ESTIMATOR_PATHS)},
+    const double least = estimator_cost(ESTIMATOR_CHAINS) / (PLAN_PARTS * estimator_cost(ESTIMATOR_PATHS));
+    archive_doubles(archive, &rates->paths, 1, (NumberRange){least, rate_most(ESTIMATOR_PATHS)},
                     "samples of path tracing per step");
     archive_doubles(archive, &rates->pool, 1, (NumberRange){POOL_PER_STEP, rate_most(ESTIMATOR_POOL)},
                     "samples of a pool per step");

@@ -41,7 +41,7 @@ typedef struct StepRates {
     double paths, pool;
 } StepRates;
 
-/* Saves rates that a plan has, or restores such: at least POOL_PER_STEP, and as many as combination_rates can find. */
+/* Saves rates that a plan has, or restores such: those that combination_rates can find, of a pool at least POOL_PER_STEP. */
 void step_rates_archive(Archive *archive, StepRates *rates);
 
 /* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations are

@@ -1,7 +1,7 @@
 # The readers of scenes, images, command lines, parts and checkpoints against arbitrary bytes. tests/fuzz_NAME is a test that
 # runs the inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
-# scenes, 7e6 on images and 3e7 on command lines; parts and checkpoints have seeds alone, from which 3e5 and 1e5 executions
-# found nothing). `make fuzz` builds them with libFuzzer and sanitizers and runs each for FUZZ_SECONDS, starting from these.
+# scenes, 7e6 on images and 3e7 on command lines; 3e5 on parts found nothing, the two of checkpoints are findings
+# of 2e5). `make fuzz` builds them with libFuzzer and sanitizers and runs each for FUZZ_SECONDS, starting from these.
 EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
 FUZZ_TARGETS = scene image options part checkpoint
 check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part tests/fuzz_checkpoint

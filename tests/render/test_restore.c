@@ -45,6 +45,7 @@ static const WrongValue WRONG[] = {
     {FILE_BEGIN, 2124 + 16 + 8 * DIAGNOSTIC_COUNT, DOUBLE, -1.0, "the estimated error is negative"},
     {PLAN, 0, DOUBLE, (double)NAN, "samples of path tracing per step: NaN was saved"},
     {PLAN, 0, DOUBLE, 1e9, "samples of path tracing per step: 1e+09 was saved"},
+    {PLAN, 0, DOUBLE, -0.0, "samples of path tracing per step: -0 was saved"},
     {PLAN, 8, DOUBLE, 1e9, "samples of a pool per step: 1e+09 was saved"},
     {PLAN, 8, DOUBLE, 0.0, "samples of a pool per step: 0 was saved"},
     {PLAN, 32, WORD, 65, "chains of a generation: 65 were saved, but there can be 1 to 64"},
