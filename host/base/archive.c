@@ -84,7 +84,6 @@ void archive_flags(Archive *archive, bool *flags, size_t count, const char *what
 /* ---- the kind of a file ------------------------------------------------------------------------------------------ */
 
 #define PROGRAM "Twinlight "
-#define BYTE_ORDER_MARK 0x0102030405060708u
 
 void archive_head(Archive *archive, const char *kind, bool *other)
 {

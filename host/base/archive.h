@@ -49,6 +49,9 @@ void archive_floats(Archive *archive, float *numbers, size_t count, NumberRange 
 /* For truth values, each saved as a byte. Restoring fails, naming `what`, for a byte that is neither 0 nor 1. */
 void archive_flags(Archive *archive, bool *flags, size_t count, const char *what);
 
+/* A number of which every byte differs: read in another byte order it is another one. */
+#define BYTE_ORDER_MARK 0x0102030405060708u
+
 /* The beginning of a file: its kind ("checkpoint"), and a mark of the byte order. Restoring fails for another kind, other byte
  * order or anything else; *other is then whether it is another kind of file of this program. */
 void archive_head(Archive *archive, const char *kind, bool *other);

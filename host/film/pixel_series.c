@@ -75,27 +75,29 @@ void pixel_series_add_part(PixelSeries *series, const float *picture, size_t fir
         pixel_add(series, picture, i, series->latest, part);
 }
 
-void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
+/* Pixels have the weights weight * (weights[i] + more); those of zero are left out. */
+static void pixels_add(PixelSeries *series, const float *picture, const uint32_t *weights, uint32_t more, double weight)
 {
-    if (series->uniform) {
-        pixel_series_begin(series, weight);
-        pixel_series_add_part(series, picture, 0, series->pixels);
-        return;
-    }
     for (size_t i = 0; i < series->pixels; ++i) {
-        double own = weights ? weight * (double)weights[i] : weight;
+        double own = weight * ((weights ? (double)weights[i] : 0.0) + more);
         if (own > 0.0)
             pixel_add(series, picture, i, own, own / weight_add(series, i, own));
     }
 }
 
+void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight)
+{
+    if (series->uniform) {
+        pixel_series_begin(series, weight);
+        pixel_series_add_part(series, picture, 0, series->pixels);
+    } else {
+        pixels_add(series, picture, weights, weights ? 0 : 1, weight);
+    }
+}
+
 void pixel_series_add_counted(PixelSeries *series, const float *picture, const uint32_t *weights, uint32_t more)
 {
-    for (size_t i = 0; i < series->pixels; ++i) {
-        double own = (double)weights[i] + more;
-        if (own > 0.0)
-            pixel_add(series, picture, i, own, own / weight_add(series, i, own));
-    }
+    pixels_add(series, picture, weights, more, 1.0);
 }
 
 /* ---- two series -------------------------------------------------------------------------------------------------- */

@@ -34,7 +34,7 @@ void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t 
  * uniform. */
 void pixel_series_add_counted(PixelSeries *series, const float *picture, const uint32_t *weights, uint32_t more);
 
-/* The same in parts, for a uniform series: the weight of the image, then the pixels first ... end - 1 of each part. */
+/* pixel_series_add in parts, for a uniform series: the weight of the image, then the pixels first ... end - 1 of each part. */
 void pixel_series_begin(PixelSeries *series, double weight);
 void pixel_series_add_part(PixelSeries *series, const float *picture, size_t first, size_t end);
 

@@ -2,6 +2,7 @@
 
 #include "config.h"
 
+#include "base/archive.h"
 #include "base/build_info.h"
 #include "base/exit_status.h"
 #include "base/hash.h"
@@ -9,8 +10,6 @@
 #include "ranks/messages.h"
 
 #include <string.h>
-
-#define BYTE_ORDER_MARK 0x0102030405060708u
 
 void greeting_make(RankGreeting *greeting, const char *machine)
 {

@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longest delay, seconds, until the other ranks learn of a stop. */
-#define LOOK_SECONDS 0.002
-
 /* The Backend of rank 0; only this file knows the type. */
 typedef struct RanksBackend {
     BackendMember local;
@@ -77,7 +74,7 @@ static bool pass_wait(RanksBackend *ranks, Slice *slice, const atomic_int *stop)
                 message_send(rank, TAG_STOP, &NOTHING, sizeof NOTHING);
             stopped = true;
         }
-        if (slice_wait(slice, LOOK_SECONDS))
+        if (slice_wait(slice, SLICE_LOOK_SECONDS))
             communicator_nap();
     }
     slice_join(slice);

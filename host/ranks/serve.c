@@ -11,9 +11,6 @@
 
 #include <string.h>
 
-/* Longest delay, seconds, until the computation learns of a stop. */
-#define LOOK_SECONDS 0.002
-
 typedef struct RankServer {
     const RankSetup *setup;
     SceneCopy scene;
@@ -68,7 +65,7 @@ static void slice_watch(RankServer *server, Slice *slice, atomic_int *stop)
 {
     char nothing;
     int from;
-    while (!slice_wait(slice, LOOK_SECONDS))
+    while (!slice_wait(slice, SLICE_LOOK_SECONDS))
         if (!server->stopped && message_waits(TAG_STOP, &from)) {
             message_receive(0, TAG_STOP, &nothing, sizeof nothing);
             atomic_store(stop, 1);

@@ -7,6 +7,9 @@
 
 #include <pthread.h>
 
+/* How often a rank that waits for its slice looks for messages: the longest delay until it learns of a stop. */
+#define SLICE_LOOK_SECONDS 0.002
+
 typedef struct Slice {
     BackendMember backend;
     FrameParams frame; /* whose pass is the part */
