@@ -50,7 +50,7 @@ static const Integrator *pilot_integrator(const Integrator *integrator)
     return integrator->list ? integrator : integrator_bdpt();
 }
 
-static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator)
+FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator, uint items)
 {
     FrameParams frame = run->frame;
     frame.path.strategies = integrator->strategies;
@@ -60,7 +60,7 @@ static FrameParams pilot_frame(const RenderRun *run, const Integrator *integrato
     frame.film.crop_x1 = frame.film.width;
     frame.film.crop_y1 = frame.film.height;
     frame.pass.first_item = 0;
-    frame.pass.item_count = PILOT_ITEMS;
+    frame.pass.item_count = items;
     frame.pass.sample_index = PILOT_SAMPLE;
     frame.pass.pixel_stride = pixel_order_stride(frame.film.width, frame.film.height);
     return frame;
@@ -77,7 +77,7 @@ static double radiance_of_power(const Scene *scene)
 bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
     const Integrator *shown = pilot_integrator(integrator);
-    FrameParams frame = pilot_frame(run, shown);
+    FrameParams frame = pilot_frame(run, shown, PILOT_ITEMS);
     Pilot pilot;
     StepList list;
     memset(pilot.mantissas, 0, sizeof pilot.mantissas);

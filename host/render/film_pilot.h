@@ -9,6 +9,9 @@
 /* Sample number of the pilot's paths; above those of any image. */
 #define PILOT_SAMPLE 0xffff0000u
 
+/* The parameters of `items` paths over the whole film, with all strategies of the integrator. */
+FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator, uint items);
+
 /* Sets the quantum of run->film from the mean radiance of 4096 paths over the whole film. They use all of the
  * integrator's strategies, even those excluded by `only_strategy`, and ignore `unweighted`. If all are black, the
  * lights' power is used instead. The quantum depends on scene, integrator, depth and seed only, so a crop has the same

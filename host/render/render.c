@@ -5,12 +5,14 @@
 
 #include "backend/film_sink.h"
 #include "backend/step_recorder.h"
+#include "base/log.h"
 #include "base/timing.h"
 #include "layout/diagnostics.h"
 #include "render/checkpoint.h"
 #include "render/error_watch.h"
 #include "render/film_pilot.h"
 #include "render/photon_map.h"
+#include "render/photon_worth.h"
 #include "render/pilot_file.h"
 #include "render/shard.h"
 
@@ -282,6 +284,14 @@ bool render_photons_make(RenderRun *run, const Integrator *integrator, const Sce
     if (!photon_map_make(run, scene, run->past.photons, &run->photons, error))
         return false;
     run->photons.params.everywhere = integrator->strategies == STRATEGIES_PT;
+    bool worth = true, asked_for = run->options->photons != PHOTONS_DEFAULT || run->resumed;
+    if (!asked_for && !photon_map_worth(run, &worth, error))
+        return false;
+    if (!worth) {
+        log_message(LOG_INFO, "caustic photons bring too little of the light: rendering without");
+        photon_map_destroy(&run->photons);
+        run->past.photons = 0;
+    }
     run->frame.photons = run->photons.params;
     return true;
 }

@@ -20,6 +20,7 @@ libtwinlight_host_la_SOURCES += \
 	host/render/photon_map.c host/render/photon_map.h \
 	host/render/photon_pass.c host/render/photon_pass.h \
 	host/render/photon_paths.c host/render/photon_paths.h \
+	host/render/photon_worth.c host/render/photon_worth.h \
 	host/render/picture.c host/render/picture.h \
 	host/render/pilot_file.c host/render/pilot_file.h \
 	host/render/progress.c host/render/progress.h \

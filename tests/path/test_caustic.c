@@ -125,6 +125,40 @@ START_TEST(test_unseen)
 }
 END_TEST
 
+/* ---- whether photons are worth it ---------------------------------------------------------------------------------- */
+
+/* A bead far away whose caustic only its own image shows. */
+#define FAR_BEAD SMOOTH_GLASS "AttributeBegin Translate -3 -0.9 3 Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n"
+
+static const struct {
+    const char *name, *text;
+    unsigned photons;
+    bool kept;
+} WORTH[] = {
+    {"under glass", UNDER_WATER(SPARK) NEARLY_NOTHING("0.9"), PHOTONS_DEFAULT, true},
+    {"bead", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.1", "300") FAR_BEAD, PHOTONS_DEFAULT, false},
+    {"bead, asked for", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.1", "300") FAR_BEAD, PHOTONS, true},
+    {"bead, point light", BD_BEGIN BD_GREY BD_FLOOR POINT FAR_BEAD, PHOTONS_DEFAULT, true},
+};
+#define WORTH_COUNT (int)(sizeof WORTH / sizeof WORTH[0])
+
+START_TEST(test_worth)
+{
+    RenderedImage image;
+    const RenderSetup setup = {.text = WORTH[_i].text,
+                               .samples = 1,
+                               .max_depth = 6,
+                               .threads = 1,
+                               .width = 96,
+                               .height = 96,
+                               .photons = WORTH[_i].photons,
+                               .integrator = integrator_mmlt()};
+    fixture_render(&setup, &image);
+    ck_assert_msg((image.result.photons > 0) == WORTH[_i].kept, "%s: %u photons", WORTH[_i].name, image.result.photons);
+    fixture_destroy(&image);
+}
+END_TEST
+
 /* ---- receivers --------------------------------------------------------------------------------------------------- */
 
 /* Paths of up to 7 vertices after the camera, the last on a light: which vertex draws by photons, by the definition. */
@@ -312,6 +346,7 @@ int main(void)
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
     tcase_set_timeout(pictures, 300);
     tcase_add_test(pictures, test_found);
+    tcase_add_loop_test(pictures, test_worth, 0, WORTH_COUNT);
     tcase_add_loop_test(pictures, test_same, 0, SCENE_COUNT * WAY_COUNT);
     tcase_add_loop_test(pictures, test_unseen, 0, 2 * UNSEEN_COUNT);
     tcase_set_tags(pictures, "pictures");

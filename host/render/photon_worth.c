@@ -1,0 +1,93 @@
+#include "render/photon_worth.h"
+
+#include "backend/step_recorder.h"
+#include "layout/state.h"
+#include "math/vec.h"
+#include "render/film_pilot.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+#define WORTH_PATHS 32768u
+
+/* Photons are worth their time if this part of a path's light comes by them, on average over paths ... */
+#define WORTH_PART 0.001
+
+/* ... where this much of the mean of all paths counts as further light, so that dark paths do not decide. */
+#define WORTH_FLOOR 0.1
+
+/* The luminance of each path, by pixel: no two paths have the same. */
+typedef struct PathLight {
+    pthread_mutex_t mutex;
+    float *luminance;
+} PathLight;
+
+static void path_light_add(void *context, const uint *splats, uint count, uint stride)
+{
+    PathLight *light = context;
+    pthread_mutex_lock(&light->mutex);
+    for (uint t = 0; t < count; ++t) {
+        uint pixel = state_load(splats, stride, SPLAT_PIXEL, t);
+        float luminance = pixel != NONE ? rgb_luminance(state_load_vec3(splats, stride, SPLAT_COLOR, t)) : 0.0f;
+        if (luminance > 0.0f && luminance < FLOAT_INFINITY)
+            light->luminance[pixel] = luminance;
+    }
+    pthread_mutex_unlock(&light->mutex);
+}
+
+/* Renders one path of path tracing in each of `paths` pixels, by run->photons or without; luminance: of all pixels, 0. */
+static bool paths_render(const RenderRun *run, uint paths, bool photons, float *luminance, Error *error)
+{
+    PathLight light = {.luminance = luminance};
+    FrameParams frame = pilot_frame(run, integrator_pt(), paths);
+    StepList list;
+    frame.photons = photons ? run->photons.params : (PhotonParams){0};
+    if (!integrator_pt()->list(&frame, &list, error))
+        return false;
+    list.guide = run->guide;
+    list.photons = photons ? &run->photons : NULL;
+    pthread_mutex_init(&light.mutex, NULL);
+    const SplatSink sink = {.splats = path_light_add, .context = &light, .whole = true};
+    bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);
+    pthread_mutex_destroy(&light.mutex);
+    step_list_destroy(&list);
+    return done;
+}
+
+/* The mean part of a path's light that photons bring. Sums go by pixels, so they are the same on all backends. */
+static double part_by_photons(const float *with, const float *without, size_t pixels, uint paths)
+{
+    double mean = 0.0, part = 0.0;
+    for (size_t i = 0; i < pixels; ++i)
+        mean += (double)without[i] / paths;
+    for (size_t i = 0; i < pixels; ++i)
+        if (with[i] > without[i])
+            part += (double)(with[i] - without[i]) / ((double)with[i] + WORTH_FLOOR * mean);
+    return part / paths;
+}
+
+static bool has_lights_without_extent(const PhotonMap *photons)
+{
+    const uint *records = photons->words + photons->params.count;
+    for (size_t i = 0; i < photons->params.count; ++i)
+        if (records[i * PHOTON_WORDS + PHOTON_LIGHT] != NONE)
+            return true;
+    return false;
+}
+
+bool photon_map_worth(const RenderRun *run, bool *worth, Error *error)
+{
+    size_t pixels = (size_t)run->frame.film.width * run->frame.film.height;
+    uint paths = pixels < WORTH_PATHS ? (uint)pixels : WORTH_PATHS;
+    *worth = has_lights_without_extent(&run->photons);
+    if (*worth || run->photons.params.count == 0)
+        return true;
+    float *luminance[2] = {calloc(pixels, sizeof(float)), calloc(pixels, sizeof(float))};
+    bool done = luminance[0] && luminance[1] ? paths_render(run, paths, true, luminance[0], error) &&
+                                                   paths_render(run, paths, false, luminance[1], error)
+                                             : error_memory(error, 2 * pixels * sizeof(float), "a pilot of photons");
+    *worth = done && part_by_photons(luminance[0], luminance[1], pixels, paths) >= WORTH_PART;
+    free(luminance[0]);
+    free(luminance[1]);
+    return done;
+}
