@@ -14,12 +14,12 @@ static uint span_row(const BackendSpan *span)
 static void metadata_print(JsonWriter *json, size_t process, const char *what, uint row, const char *name)
 {
     json_object_begin(json, NULL);
-    json_string(json, "name", what);
-    json_string(json, "ph", "M");
+    json_text(json, "name", what);
+    json_text(json, "ph", "M");
     json_unsigned(json, "pid", process);
-    json_integer(json, "tid", row);
+    json_signed(json, "tid", row);
     json_object_begin(json, "args");
-    json_string(json, "name", name);
+    json_text(json, "name", name);
     json_object_end(json);
     json_object_end(json);
 }
@@ -45,11 +45,11 @@ static void span_print(JsonWriter *json, size_t process, const BackendSpan *span
 {
     static const char *const CATEGORIES[] = {"kernel", "copy", "film"};
     json_object_begin(json, NULL);
-    json_string(json, "name", span->name);
-    json_string(json, "cat", CATEGORIES[span->track]);
-    json_string(json, "ph", "X");
+    json_text(json, "name", span->name);
+    json_text(json, "cat", CATEGORIES[span->track]);
+    json_text(json, "ph", "X");
     json_unsigned(json, "pid", process);
-    json_integer(json, "tid", span_row(span));
+    json_signed(json, "tid", span_row(span));
     json_number(json, "ts", 1e-3 * (double)(span->begin - start));
     json_number(json, "dur", 1e-3 * (double)(span->end - span->begin));
     json_object_begin(json, "args");
@@ -73,7 +73,7 @@ static void trace_print(FILE *stream, const TraceSource *sources, size_t count)
     uint64_t start = first_begin(sources, count), dropped = 0;
     json_init(&json, stream);
     json_object_begin(&json, NULL);
-    json_string(&json, "displayTimeUnit", "ms");
+    json_text(&json, "displayTimeUnit", "ms");
     json_array_begin(&json, "traceEvents");
     for (size_t k = 0; k < count; ++k) {
         rows_print(&json, k + 1, &sources[k]);

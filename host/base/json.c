@@ -107,7 +107,7 @@ void json_array_end(JsonWriter *json)
     json_close(json, ']');
 }
 
-void json_string(JsonWriter *json, const char *key, const char *value)
+void json_text(JsonWriter *json, const char *key, const char *value)
 {
     json_prefix(json, key);
     if (value)
@@ -125,7 +125,7 @@ void json_number(JsonWriter *json, const char *key, double value)
         fputs("null", json->stream);
 }
 
-void json_integer(JsonWriter *json, const char *key, int64_t value)
+void json_signed(JsonWriter *json, const char *key, int64_t value)
 {
     json_prefix(json, key);
     fprintf(json->stream, "%" PRId64, value);

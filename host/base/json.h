@@ -24,9 +24,9 @@ void json_array_begin(JsonWriter *json, const char *key);
 void json_array_end(JsonWriter *json);
 
 /* `value` is UTF-8; each invalid byte becomes U+FFFD. NULL is written as null. */
-void json_string(JsonWriter *json, const char *key, const char *value);
+void json_text(JsonWriter *json, const char *key, const char *value);
 void json_number(JsonWriter *json, const char *key, double value);
-void json_integer(JsonWriter *json, const char *key, int64_t value);
+void json_signed(JsonWriter *json, const char *key, int64_t value);
 void json_unsigned(JsonWriter *json, const char *key, uint64_t value);
 void json_bool(JsonWriter *json, const char *key, bool value);
 

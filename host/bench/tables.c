@@ -71,7 +71,7 @@ static void json_group(JsonWriter *json, const BenchGroup *group, double time)
 {
     json_object_begin(json, NULL);
     json_number(json, "time", time);
-    json_integer(json, "runs", group->runs);
+    json_signed(json, "runs", group->runs);
     json_band(json, "seconds", &group->seconds);
     json_band(json, "samples_per_pixel", &group->samples_per_pixel);
     json_band(json, "rel_mse", &group->rel_mse);
@@ -101,8 +101,8 @@ static void json_line(JsonWriter *json, const char *key, const SampleLine *line)
 static void json_series(JsonWriter *json, const BenchOptions *options, const BenchSeries *series)
 {
     json_object_begin(json, NULL);
-    json_string(json, "integrator", series->integrator->name);
-    json_string(json, "backend", series->backend->name);
+    json_text(json, "integrator", series->integrator->name);
+    json_text(json, "backend", series->backend->name);
     json_line(json, "by_time", &series->by_time);
     json_line(json, "by_samples", &series->by_samples);
     json_number(json, "equal_seconds", series->equal_seconds);
@@ -126,8 +126,8 @@ static void json_chains(JsonWriter *json, const ChainStatistics *chains)
             if (chains->proposals[kind][depth] == 0)
                 continue;
             json_object_begin(json, NULL);
-            json_string(json, "kind", stats_chain_kind(kind));
-            json_integer(json, "depth", depth);
+            json_text(json, "kind", stats_chain_kind(kind));
+            json_signed(json, "depth", depth);
             json_unsigned(json, "proposals", chains->proposals[kind][depth]);
             json_unsigned(json, "accepted", chains->accepted[kind][depth]);
             json_object_end(json);
@@ -141,10 +141,10 @@ static void json_run(JsonWriter *json, const BenchOptions *options, const BenchS
 {
     const BenchRecord *record = &run->record;
     json_object_begin(json, NULL);
-    json_string(json, "integrator", scene->series[run->series].integrator->name);
-    json_string(json, "backend", scene->series[run->series].backend->name);
+    json_text(json, "integrator", scene->series[run->series].integrator->name);
+    json_text(json, "backend", scene->series[run->series].backend->name);
     json_number(json, "time", options->times[run->time]);
-    json_integer(json, "run", run->number + 1);
+    json_signed(json, "run", run->number + 1);
     json_unsigned(json, "seed", run->seed);
     json_number(json, "seconds", record->seconds);
     json_number(json, "load_seconds", record->load);
@@ -168,20 +168,20 @@ static void json_run(JsonWriter *json, const BenchOptions *options, const BenchS
     json_object_end(json);
     if (record->chains.steps > 0)
         json_chains(json, &record->chains);
-    json_string(json, "image", run->image);
+    json_text(json, "image", run->image);
     json_object_end(json);
 }
 
 static void json_scene(JsonWriter *json, const BenchOptions *options, const BenchScene *scene)
 {
     json_object_begin(json, NULL);
-    json_string(json, "name", scene->name);
-    json_string(json, "file", scene->path);
-    json_integer(json, "width", scene->width);
-    json_integer(json, "height", scene->height);
-    json_integer(json, "max_depth", scene->max_depth);
-    json_string(json, "reference", scene->reference.path[0] ? scene->reference.path : NULL);
-    json_string(json, "reference_origin", scene->reference.path[0] ? scene->reference.origin : NULL);
+    json_text(json, "name", scene->name);
+    json_text(json, "file", scene->path);
+    json_signed(json, "width", scene->width);
+    json_signed(json, "height", scene->height);
+    json_signed(json, "max_depth", scene->max_depth);
+    json_text(json, "reference", scene->reference.path[0] ? scene->reference.path : NULL);
+    json_text(json, "reference_origin", scene->reference.path[0] ? scene->reference.origin : NULL);
     json_number(json, "reference_rel_mse", scene->reference.own_error);
     bool known = scene->reference.path[0] != '\0';
     json_array_begin(json, "series");
@@ -204,11 +204,11 @@ void bench_json_write(const Bench *bench, FILE *stream)
     build_machine(machine, sizeof machine);
     json_init(&json, stream);
     json_object_begin(&json, NULL);
-    json_integer(&json, "format", FORMAT);
-    json_string(&json, "machine", machine);
-    json_string(&json, "compiler", build_compiler());
-    json_string(&json, "commit", build_commit());
-    json_string(&json, "command", bench->command);
+    json_signed(&json, "format", FORMAT);
+    json_text(&json, "machine", machine);
+    json_text(&json, "compiler", build_compiler());
+    json_text(&json, "commit", build_commit());
+    json_text(&json, "command", bench->command);
     json_number(&json, "exposure", options->display.exposure);
     json_array_begin(&json, "scenes");
     for (int i = 0; i < options->scene_count; ++i)

@@ -69,10 +69,10 @@ static void device_json(JsonWriter *json, const BackendDevice *device, size_t in
 {
     json_object_begin(json, NULL);
     json_unsigned(json, "index", index);
-    json_string(json, "name", device->name);
-    json_string(json, "kind", device->kind);
-    json_string(json, "platform", device->platform);
-    json_string(json, "version", device->version);
+    json_text(json, "name", device->name);
+    json_text(json, "kind", device->kind);
+    json_text(json, "platform", device->platform);
+    json_text(json, "version", device->version);
     json_unsigned(json, "compute_units", device->units);
     json_unsigned(json, "memory_bytes", device->memory);
     json_unsigned(json, "largest_buffer_bytes", device->allocation_limit);

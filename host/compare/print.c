@@ -74,7 +74,7 @@ static void json_metrics(JsonWriter *json, const Metrics *m)
     json_number(json, "mean_reference", m->mean_reference);
     json_rgb(json, "mean_rgb", m->mean_rgb);
     json_rgb(json, "mean_reference_rgb", m->mean_reference_rgb);
-    json_integer(json, "blocks", m->blocks);
+    json_signed(json, "blocks", m->blocks);
     json_number(json, "block_max", m->block_max);
     json_number(json, "block_mean", m->block_mean);
     json_unsigned(json, "not_finite", m->not_finite);
@@ -99,10 +99,10 @@ void comparison_print_json(const Comparison *comparison)
     JsonWriter json;
     json_init(&json, stdout);
     json_object_begin(&json, NULL);
-    json_string(&json, "image", comparison->image);
-    json_string(&json, "reference", comparison->reference);
-    json_integer(&json, "width", comparison->width);
-    json_integer(&json, "height", comparison->height);
+    json_text(&json, "image", comparison->image);
+    json_text(&json, "reference", comparison->reference);
+    json_signed(&json, "width", comparison->width);
+    json_signed(&json, "height", comparison->height);
     json_metrics(&json, &comparison->metrics);
     json_number(&json, "flip", comparison->display_error.flip);
     json_number(&json, "ssim", comparison->display_error.ssim);
@@ -111,6 +111,6 @@ void comparison_print_json(const Comparison *comparison)
     if (comparison->tested)
         json_test(&json, &comparison->test);
     else
-        json_string(&json, "z_test", NULL);
+        json_text(&json, "z_test", NULL);
     json_object_end(&json);
 }

@@ -14,14 +14,14 @@ static void stats_scene(JsonWriter *json, const RenderStats *stats)
     const Scene *scene = stats->scene;
     const SceneSettings *settings = &scene->settings;
     json_object_begin(json, "scene");
-    json_string(json, "file", stats->scene_file);
-    json_integer(json, "width", settings->width);
-    json_integer(json, "height", settings->height);
+    json_text(json, "file", stats->scene_file);
+    json_signed(json, "width", settings->width);
+    json_signed(json, "height", settings->height);
     json_array_begin(json, "crop");
     for (int i = 0; i < 4; ++i)
-        json_integer(json, NULL, settings->crop[i]);
+        json_signed(json, NULL, settings->crop[i]);
     json_array_end(json);
-    json_integer(json, "max_depth", settings->max_depth);
+    json_signed(json, "max_depth", settings->max_depth);
     json_unsigned(json, "primitives", scene->primitive_count);
     json_unsigned(json, "instances", scene->instances.count);
     json_unsigned(json, "materials", scene->materials.count);
@@ -164,7 +164,7 @@ static void stats_error(JsonWriter *json, const RenderStats *stats)
     const ErrorGoal *goal = stats->error;
     json_object_begin(json, "error");
     json_number(json, "goal", goal->goal);
-    json_string(json, "of", goal->blocks ? "blocks" : "pixels");
+    json_text(json, "of", goal->blocks ? "blocks" : "pixels");
     if (goal->percentile > 0.0)
         json_number(json, "percentile", goal->percentile);
     if (result->error.work > 0) {
@@ -183,15 +183,15 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     JsonWriter json;
     json_init(&json, stream);
     json_object_begin(&json, NULL);
-    json_integer(&json, "format", STATS_FORMAT);
-    json_string(&json, "version", PACKAGE_VERSION);
+    json_signed(&json, "format", STATS_FORMAT);
+    json_text(&json, "version", PACKAGE_VERSION);
     stats_scene(&json, stats);
-    json_string(&json, "integrator", stats->integrator);
-    json_string(&json, "backend", stats->backend);
-    json_string(&json, "device", result->backend.device);
+    json_text(&json, "integrator", stats->integrator);
+    json_text(&json, "backend", stats->backend);
+    json_text(&json, "device", result->backend.device);
     json_unsigned(&json, "seed", stats->seed);
-    json_integer(&json, "threads",
-                 result->backend.exchange.ranks > 0 ? result->backend.exchange.threads : result->backend.threads);
+    json_signed(&json, "threads",
+                result->backend.exchange.ranks > 0 ? result->backend.exchange.threads : result->backend.threads);
     json_number(&json, "samples_per_pixel", result->samples_per_pixel);
     json_unsigned(&json, "samples", result->samples);
     json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
@@ -208,9 +208,9 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_unsigned(&json, "peak_memory_bytes", timing_peak_memory());
     json_unsigned(&json, "backend_bytes", result->backend.bytes);
     stats_diagnostics(&json, stats);
-    json_string(&json, "part", stats->part[0] ? stats->part : NULL);
-    json_string(&json, "image", stats->part[0] ? NULL : stats->exr);
-    json_string(&json, "png", stats->png[0] ? stats->png : NULL);
+    json_text(&json, "part", stats->part[0] ? stats->part : NULL);
+    json_text(&json, "image", stats->part[0] ? NULL : stats->exr);
+    json_text(&json, "png", stats->png[0] ? stats->png : NULL);
     json_object_end(&json);
 }
 

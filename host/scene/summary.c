@@ -94,11 +94,11 @@ void scene_summary_json(const Scene *scene, const SceneSummary *summary, const c
     JsonWriter json;
     json_init(&json, stream);
     json_object_begin(&json, NULL);
-    json_string(&json, "scene", path);
-    json_integer(&json, "width", scene->settings.width);
-    json_integer(&json, "height", scene->settings.height);
-    json_integer(&json, "samples", scene->settings.samples);
-    json_integer(&json, "max_depth", scene->settings.max_depth);
+    json_text(&json, "scene", path);
+    json_signed(&json, "width", scene->settings.width);
+    json_signed(&json, "height", scene->settings.height);
+    json_signed(&json, "samples", scene->settings.samples);
+    json_signed(&json, "max_depth", scene->settings.max_depth);
     counts_json(&json, "primitives", summary->primitives, PRIMITIVE_NAMES, PRIMITIVE_KINDS);
     json_unsigned(&json, "objects", summary->objects);
     json_unsigned(&json, "instances", summary->instances);
@@ -112,7 +112,7 @@ void scene_summary_json(const Scene *scene, const SceneSummary *summary, const c
     json_array_begin(&json, "features");
     for (int bit = 0; bit < FEATURE_COUNT; ++bit)
         if (scene->features >> bit & 1u)
-            json_string(&json, NULL, FEATURE_NAMES[bit]);
+            json_text(&json, NULL, FEATURE_NAMES[bit]);
     json_array_end(&json);
     json_unsigned(&json, "bytes", scene_bytes(scene));
     json_unsigned(&json, "degenerate_triangles", scene->counts.degenerate_triangles);

@@ -7,11 +7,11 @@
 
 static void facts_write(JsonWriter *json, const Snapshot *snapshot, const RenderFacts *facts)
 {
-    json_string(json, "image", path_file_name(facts->image));
-    json_string(json, "scene", path_file_name(facts->scene));
-    json_string(json, "integrator", facts->integrator);
-    json_integer(json, "width", snapshot->width);
-    json_integer(json, "height", snapshot->height);
+    json_text(json, "image", path_file_name(facts->image));
+    json_text(json, "scene", path_file_name(facts->scene));
+    json_text(json, "integrator", facts->integrator);
+    json_signed(json, "width", snapshot->width);
+    json_signed(json, "height", snapshot->height);
 }
 
 static void progress_write(JsonWriter *json, const RenderStatus *status)
@@ -35,7 +35,7 @@ static void devices_write(JsonWriter *json, const RenderStatus *status)
     json_array_begin(json, "devices");
     for (size_t i = 0; i < status->device_count; ++i) {
         json_object_begin(json, NULL);
-        json_string(json, "name", status->devices[i].name);
+        json_text(json, "name", status->devices[i].name);
         json_number(json, "rays_per_second", (double)status->devices[i].rays * rate);
         json_object_end(json);
     }
@@ -56,11 +56,11 @@ static void layers_write(JsonWriter *json, const Snapshot *snapshot)
     bool halves = false;
     json_array_begin(json, "layers");
     for (size_t i = 0; i < snapshot->layer_count; ++i) {
-        json_string(json, NULL, snapshot->layers[i].name);
+        json_text(json, NULL, snapshot->layers[i].name);
         halves = halves || strcmp(snapshot->layers[i].name, "halfB") == 0;
     }
     if (halves)
-        json_string(json, NULL, LAYER_DIFFERENCE);
+        json_text(json, NULL, LAYER_DIFFERENCE);
     json_array_end(json);
 }
 
