@@ -4,7 +4,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <sys/stat.h>
+#include <sys/types.h>
 
 bool image_error(Error *error, const char *path, const char *why)
 {
@@ -12,9 +12,18 @@ bool image_error(Error *error, const char *path, const char *why)
     return error_fix(error, "convert it again, or use another of: exr, hdr, pfm, png, jpg, tga");
 }
 
+/* Bytes of a file or of a stream in memory, -1 if they cannot be told. Keeps the position. */
+static long long file_size(FILE *file)
+{
+    off_t position = ftello(file);
+    if (position < 0 || fseeko(file, 0, SEEK_END) != 0)
+        return -1;
+    off_t end = ftello(file);
+    return fseeko(file, position, SEEK_SET) == 0 ? (long long)end : -1;
+}
+
 bool image_size_check(FILE *file, const char *path, ImageSize size, Error *error)
 {
-    struct stat status;
     if (size.width < 1 || size.height < 1) {
         error_set(error, "cannot read the image %s: it is %lld x %lld pixels", path, size.width, size.height);
         return error_fix(error, "scale it down");
@@ -24,7 +33,7 @@ bool image_size_check(FILE *file, const char *path, ImageSize size, Error *error
         return error_fix(error, "use one of at most %u pixels, no side longer than %d", IMAGE_PIXELS_MAX,
                          IMAGE_SIDE_MAX);
     }
-    if (fstat(fileno(file), &status) == 0 && size.width * size.height / size.density <= (long long)status.st_size)
+    if (size.width * size.height / size.density <= file_size(file))
         return true;
     error_set(error, "cannot read the image %s: it is too short for %lld x %lld pixels", path, size.width, size.height);
     return error_fix(error, "it is damaged or truncated: convert or copy it again");

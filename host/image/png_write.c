@@ -29,6 +29,8 @@ typedef struct PngPicture {
     int width, height;
     double exposure; /* factor */
     PngRows rows;
+    const unsigned char *bytes; /* in place of `rows`: values to be written as they are */
+    int channels; /* of `bytes`: 1 or 3 */
 } PngPicture;
 
 static void png_failed(png_structp png, png_const_charp message)
@@ -82,6 +84,17 @@ static unsigned char byte_encode(float linear, double exposure)
     return (unsigned char)(color_srgb_encode(x < 1.0 ? x : 1.0) * 255.0 + 0.5);
 }
 
+static void png_bytes_write(png_structp png, png_infop info, const PngPicture *picture)
+{
+    png_set_IHDR(png, info, (png_uint_32)picture->width, (png_uint_32)picture->height, 8,
+                 picture->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (int y = 0; y < picture->height; ++y)
+        png_write_row(png, picture->bytes + (size_t)y * (size_t)picture->width * (size_t)picture->channels);
+    png_write_end(png, info);
+}
+
 /* Everything between creating and destroying the png_struct. Longjmps out on failure, so it owns no resources. */
 static void png_rows_write(png_structp png, png_infop info, unsigned char *bytes, const PngPicture *picture)
 {
@@ -111,7 +124,10 @@ static bool png_encode(PngWriter *writer, const PngPicture *picture)
         snprintf(writer->message, sizeof writer->message, "out of memory");
     } else if (setjmp(png_jmpbuf(png)) == 0) {
         png_set_write_fn(png, writer, writer->file ? png_file_bytes : png_memory_bytes, png_flush_nothing);
-        png_rows_write(png, info, row, picture);
+        if (picture->bytes)
+            png_bytes_write(png, info, picture);
+        else
+            png_rows_write(png, info, row, picture);
         good = true;
     }
     png_destroy_write_struct(&png, &info);
@@ -137,7 +153,8 @@ bool png_memory(const float *rgb, int width, int height, float exposure_stops, u
 {
     PngWriter writer = {0};
     WholePicture whole = {rgb, width};
-    const PngPicture picture = {width, height, exp2((double)exposure_stops), {whole_row, &whole}};
+    const PngPicture picture = {
+        .width = width, .height = height, .exposure = exp2((double)exposure_stops), .rows = {whole_row, &whole}};
     if (!png_encode(&writer, &picture)) {
         free(writer.bytes);
         return error_set(error, "cannot make a PNG of %d x %d pixels: %s", width, height, writer.message);
@@ -155,14 +172,13 @@ bool png_write(const char *path, const float *rgb, int width, int height, float 
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-bool png_write_picture(const char *path, PngRows rows, int width, int height, float exposure_stops, Error *error)
+static bool png_file_write(const char *path, const PngPicture *picture, Error *error)
 {
     OutputFile file;
     PngWriter writer = {.file = &file};
-    const PngPicture picture = {width, height, exp2((double)exposure_stops), rows};
     if (!output_file_begin(&file, path, error))
         return false;
-    bool good = png_encode(&writer, &picture);
+    bool good = png_encode(&writer, picture);
     if (!good) {
         error_set(error, "cannot write %s: %s", path, writer.message);
         if (writer.write_errno != 0)
@@ -171,4 +187,17 @@ bool png_write_picture(const char *path, PngRows rows, int width, int height, fl
     good = good && output_file_commit(&file, error);
     output_file_cancel(&file);
     return good;
+}
+
+bool png_write_picture(const char *path, PngRows rows, int width, int height, float exposure_stops, Error *error)
+{
+    const PngPicture picture = {
+        .width = width, .height = height, .exposure = exp2((double)exposure_stops), .rows = rows};
+    return png_file_write(path, &picture, error);
+}
+
+bool png_write_bytes(const char *path, const unsigned char *bytes, int width, int height, int channels, Error *error)
+{
+    const PngPicture picture = {.width = width, .height = height, .bytes = bytes, .channels = channels};
+    return png_file_write(path, &picture, error);
 }

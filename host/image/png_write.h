@@ -11,6 +11,9 @@
  * cannot be written. */
 bool png_write(const char *path, const float *rgb, int width, int height, float exposure_stops, Error *error);
 
+/* Writes 8-bit values as they are: grey (channels 1) or RGB (3). */
+bool png_write_bytes(const char *path, const unsigned char *bytes, int width, int height, int channels, Error *error);
+
 /* Supplies rows from top to bottom: 3 floats per pixel, valid until the next call. */
 typedef struct PngRows {
     const float *(*row)(void *context, int y);

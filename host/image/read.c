@@ -4,6 +4,7 @@
 #include "base/path_name.h"
 #include "image/decoders.h"
 
+#include <stdint.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -71,6 +72,25 @@ bool image_read(const char *path, Image *image, Error *error)
     if (!file)
         return false;
     bool good = image_read_kind(file, path, header, size, image, error);
+    fclose(file);
+    if (!good)
+        image_destroy(image);
+    return good;
+}
+
+bool image_read_memory(const void *bytes, size_t size, const char *name, Image *image, Error *error)
+{
+    const unsigned char *header = bytes;
+    *image = (Image){0};
+    bool png = size >= HEADER_SIZE && memcmp(header, "\x89PNG\r\n\x1a\n", 8) == 0;
+    if (!png && !(size >= 3 && memcmp(header, "\xff\xd8\xff", 3) == 0)) {
+        image_error(error, name, "it is neither PNG nor JPEG, or truncated");
+        return error_fix(error, "use PNG or JPEG");
+    }
+    FILE *file = fmemopen((void *)(uintptr_t)bytes, size, "rb");
+    if (!file)
+        return error_memory(error, size, name);
+    bool good = image_read_kind(file, name, header, png ? HEADER_SIZE : 3, image, error);
     fclose(file);
     if (!good)
         image_destroy(image);

@@ -11,6 +11,9 @@
  * or of another format. */
 bool image_read(const char *path, Image *image, Error *error);
 
+/* The same from memory, for PNG and JPEG. `name` is for messages. */
+bool image_read_memory(const void *bytes, size_t size, const char *name, Image *image, Error *error);
+
 /* Reads the channels LAYER.R, LAYER.G and LAYER.B of an EXR, named as `twinlight render` writes layers
  * (render/layers.h). Without them, or for another format, *found is false, `image` is empty and the result is true. */
 bool image_read_layer(const char *path, const char *layer, Image *image, bool *found, Error *error);

@@ -35,6 +35,10 @@ static void import_init(PbrtImport *im, const ImportOptions *options, Scene *sce
     name_table_init(&im->spectrum_textures);
     array_init(&im->textures, sizeof(ImportTexture));
     texture_cache_init(&im->images);
+    if (options->memory) {
+        im->images.read = options->memory->image;
+        im->images.owner = options->memory->owner;
+    }
     im->default_material = NONE;
     im->iso = 100.0f;
     im->shutter_close = 1.0f;

@@ -156,6 +156,16 @@ static bool ply_add(PbrtImport *im, const ShapeContext *context, PlyMesh *ply)
            shape_add_mesh(im, context, PRIMITIVE_TRIANGLE, ply->positions, ply->normals, &mesh);
 }
 
+/* The mesh of that name: from memory or from a file. */
+static bool ply_find(PbrtImport *im, const char *name, SourcePlace place, PlyMesh *ply)
+{
+    const ImportMemory *memory = im->options.memory;
+    if (memory)
+        return memory->mesh(memory->owner, name, ply, im->error);
+    const char *path = import_path(im, name);
+    return path && ply_read(path, place, ply, im->error);
+}
+
 static bool plymesh_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
 {
     const char *name = param_string(list, "filename", NULL);
@@ -169,10 +179,8 @@ static bool plymesh_read(PbrtImport *im, ParamList *list, const ShapeContext *co
                                             "use the material's displacement, a bump map"))
         return false;
     SourcePlace place = param_place(list, "filename");
-    const char *path = import_path(im, name);
     PlyMesh ply = {0};
-    bool good = path && ply_read(path, place, &ply, im->error) && polygons_report(im, place, &ply) &&
-                ply_add(im, context, &ply);
+    bool good = ply_find(im, name, place, &ply) && polygons_report(im, place, &ply) && ply_add(im, context, &ply);
     ply_destroy(&ply);
     return good;
 }

@@ -16,6 +16,7 @@ typedef struct CacheEntry {
 
 void texture_cache_init(TextureCache *cache)
 {
+    *cache = (TextureCache){0};
     array_init(&cache->entries, sizeof(CacheEntry));
 }
 
@@ -227,7 +228,7 @@ bool texture_image_load(Scene *scene, TextureCache *cache, const char *path, con
         return image_share(scene, entry->image, options, index, error) &&
                cache_add(cache, path, options, *index, error);
     Image image;
-    if (!image_read(path, &image, error))
+    if (!(cache->read ? cache->read(cache->owner, path, &image, error) : image_read(path, &image, error)))
         return false;
     bool good =
         texture_image_add(scene, &image, options, index, error) && cache_add(cache, path, options, *index, error);

@@ -21,6 +21,8 @@ typedef struct TextureImageOptions {
 /* Images loaded so far, so that a file with the same encoding is stored once. One per scene being read. */
 typedef struct TextureCache {
     Array entries;
+    bool (*read)(void *owner, const char *path, Image *image, Error *error); /* NULL: image_read */
+    void *owner; /* for `read` */
 } TextureCache;
 
 void texture_cache_init(TextureCache *cache);
