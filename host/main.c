@@ -39,6 +39,7 @@ static const Command COMMANDS[] = {
     {"merge", "make an image of the parts that several machines have rendered", cmd_merge},
     {"compare", "measure how far an image is from a reference", compare_run},
     {"bench", "measure error against time and write a report", cmd_bench},
+    {"convert", "write a glTF scene as a pbrt scene", cmd_convert},
     {"info", "print what a scene contains", cmd_info},
     {"devices", "list backends and devices for rendering", cmd_devices},
     {"pyramid", "show the contribution of every bidirectional strategy", cmd_pyramid},
@@ -104,7 +105,7 @@ static int usage_fail(Error *error, const char *word)
     if (nearest)
         error_fix(error, "did you mean %s? twinlight --help lists all", nearest);
     else
-        error_fix(error, "use render, merge, compare, bench, info, devices or pyramid; see twinlight --help");
+        error_fix(error, "use render, merge, compare, bench, convert, info, devices or pyramid; see twinlight --help");
     return EXIT_USAGE;
 }
 

@@ -8,12 +8,13 @@ include host/ranks/sources.mk
 include host/compare/sources.mk
 include host/scene/sources.mk
 include host/pbrt/sources.mk
+include host/gltf/sources.mk
 include host/render/sources.mk
 include host/mmlt/sources.mk
 include host/serve/sources.mk
 include host/bench/sources.mk
 include host/command/sources.mk
-libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) $(MICROHTTPD_LIBS) $(MPI_LIBS) -lm
+libtwinlight_host_la_LIBADD = $(EMBREE_LIBS) $(EXR_LIBS) $(OPENEXR_LIBS) $(PNG_LIBS) $(ZLIB_LIBS) $(ZSTD_LIBS) $(STB_LIBS) $(MICROHTTPD_LIBS) $(MPI_LIBS) $(ASSIMP_LIBS) -lm
 
 # The commit goes into reports of measurements; the file changes only when that does.
 host/base/build_info.lo: build_commit.h

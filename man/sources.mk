@@ -1,6 +1,7 @@
 dist_man_MANS += \
 	man/twinlight-bench.1 \
 	man/twinlight-compare.1 \
+	man/twinlight-convert.1 \
 	man/twinlight-devices.1 \
 	man/twinlight-info.1 \
 	man/twinlight-merge.1 \

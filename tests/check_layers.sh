@@ -9,7 +9,7 @@
 srcdir=${srcdir:-$(dirname "$0")/..}
 
 shared_rooms='math layout geometry bsdf light camera path chain kernels'
-host_rooms='base image film backend ranks compare scene pbrt render mmlt serve bench command'
+host_rooms='base image film backend ranks compare scene pbrt gltf render mmlt serve bench command'
 
 # resolve ROOT DIRECTORY NAME: prints the file that #include "NAME" in DIRECTORY refers to, relative to ROOT, in the
 # order of the build's include path, or nothing if there is none.

@@ -48,6 +48,9 @@ check_PROGRAMS += \
 	tests/test_shift \
 	tests/test_texture \
 	tests/test_verify
+if HAVE_ASSIMP
+check_PROGRAMS += tests/test_gltf
+endif
 if HAVE_OPENCL
 check_PROGRAMS += tests/test_opencl
 endif
@@ -106,6 +109,7 @@ EXTRA_DIST += \
 	tests/mmlt/test_partition_state.h \
 	tests/light/test_emit.h \
 	tests/support/test_files.h \
+	tests/gltf/test_gltf.h \
 	tests/pbrt/test_import.h \
 	tests/light/test_light.h \
 	tests/math/test_math.h \
@@ -223,6 +227,13 @@ tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
 	tests/geometry/test_geometry_quadrics.c \
 	tests/geometry/test_geometry_rays.c
 
+tests_test_gltf_SOURCES = tests/gltf/test_gltf.c \
+	tests/gltf/test_gltf_bad.c \
+	tests/gltf/test_gltf_convert.c \
+	tests/gltf/test_gltf_materials.c \
+	tests/gltf/test_gltf_scene.c \
+	tests/gltf/test_gltf_textures.c
+
 tests_test_import_SOURCES = tests/pbrt/test_import.c \
 	tests/pbrt/test_import_bad.c \
 	tests/pbrt/test_import_files.c \
@@ -293,6 +304,7 @@ script_tests = \
 	tests/bench/test_bench.sh \
 	tests/command/test_checkpoint.sh \
 	tests/command/test_cli.sh \
+	tests/command/test_convert.sh \
 	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \
 	tests/command/test_merge.sh \

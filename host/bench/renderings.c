@@ -7,7 +7,7 @@
 #include "bench/options.h"
 #include "bench/task.h"
 #include "image/rendering_file.h"
-#include "pbrt/import.h"
+#include "gltf/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -59,7 +59,7 @@ static bool scene_prepare(BenchWorkshop *shop, Error *error)
     const BenchOptions *options = &shop->bench->options;
     BenchScene *scene = shop->scene;
     double start = timing_now();
-    if (!pbrt_load(scene->path, options->lenient, &shop->data, error))
+    if (!scene_file_load(scene->path, options->lenient, &shop->data, error))
         return false;
     shop->load = timing_now() - start;
     const SceneSettings *settings = &shop->data.settings;

@@ -3,7 +3,7 @@
 
 #include "base/json.h"
 #include "base/log.h"
-#include "pbrt/import.h"
+#include "gltf/load.h"
 #include "scene/scene.h"
 #include "scene/summary.h"
 
@@ -20,7 +20,7 @@ static const OptionSpec SPECS[] = {
 };
 
 static const OptionTable TABLE = {
-    "info", "info [OPTION]... SCENE",       "Prints what SCENE, a file in pbrt-v4's text format, contains.",
+    "info", "info [OPTION]... SCENE",       "Prints what SCENE, a file in pbrt-v4's text format or glTF, contains.",
     SPECS,  sizeof SPECS / sizeof SPECS[0], NULL,
 };
 
@@ -38,7 +38,7 @@ static int info_print(const InfoCommand *command, const char *path, Error *error
 {
     Scene scene;
     scene_init(&scene);
-    bool loaded = pbrt_load(path, command->lenient, &scene, error);
+    bool loaded = scene_file_load(path, command->lenient, &scene, error);
     if (loaded) {
         SceneSummary summary;
         scene_summary(&scene, &summary);

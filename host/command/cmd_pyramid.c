@@ -8,7 +8,7 @@
 #include "command/render_options.h"
 #include "image/contact_sheet.h"
 #include "image/png_write.h"
-#include "pbrt/import.h"
+#include "gltf/load.h"
 #include "render/render.h"
 
 #include <stdio.h>
@@ -52,7 +52,7 @@ static const RenderOptionSet OPTIONS = {
 
 static bool scene_load(const RenderCommand *command, Scene *scene, Error *error)
 {
-    if (!pbrt_load(command->scene, command->lenient, scene, error))
+    if (!scene_file_load(command->scene, command->lenient, scene, error))
         return false;
     int width = command->resolution[0], height = command->resolution[1];
     if (width == 0) {

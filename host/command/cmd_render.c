@@ -11,7 +11,7 @@
 #include "command/render_verify.h"
 #include "mmlt/chain_list.h"
 #include "mmlt/scheme.h"
-#include "pbrt/import.h"
+#include "gltf/load.h"
 #include "ranks/ranks.h"
 #include "render/checkpoint.h"
 #include "render/report.h"
@@ -24,7 +24,7 @@
 static const RenderOptionSet OPTIONS = {
     .command = "render",
     .usage = "render [OPTION]... SCENE",
-    .summary = "Renders SCENE, a file in pbrt-v4's text format, to an OpenEXR image and a PNG.",
+    .summary = "Renders SCENE, a file in pbrt-v4's text format or glTF, to an OpenEXR image and a PNG.",
     .footer = "Switches of mmlt (--mlt=KEY=VALUE,...):\n" MLT_HELP "\n"
               "SIGINT, SIGTERM and SIGHUP end the rendering early: what is finished is written, and the exit status\n"
               "is 130. Another such signal at least a second later ends the program at once.\n"
@@ -71,7 +71,7 @@ static RenderOptions job_options(RenderJob *job)
 
 static bool scene_load(RenderJob *job, Error *error)
 {
-    if (!pbrt_load(job->command->scene, job->command->lenient, &job->scene, error))
+    if (!scene_file_load(job->command->scene, job->command->lenient, &job->scene, error))
         return false;
     const RenderOptions options = job_options(job);
     /* Whether there are any does not depend on the number of pixels. */

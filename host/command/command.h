@@ -19,6 +19,7 @@ int cmd_merge(const BackendTable *backends, int argc, char **argv, Error *error)
 int cmd_bench(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_devices(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_pyramid(const BackendTable *backends, int argc, char **argv, Error *error);
+int cmd_convert(const BackendTable *backends, int argc, char **argv, Error *error);
 int cmd_info(const BackendTable *backends, int argc, char **argv, Error *error);
 
 #endif

@@ -1,6 +1,7 @@
 libtwinlight_host_la_SOURCES += \
 	host/command/cmd_bench.c \
 	host/command/cmd_compare.c host/command/cmd_compare.h \
+	host/command/cmd_convert.c \
 	host/command/cmd_devices.c \
 	host/command/cmd_info.c \
 	host/command/cmd_merge.c \

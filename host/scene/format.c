@@ -8,8 +8,8 @@ static const struct {
     size_t size;
     const char *what, *fix;
 } FORMATS[] = {
-    {"glTF", 4, "a binary glTF file", "export the scene for pbrt-v4"},
-    {"{", 1, "a JSON file, as glTF's are", "export the scene for pbrt-v4"},
+    {"glTF", 4, "a binary glTF file", "give it a name that ends in .glb"},
+    {"{", 1, "a JSON file, as glTF's are", "give it a name that ends in .gltf if it is one"},
     {"<", 1, "an XML file, as Mitsuba's scenes are", "export the scene for pbrt-v4"},
     {"ply\n", 4, "a PLY mesh", "name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE.ply\""},
     {"ply\r", 4, "a PLY mesh", "name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE.ply\""},

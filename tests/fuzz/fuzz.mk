@@ -32,7 +32,7 @@ FUZZ_SANITIZERS = fuzzer,address,undefined,float-cast-overflow
 FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=$(FUZZ_SANITIZERS) -fno-sanitize-recover=undefined,float-cast-overflow \
 	-DIMAGE_PIXELS_MAX=65536u
 FUZZ_COMPILE = $(FUZZ_CC) $(FUZZ_CFLAGS) $(DEFS) -I. $(AM_CPPFLAGS) -pthread $(OPENEXR_CFLAGS) $(PNG_CFLAGS) \
-	$(ZLIB_CFLAGS) $(STB_CFLAGS) $(MICROHTTPD_CFLAGS) $(MPI_CFLAGS)
+	$(ZLIB_CFLAGS) $(STB_CFLAGS) $(MICROHTTPD_CFLAGS) $(MPI_CFLAGS) $(ASSIMP_CFLAGS)
 .PHONY: fuzz fuzz-programs
 fuzz-programs: build_commit.h
 	$(MKDIR_P) fuzz-objects

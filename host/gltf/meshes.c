@@ -1,0 +1,396 @@
+#include "gltf/meshes.h"
+
+#include "base/log.h"
+#include "gltf/emission.h"
+#include "gltf/uv_transform.h"
+
+#include <assimp/cfileio.h>
+#include <assimp/cimport.h>
+#include <assimp/scene.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the document for Assimp ------------------------------------------------------------------------------------- */
+
+/* Assimp wants a whole stride for the last element, too, which files need not have: buffers get so many zeros more. */
+#define BUFFER_PADDING 256
+
+#define DOCUMENT_NAME "twinlight.gltf"
+
+typedef struct Packing {
+    Gltf *gltf;
+    GltfReader *reader;
+    char *document; /* JSON */
+    size_t *primitives; /* the primitive of each of Assimp's meshes */
+    size_t count;
+} Packing;
+
+/* Whether a material needs texture coordinates. */
+static bool material_is_textured(const GltfMaterial *material)
+{
+    return material->base_texture.image >= 0 || material->metallic_roughness_texture.image >= 0 ||
+           material->normal_texture.image >= 0 || material->emissive_texture.image >= 0 ||
+           material->transmission_texture.image >= 0;
+}
+
+/* Adds attribute `from` as `to` if it is there. False if it has another number of elements than there are vertices. */
+static bool attribute_add(Packing *packing, const GltfObject *attributes, const char *from, const char *to,
+                          const char *type, size_t vertex_count, json_t *out)
+{
+    GltfReader *reader = packing->reader;
+    int accessor = gltf_index(reader, attributes, from, "accessors");
+    if (accessor < 0)
+        return !reader->failed;
+    size_t count = gltf_accessor_check(packing->gltf, reader, accessor, type, GLTF_COMPONENT(GLTF_FLOAT));
+    if (!reader->failed && vertex_count > 0 && count != vertex_count)
+        gltf_fail(reader, "%s.%s has %zu elements for %zu vertices", attributes->name, from, count, vertex_count);
+    json_object_set_new(out, to, json_integer(accessor));
+    return !reader->failed;
+}
+
+/* Sets how many triangles a primitive has. */
+static void triangles_count(GltfReader *reader, const GltfObject *object, size_t corners, GltfPrimitive *primitive)
+{
+    bool separate = gltf_size(reader, object, "mode", GLTF_MODE_TRIANGLES) == GLTF_MODE_TRIANGLES;
+    primitive->triangle_count = separate ? corners / 3 : corners < 3 ? 0 : corners - 2;
+    if (!reader->failed && separate && corners % 3 != 0)
+        gltf_fail(reader, "%s has %zu corners of triangles, not a multiple of 3", object->name, corners);
+    if (!reader->failed && primitive->triangle_count == 0)
+        log_message(LOG_WARNING, "%s: %s has no triangle and is left out", reader->path, object->name);
+}
+
+/* Number of vertices; 0: without triangles, to be left out. */
+static size_t vertices_count(Packing *packing, const GltfObject *object, const GltfObject *attributes, int indices,
+                             GltfPrimitive *primitive)
+{
+    GltfReader *reader = packing->reader;
+    int positions = gltf_index(reader, attributes, "POSITION", "accessors");
+    if (positions < 0)
+        return 0;
+    size_t count = gltf_accessor_check(packing->gltf, reader, positions, "VEC3", GLTF_COMPONENT(GLTF_FLOAT));
+    if (reader->failed)
+        return 0;
+    triangles_count(reader, object, indices < 0 ? count : gltf_indices_check(packing->gltf, reader, indices, count),
+                    primitive);
+    return reader->failed || primitive->triangle_count == 0 ? 0 : count;
+}
+
+/* The attributes that are used, by the names that Assimp gets them by; NULL: without triangles, or after a failure. */
+static json_t *attributes_make(Packing *packing, const GltfObject *object, GltfPrimitive *primitive, int indices)
+{
+    GltfReader *reader = packing->reader;
+    const GltfMaterial *material = &packing->gltf->materials[primitive->material];
+    const GltfObject attributes = gltf_object(reader, object, "attributes");
+    char set[16];
+    size_t count = vertices_count(packing, object, &attributes, indices, primitive);
+    if (count == 0)
+        return NULL;
+    json_t *out = json_object();
+    snprintf(set, sizeof set, "TEXCOORD_%d", material->uv_set);
+    if (attribute_add(packing, &attributes, "POSITION", "POSITION", "VEC3", 0, out) &&
+        attribute_add(packing, &attributes, "NORMAL", "NORMAL", "VEC3", count, out) && material_is_textured(material))
+        attribute_add(packing, &attributes, set, "TEXCOORD_0", "VEC2", count, out);
+    if (json_object_get(attributes.json, "COLOR_0"))
+        log_message(LOG_WARNING, "%s: the vertex colours of %s are ignored", reader->path, object->name);
+    return out;
+}
+
+/* Adds a primitive to Assimp's document, as a mesh and a node of its own. */
+static void primitive_pack(Packing *packing, size_t index, json_t *meshes, json_t *nodes, json_t *scene)
+{
+    GltfReader *reader = packing->reader;
+    GltfPrimitive *primitive = &packing->gltf->primitives[index];
+    const GltfObject object = gltf_primitive_object(reader, primitive->mesh, primitive->number);
+    int indices = gltf_index(reader, &object, "indices", "accessors");
+    json_t *attributes = attributes_make(packing, &object, primitive, indices);
+    if (!attributes)
+        return;
+    json_t *out = json_pack("{s:o, s:I}", "attributes", attributes, "mode",
+                            (json_int_t)gltf_size(reader, &object, "mode", GLTF_MODE_TRIANGLES));
+    if (indices >= 0)
+        json_object_set_new(out, "indices", json_integer(indices));
+    json_array_append_new(meshes, json_pack("{s:[o]}", "primitives", out));
+    json_array_append_new(nodes, json_pack("{s:I}", "mesh", (json_int_t)packing->count));
+    json_array_append_new(scene, json_integer((json_int_t)packing->count));
+    packing->primitives[packing->count++] = index;
+}
+
+/* Views reach to the end of their padded buffers; which bytes accessors may use has been checked. */
+static json_t *views_make(Packing *packing)
+{
+    GltfReader *reader = packing->reader;
+    size_t count = gltf_count(reader, "bufferViews");
+    json_t *views = json_array();
+    for (size_t i = 0; i < count && !reader->failed; ++i) {
+        const GltfObject object = gltf_entry(reader, "bufferViews", i);
+        int buffer = gltf_index(reader, &object, "buffer", "buffers");
+        size_t offset = gltf_size(reader, &object, "byteOffset", 0),
+               stride = gltf_size(reader, &object, "byteStride", 0);
+        gltf_view(packing->gltf, reader, i);
+        if (reader->failed)
+            break;
+        size_t length = packing->gltf->buffers[buffer].size + BUFFER_PADDING - offset;
+        json_t *view = json_pack("{s:i, s:I, s:I}", "buffer", buffer, "byteOffset", (json_int_t)offset, "byteLength",
+                                 (json_int_t)length);
+        if (stride > 0)
+            json_object_set_new(view, "byteStride", json_integer((json_int_t)stride));
+        json_array_append_new(views, view);
+    }
+    return views;
+}
+
+static json_t *buffers_make(const Gltf *gltf)
+{
+    json_t *buffers = json_array();
+    for (size_t i = 0; i < gltf->buffer_count; ++i) {
+        char name[32];
+        snprintf(name, sizeof name, "%zu.bin", i);
+        json_array_append_new(buffers, json_pack("{s:s, s:I}", "uri", name, "byteLength",
+                                                 (json_int_t)(gltf->buffers[i].size + BUFFER_PADDING)));
+    }
+    return buffers;
+}
+
+/* Makes the document; no mesh: packing->count is 0. */
+static bool document_make(Packing *packing)
+{
+    Gltf *gltf = packing->gltf;
+    GltfReader *reader = packing->reader;
+    json_t *meshes = json_array(), *nodes = json_array(), *scene = json_array();
+    json_t *accessors = json_deep_copy(json_object_get(gltf->root, "accessors"));
+    for (size_t i = 0; i < gltf->primitive_count && !reader->failed; ++i)
+        if (gltf->primitives[i].triangles && gltf->meshes[gltf->primitives[i].mesh].uses > 0)
+            primitive_pack(packing, i, meshes, nodes, scene);
+    json_t *root =
+        json_pack("{s:{s:s}, s:i, s:[{s:o}], s:o, s:o, s:o, s:o, s:o}", "asset", "version", "2.0", "scene", 0, "scenes",
+                  "nodes", scene, "nodes", nodes, "meshes", meshes, "accessors", accessors ? accessors : json_array(),
+                  "bufferViews", views_make(packing), "buffers", buffers_make(gltf));
+    packing->document = reader->failed ? NULL : json_dumps(root, JSON_COMPACT);
+    json_decref(root);
+    if (!packing->document && !reader->failed)
+        reader->failed = !error_memory(reader->error, 0, "a glTF scene");
+    return !reader->failed;
+}
+
+/* ---- files for Assimp -------------------------------------------------------------------------------------------- */
+
+/* A file in memory, followed by zeros up to `size`. */
+typedef struct MemoryFile {
+    struct aiFile file;
+    const unsigned char *data;
+    size_t data_size, size, position;
+} MemoryFile;
+
+static MemoryFile *memory_file(struct aiFile *file)
+{
+    return (MemoryFile *)(void *)file->UserData;
+}
+
+static size_t memory_read(struct aiFile *file, char *out, size_t size, size_t count)
+{
+    MemoryFile *memory = memory_file(file);
+    size_t left = memory->size - memory->position, whole = size > 0 ? left / size : 0;
+    count = count < whole ? count : whole;
+    size_t bytes = size * count;
+    size_t real = memory->position < memory->data_size ? memory->data_size - memory->position : 0;
+    real = real < bytes ? real : bytes;
+    if (real > 0)
+        memcpy(out, memory->data + memory->position, real);
+    memset(out + real, 0, bytes - real);
+    memory->position += bytes;
+    return count;
+}
+
+static size_t memory_write(struct aiFile *file, const char *data, size_t size, size_t count)
+{
+    (void)file;
+    (void)data;
+    (void)size;
+    (void)count;
+    return 0;
+}
+
+static size_t memory_tell(struct aiFile *file)
+{
+    return memory_file(file)->position;
+}
+
+static size_t memory_size(struct aiFile *file)
+{
+    return memory_file(file)->size;
+}
+
+static enum aiReturn memory_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
+{
+    MemoryFile *memory = memory_file(file);
+    size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? memory->position : memory->size;
+    if (offset > memory->size - base)
+        return aiReturn_FAILURE;
+    memory->position = base + offset;
+    return aiReturn_SUCCESS;
+}
+
+static void memory_flush(struct aiFile *file)
+{
+    (void)file;
+}
+
+/* The document, or buffer N by the name N.bin. */
+static struct aiFile *memory_open(struct aiFileIO *io, const char *name, const char *mode)
+{
+    const Packing *packing = (const Packing *)(void *)io->UserData;
+    const char *last = strrchr(name, '/') ? strrchr(name, '/') + 1 : name;
+    char *end;
+    (void)mode;
+    MemoryFile *memory = calloc(1, sizeof *memory);
+    if (!memory)
+        return NULL;
+    size_t index = strtoul(last, &end, 10);
+    if (strcmp(last, DOCUMENT_NAME) == 0) {
+        memory->data = (const unsigned char *)packing->document;
+        memory->data_size = memory->size = strlen(packing->document);
+    } else if (strcmp(end, ".bin") == 0 && end != last && index < packing->gltf->buffer_count) {
+        memory->data = packing->gltf->buffers[index].data;
+        memory->data_size = packing->gltf->buffers[index].size;
+        memory->size = memory->data_size + BUFFER_PADDING;
+    } else {
+        free(memory);
+        return NULL;
+    }
+    memory->file = (struct aiFile){
+        memory_read, memory_write, memory_tell, memory_size, memory_seek, memory_flush, (aiUserData)(void *)memory};
+    return &memory->file;
+}
+
+static void memory_close(struct aiFileIO *io, struct aiFile *file)
+{
+    (void)io;
+    free(memory_file(file));
+}
+
+/* ---- what Assimp returns ----------------------------------------------------------------------------------------- */
+
+static float *floats_allocate(size_t count)
+{
+    return malloc((count + 1) * sizeof(float));
+}
+
+static float *vectors_copy(const struct aiVector3D *from, size_t count)
+{
+    float *out = from ? floats_allocate(3 * count) : NULL;
+    for (size_t i = 0; out && i < count; ++i) {
+        out[3 * i] = from[i].x;
+        out[3 * i + 1] = from[i].y;
+        out[3 * i + 2] = from[i].z;
+    }
+    return out;
+}
+
+/* Assimp has turned v around, as pbrt has it. */
+static float *uvs_copy(const struct aiVector3D *from, size_t count, const UvTransform *bake)
+{
+    const UvTransform to = uv_of_pbrt(bake);
+    bool same = uv_is_identity(bake);
+    float *out = from ? floats_allocate(2 * count) : NULL;
+    for (size_t i = 0; out && i < count; ++i) {
+        double u = (double)from[i].x, v = (double)from[i].y;
+        out[2 * i] = same ? from[i].x : (float)(to.m[0] * u + to.m[1] * v + to.m[2]);
+        out[2 * i + 1] = same ? from[i].y : (float)(to.m[3] * u + to.m[4] * v + to.m[5]);
+    }
+    return out;
+}
+
+static bool floats_finite(const float *values, size_t count)
+{
+    for (size_t i = 0; values && i < count; ++i)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+static bool triangles_copy(GltfReader *reader, const char *name, const struct aiMesh *from, PlyMesh *mesh)
+{
+    for (size_t i = 0; i < from->mNumFaces; ++i) {
+        const struct aiFace *face = &from->mFaces[i];
+        for (unsigned k = 0; k < 3; ++k) {
+            if (face->mNumIndices != 3 || face->mIndices[k] >= from->mNumVertices)
+                return gltf_fail(reader, "%s has the vertex index %u, but there are %u vertices", name,
+                                 face->mNumIndices == 3 ? face->mIndices[k] : 0u, from->mNumVertices);
+            mesh->triangles[3 * i + k] = face->mIndices[k];
+        }
+    }
+    mesh->triangle_count = from->mNumFaces;
+    return true;
+}
+
+static bool mesh_copy(GltfReader *reader, const char *name, const struct aiMesh *from, const UvTransform *bake,
+                      PlyMesh *mesh)
+{
+    size_t count = from->mNumVertices;
+    *mesh = (PlyMesh){.vertex_count = count};
+    mesh->positions = vectors_copy(from->mVertices, count);
+    mesh->normals = vectors_copy(from->mNormals, count);
+    mesh->uvs = uvs_copy(from->mTextureCoords[0], count, bake);
+    mesh->triangles = malloc((3 * (size_t)from->mNumFaces + 1) * sizeof(uint));
+    if (!mesh->positions || !mesh->triangles || (from->mNormals && !mesh->normals) ||
+        (from->mTextureCoords[0] && !mesh->uvs)) {
+        reader->failed = !error_memory(reader->error, 32 * count, "a mesh");
+        return false;
+    }
+    if (!floats_finite(mesh->positions, 3 * count) || !floats_finite(mesh->normals, 3 * count) ||
+        !floats_finite(mesh->uvs, 2 * count)) {
+        gltf_fail(reader, "%s has vertices that are not finite", name);
+        return error_fix(reader->error, "repair the mesh in the program that made it");
+    }
+    return triangles_copy(reader, name, from, mesh);
+}
+
+/* Adds the parts of one primitive. */
+static bool primitive_unpack(Packing *packing, const struct aiMesh *from, size_t index)
+{
+    Gltf *gltf = packing->gltf;
+    GltfReader *reader = packing->reader;
+    GltfPrimitive *primitive = &gltf->primitives[index];
+    const GltfMaterial *material = &gltf->materials[primitive->material];
+    char name[96];
+    PlyMesh mesh = {0};
+    snprintf(name, sizeof name, "meshes[%zu].primitives[%zu]", primitive->mesh, primitive->number);
+    primitive->first_part = gltf->parts.count;
+    bool good =
+        mesh_copy(reader, name, from, &material->bake, &mesh) && gltf_emission_split(gltf, reader, material, &mesh);
+    primitive->part_count = gltf->parts.count - primitive->first_part;
+    ply_destroy(&mesh);
+    return good;
+}
+
+static bool document_import(Packing *packing)
+{
+    GltfReader *reader = packing->reader;
+    struct aiFileIO io = {memory_open, memory_close, (aiUserData)(void *)packing};
+    const struct aiScene *scene = aiImportFileEx(DOCUMENT_NAME, 0, &io);
+    if (!scene)
+        return gltf_fail(reader, "Assimp cannot unpack the meshes: %.300s", aiGetErrorString());
+    if (scene->mNumMeshes != packing->count)
+        gltf_fail(reader, "Assimp unpacks %u meshes of %zu", scene->mNumMeshes, packing->count);
+    for (size_t i = 0; i < packing->count && !reader->failed; ++i)
+        primitive_unpack(packing, scene->mMeshes[i], packing->primitives[i]);
+    aiReleaseImport(scene);
+    return !reader->failed;
+}
+
+bool gltf_meshes_read(Gltf *gltf, GltfReader *reader)
+{
+    Packing packing = {.gltf = gltf, .reader = reader};
+    void *primitives = NULL;
+    array_init(&gltf->parts, sizeof(GltfPart));
+    if (!gltf_allocate(reader, &primitives, gltf->primitive_count, sizeof *packing.primitives))
+        return false;
+    packing.primitives = primitives;
+    bool good = document_make(&packing) && (packing.count == 0 || document_import(&packing));
+    free(packing.document);
+    free(packing.primitives);
+    return good;
+}

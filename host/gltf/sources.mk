@@ -1,0 +1,25 @@
+libtwinlight_host_la_SOURCES += \
+	host/gltf/gltf.h \
+	host/gltf/load.c host/gltf/load.h
+
+GLTF_WITH_ASSIMP = \
+	host/gltf/accessors.c \
+	host/gltf/container.c \
+	host/gltf/convert.c \
+	host/gltf/document.h \
+	host/gltf/emission.c host/gltf/emission.h \
+	host/gltf/extensions.c \
+	host/gltf/images.c host/gltf/images.h \
+	host/gltf/import.c \
+	host/gltf/json_value.c host/gltf/json_value.h \
+	host/gltf/materials.c \
+	host/gltf/meshes.c host/gltf/meshes.h \
+	host/gltf/nodes.c \
+	host/gltf/translate.c host/gltf/translate.h \
+	host/gltf/translate_materials.c \
+	host/gltf/uv_transform.c host/gltf/uv_transform.h
+if HAVE_ASSIMP
+libtwinlight_host_la_SOURCES += $(GLTF_WITH_ASSIMP)
+else
+libtwinlight_host_la_SOURCES += host/gltf/gltf_absent.c
+endif
