@@ -27,7 +27,9 @@ static GltfBytes view_of(const Gltf *gltf, GltfReader *reader, const GltfObject 
     *index = gltf_index(reader, object, "bufferView", "bufferViews");
     if (!reader->failed && *index < 0)
         gltf_fail(reader, "%s names no bufferView", object->name);
-    return reader->failed ? (GltfBytes){0} : gltf_view(gltf, reader, (size_t)*index);
+    if (reader->failed)
+        return (GltfBytes){0};
+    return gltf_view(gltf, reader, (size_t)*index);
 }
 
 /* Elements that replace some of an accessor's. */

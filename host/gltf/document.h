@@ -104,7 +104,7 @@ typedef struct DerivedImage {
     int image;
     int channel;
     double factor[3];
-    double coat; /* internal diffuse reflectance of a coat (gltf/images.h); 0: none */
+    double coat; /* the part of diffuse light that a coat reflects back inside (gltf_coat_base); 0: none */
     bool is_float; /* 16 bits per channel: an EXR, else a PNG */
 } DerivedImage;
 

@@ -76,21 +76,6 @@ const char *gltf_derived_ending(const Gltf *gltf, int image)
     return ARRAY_AT(&gltf->derived, DerivedImage, image).is_float ? ".exr" : ".png";
 }
 
-double gltf_coat_reflectance(double eta)
-{
-    /* Hemispherical reflectance from outside: the cosine-weighted mean of Fresnel's, by the midpoint rule in sin^2. What is
-     * transmitted is the same from both sides, per projected solid angle (pbrt, 3rd edition, section 8.2.2). */
-    enum { STEPS = 1024 };
-    double sum = 0.0;
-    for (int i = 0; i < STEPS; ++i) {
-        double sine2 = (i + 0.5) / STEPS, cosine = sqrt(1.0 - sine2), inside = sqrt(1.0 - sine2 / (eta * eta));
-        double parallel = (eta * cosine - inside) / (eta * cosine + inside);
-        double perpendicular = (cosine - eta * inside) / (cosine + eta * inside);
-        sum += 0.5 * (parallel * parallel + perpendicular * perpendicular);
-    }
-    return 1.0 - (1.0 - sum / STEPS) / (eta * eta);
-}
-
 double gltf_coat_base(double albedo, double internal)
 {
     return albedo / (1.0 - internal + internal * albedo);

@@ -17,10 +17,7 @@ const char *gltf_derived_ending(const Gltf *gltf, int image);
  * encoding if it has 16 bits. Three channels for DERIVED_COLOR and DERIVED_NORMAL, else one. */
 bool gltf_derived_make(Gltf *gltf, const DerivedImage *derived, Image *image, Error *error);
 
-/* Part of the diffuse light inside a medium of index of refraction `eta` >= 1 that its surface reflects back. */
-double gltf_coat_reflectance(double eta);
-
-/* The reflectance of a base such that under a smooth coat with this internal reflectance the albedo of what gets through the
+/* The reflectance of a base such that under a coat that reflects this part of diffuse light back inside the albedo of what gets through the
  * coat is `albedo`, as in glTF: light between base and coat is part of pbrt's coateddiffuse, but not of glTF's model. */
 double gltf_coat_base(double albedo, double internal);
 

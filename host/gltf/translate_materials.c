@@ -4,6 +4,7 @@
 #include "gltf/images.h"
 #include "gltf/translate.h"
 #include "gltf/uv_transform.h"
+#include "scene/coat_table.h"
 
 #include <math.h>
 
@@ -130,11 +131,18 @@ static void mix_print(Translation *translation, int material, const char *suffix
         PRINT(translation, "] \"float amount\" %.9g\n", amount);
 }
 
+/* The part of diffuse light that the coat of a material reflects back inside; smooth where roughness has a texture. */
+static double internal_reflectance(const GltfMaterial *material, bool rough)
+{
+    double alpha = rough ? 0.0 : material->roughness * material->roughness;
+    return material->matte ? 0.0 : 1.0 - (double)coat_escape((float)alpha, (float)material->ior);
+}
+
 /* The part that is not metal: a coat over a diffuse base whose albedo through the coat is the base colour. */
 static void dielectric_print(Translation *translation, int material, const char *suffix, bool rough)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
-    double internal = from->matte ? 0.0 : gltf_coat_reflectance(from->ior), base[3];
+    double internal = internal_reflectance(from, rough), base[3];
     const DerivedImage color = {
         .kind = DERIVED_COLOR, .factor = {from->base[0], from->base[1], from->base[2]}, .coat = internal};
     for (int k = 0; k < 3; ++k)

@@ -3,6 +3,7 @@
 #include "base/output_file.h"
 #include "image/color.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <png.h>
@@ -105,6 +106,7 @@ static void png_rows_write(png_structp png, png_infop info, unsigned char *bytes
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     size_t values = 3 * (size_t)picture->width;
+    assert(picture->rows.row);
     for (int y = 0; y < picture->height; ++y) {
         const float *row = picture->rows.row(picture->rows.context, y);
         for (size_t i = 0; i < values; ++i)

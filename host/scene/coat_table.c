@@ -124,6 +124,13 @@ bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *er
     return true;
 }
 
+float coat_escape(float alpha, float eta)
+{
+    float row[COAT_ROW];
+    row_fill(alpha, alpha, 0.0f, eta, row);
+    return row[COAT_CELLS];
+}
+
 float coat_round_trip(float eta, float thickness)
 {
     enum { STEPS = 4096 };

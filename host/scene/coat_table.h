@@ -17,6 +17,9 @@ bool coat_table_build(float alpha_x, float alpha_y, float eta, Array *lookup, ui
  * sqrt(alpha_x alpha_y). */
 bool coat_table_build_range(float eta, Array *lookup, uint32_t *first, Error *error);
 
+/* 1 - R_i of an isotropic coat (shared/bsdf/coat.h): the part of diffuse light under it that gets out. */
+float coat_escape(float alpha, float eta);
+
 /* Mean transmittance of a round trip between the base and a smooth interface of index eta through a medium of the given
  * optical thickness: the integral of R(c) exp(-2 thickness / c) 2 c dc over that of R(c) 2 c dc, with R the internal
  * reflectance. 1 without absorption or reflection. */

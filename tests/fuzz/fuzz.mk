@@ -3,8 +3,8 @@
 # scenes, 7e6 on images and 3e7 on command lines; 3e5 on parts found nothing, the two of checkpoints are findings
 # of 2e5). `make fuzz` builds them with libFuzzer and sanitizers and runs each for FUZZ_SECONDS, starting from these.
 EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
-FUZZ_TARGETS = scene image options part checkpoint
-check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part tests/fuzz_checkpoint
+FUZZ_TARGETS = scene image options part checkpoint gltf
+check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part tests/fuzz_checkpoint tests/fuzz_gltf
 tests_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c tests/fuzz/fuzz_replay.c
 tests_fuzz_scene_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/scene bad"'
 tests_fuzz_scene_LDADD = libtwinlight_host.la
@@ -21,6 +21,9 @@ tests_fuzz_checkpoint_SOURCES = tests/fuzz/fuzz_checkpoint.c tests/fuzz/fuzz_fil
 tests_fuzz_checkpoint_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/checkpoint"'
 tests_fuzz_checkpoint_LDFLAGS = $(AM_LDFLAGS) $(FUZZ_WRAP)
 tests_fuzz_checkpoint_LDADD = libtwinlight_cpu.la libtwinlight_host.la $(ZSTD_LIBS)
+tests_fuzz_gltf_SOURCES = tests/fuzz/fuzz_gltf.c tests/fuzz/fuzz_file.c tests/fuzz/fuzz_replay.c
+tests_fuzz_gltf_CPPFLAGS = $(AM_CPPFLAGS) -DCORPUS='"corpus/gltf"'
+tests_fuzz_gltf_LDADD = libtwinlight_host.la $(ZSTD_LIBS)
 
 # So that fuzz_checkpoint.c sees the fields that are read.
 FUZZ_WRAP = -Wl,--wrap=archive_reader_open
@@ -51,7 +54,7 @@ fuzz: fuzz-programs
 	  ./fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=1 \
 	    -artifact_prefix=fuzz-found/$$target- $$(test -f $$dictionary && echo -dict=$$dictionary) \
 	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
-CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part fuzz_checkpoint
+CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part fuzz_checkpoint fuzz_gltf
 
 # The readers and small renderings on the CPU under valgrind, which detects what sanitizers do not: uninitialised
 # values, and errors inside libraries. Takes half a minute.

@@ -1,6 +1,8 @@
 /* Materials without textures. */
 #include "gltf/test_gltf.h"
 
+#include "bsdf/coat.h"
+
 #include <string.h>
 
 /* The square with this material. */
@@ -29,17 +31,34 @@ START_TEST(dielectric_is_coated_diffuse)
 {
     Scene scene;
     gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0,1],\"metallicFactor\":0,"
-                        "\"roughnessFactor\":0.5}"),
+                        "\"roughnessFactor\":0}"),
                &scene);
     const Material *m = gltf_material(&scene, 0);
     ck_assert_uint_eq(m->kind, MATERIAL_COATED_DIFFUSE);
     TEST_NEAR(m->eta, 1.5, 0);
     TEST_NEAR(m->color1.value.x, 0, 0); /* a coat that absorbs nothing */
-    TEST_NEAR(m->roughness_u.value, 0.25, 0);
+    TEST_NEAR(m->roughness_u.value, 0, 0);
     /* (1 - internal) base / (1 - internal base) is glTF's colour. */
     TEST_NEAR(m->color0.value.x, 1, 1e-6);
     TEST_NEAR((1.0 - INTERNAL) * (double)m->color0.value.y / (1.0 - INTERNAL * (double)m->color0.value.y), 0.5, 1e-4);
     TEST_NEAR(m->color0.value.z, 0, 0);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(rough_coats_keep_the_albedo)
+{
+    Error error = {{0}, {0}};
+    Scene scene;
+    gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1],\"metallicFactor\":0}"), &scene);
+    const Material *m = gltf_material(&scene, 0);
+    TEST_NEAR(m->roughness_u.value, 1, 0);
+    double base = (double)m->color0.value.x;
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    /* Escape of the renderer's own table for this coat (bsdf/coat.h). */
+    const float *row = &ELEMENT(&scene, lookup, float, ELEMENT(&scene, materials, Material, 0).coat_table + 1);
+    double escape = (double)row[COAT_CELLS];
+    TEST_NEAR(escape * base / (1.0 - (1.0 - escape) * base), 0.5, 1e-6);
     scene_destroy(&scene);
 }
 END_TEST
@@ -174,6 +193,7 @@ TCase *gltf_materials_case(void)
     TCase *tests = gltf_case("materials");
     tcase_add_test(tests, metal_is_a_conductor);
     tcase_add_test(tests, dielectric_is_coated_diffuse);
+    tcase_add_test(tests, rough_coats_keep_the_albedo);
     tcase_add_test(tests, metallic_is_a_mix);
     tcase_add_test(tests, transmission_is_glass);
     tcase_add_test(tests, surfaces_without_gloss_are_diffuse);

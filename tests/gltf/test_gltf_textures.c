@@ -64,7 +64,10 @@ END_TEST
 START_TEST(bases_under_coats_are_brighter)
 {
     Scene scene;
-    gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0}"), &scene);
+    gltf_scene(
+        MATERIAL(
+            "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},\"metallicFactor\":0,\"roughnessFactor\":0}"),
+        &scene);
     uint program = gltf_material(&scene, 0)->color0.program;
     scene_end(&scene);
     const double internal = 1.0 - (1.0 - 0.0918) / 2.25, albedo = color_srgb_decode(128 / 255.0);
