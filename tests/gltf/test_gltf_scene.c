@@ -2,6 +2,7 @@
 #include "gltf/test_gltf.h"
 
 #include "base/matrix.h"
+#include "support/test_files.h"
 
 #include <string.h>
 
@@ -24,6 +25,29 @@ START_TEST(meshes_are_as_stored)
     TEST_NEAR(ELEMENT(&scene, uvs, Vec2, 0).y, 0, 0);
     TEST_NEAR(ELEMENT(&scene, uvs, Vec2, 3).y, 1, 0);
     TEST_NEAR(ELEMENT(&scene, uvs, Vec2, 1).x, 1, 0);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(buffers_may_be_data_uris)
+{
+    /* Three points, (0, 0, 0), (1, 0, 0) and (0, 1, 0.5), and two bytes more, so that the last group is not full. */
+    static const char TEXT[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":38,\"uri\":\"data:application/"
+        "octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAA/AQI=\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":38}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}]}";
+    Error error = {{0}, {0}};
+    Scene scene;
+    test_file_write(gltf_path("data.gltf"), TEXT, strlen(TEXT));
+    scene_init(&scene);
+    ck_assert_msg(scene_file_load(gltf_path("data.gltf"), false, &scene, &error), "%s", error.message);
+    ck_assert_uint_eq(scene.primitive_count, 1);
+    TEST_NEAR(scene.bounds_max[0], 1, 0);
+    TEST_NEAR(scene.bounds_max[1], 1, 0);
+    TEST_NEAR(scene.bounds_max[2], 0.5, 0);
     scene_destroy(&scene);
 }
 END_TEST
@@ -242,6 +266,7 @@ TCase *gltf_scene_case(void)
 {
     TCase *tests = gltf_case("scene");
     tcase_add_test(tests, meshes_are_as_stored);
+    tcase_add_test(tests, buffers_may_be_data_uris);
     tcase_add_test(tests, strips_become_triangles);
     tcase_add_test(tests, sparse_accessors_replace_elements);
     tcase_add_test(tests, nodes_are_placed);
