@@ -44,6 +44,7 @@ typedef struct GltfMaterial {
     bool double_sided;
     bool matte; /* without specular reflection: unlit, or a specular factor of 0 */
     bool volume; /* refracts: KHR_materials_volume with a thickness */
+    bool used; /* by a part */
     int uv_set; /* the only one whose textures are used */
     UvTransform bake; /* applied to the vertices' texture coordinates */
 } GltfMaterial;

@@ -96,6 +96,6 @@ bool gltf_extensions_check(const Gltf *gltf, GltfReader *reader)
     if (any_has(reader, "nodes", "skin"))
         log_message(LOG_INFO, "%s: skins are not applied: meshes are shown as they are stored", gltf->path);
     if (any_has(reader, "meshes", "targets"))
-        log_message(LOG_INFO, "%s: morph targets are not applied", gltf->path);
+        log_message(LOG_INFO, "%s: morph targets have the default weights of their meshes", gltf->path);
     return !reader->failed;
 }

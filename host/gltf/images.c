@@ -2,6 +2,7 @@
 
 #include "image/color.h"
 #include "image/read.h"
+#include "scene/texture_image.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -60,6 +61,10 @@ int gltf_derived_add(Gltf *gltf, GltfReader *reader, DerivedImage image)
     for (size_t i = 0; i < gltf->derived.count; ++i)
         if (derived_same(&ARRAY_AT(&gltf->derived, DerivedImage, i), &image))
             return (int)i;
+    if (gltf->derived.count >= SCENE_IMAGES_MAX) {
+        gltf_fail(reader, "the materials need more than %d images", SCENE_IMAGES_MAX);
+        return -1;
+    }
     if (!image_is_deep(gltf, reader, image.image, &image.is_float))
         return -1;
     DerivedImage *to = array_grow(&gltf->derived, 1, reader->error);

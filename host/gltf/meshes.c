@@ -2,9 +2,9 @@
 
 #include "base/log.h"
 #include "gltf/emission.h"
+#include "gltf/memory_files.h"
 #include "gltf/uv_transform.h"
 
-#include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
 #include <math.h>
@@ -14,11 +14,6 @@
 #include <string.h>
 
 /* ---- the document for Assimp ------------------------------------------------------------------------------------- */
-
-/* Assimp wants a whole stride for the last element, too, which files need not have: buffers get so many zeros more. */
-#define BUFFER_PADDING 256
-
-#define DOCUMENT_NAME "twinlight.gltf"
 
 typedef struct Packing {
     Gltf *gltf;
@@ -79,13 +74,15 @@ static size_t vertices_count(Packing *packing, const GltfObject *object, const G
 }
 
 /* The attributes that are used, by the names that Assimp gets them by; NULL: without triangles, or after a failure. */
-static json_t *attributes_make(Packing *packing, const GltfObject *object, GltfPrimitive *primitive, int indices)
+static json_t *attributes_make(Packing *packing, const GltfObject *object, GltfPrimitive *primitive, int indices,
+                               size_t *vertex_count)
 {
     GltfReader *reader = packing->reader;
     const GltfMaterial *material = &packing->gltf->materials[primitive->material];
     const GltfObject attributes = gltf_object(reader, object, "attributes");
     char set[16];
     size_t count = vertices_count(packing, object, &attributes, indices, primitive);
+    *vertex_count = count;
     if (count == 0)
         return NULL;
     json_t *out = json_object();
@@ -98,6 +95,31 @@ static json_t *attributes_make(Packing *packing, const GltfObject *object, GltfP
     return out;
 }
 
+/* Adds the morph targets whose default weights are not 0 to a primitive, and these weights to its mesh. */
+static void targets_pack(Packing *packing, const GltfObject *mesh, const GltfObject *object, size_t vertex_count,
+                         json_t *out_mesh, json_t *out)
+{
+    GltfReader *reader = packing->reader;
+    size_t weight_count, count;
+    const json_t *weights = gltf_array(reader, mesh, "weights", &weight_count);
+    const json_t *targets = gltf_array(reader, object, "targets", &count);
+    json_t *out_weights = json_array(), *out_targets = json_array();
+    for (size_t i = 0; i < count && i < weight_count && !reader->failed; ++i) {
+        double weight = json_number_value(json_array_get(weights, i));
+        GltfObject target = {json_array_get(targets, i), ""};
+        snprintf(target.name, sizeof target.name, "%.120s.targets[%zu]", object->name, i);
+        if (weight == 0.0)
+            continue;
+        json_t *attributes = json_object();
+        if (attribute_add(packing, &target, "POSITION", "POSITION", "VEC3", vertex_count, attributes))
+            attribute_add(packing, &target, "NORMAL", "NORMAL", "VEC3", vertex_count, attributes);
+        json_array_append_new(out_targets, attributes);
+        json_array_append_new(out_weights, json_real(weight));
+    }
+    json_object_set_new(out, "targets", out_targets);
+    json_object_set_new(out_mesh, "weights", out_weights);
+}
+
 /* Adds a primitive to Assimp's document, as a mesh and a node of its own. */
 static void primitive_pack(Packing *packing, size_t index, json_t *meshes, json_t *nodes, json_t *scene)
 {
@@ -105,14 +127,19 @@ static void primitive_pack(Packing *packing, size_t index, json_t *meshes, json_
     GltfPrimitive *primitive = &packing->gltf->primitives[index];
     const GltfObject object = gltf_primitive_object(reader, primitive->mesh, primitive->number);
     int indices = gltf_index(reader, &object, "indices", "accessors");
-    json_t *attributes = attributes_make(packing, &object, primitive, indices);
+    size_t vertex_count;
+    json_t *attributes = attributes_make(packing, &object, primitive, indices, &vertex_count);
     if (!attributes)
         return;
     json_t *out = json_pack("{s:o, s:I}", "attributes", attributes, "mode",
                             (json_int_t)gltf_size(reader, &object, "mode", GLTF_MODE_TRIANGLES));
     if (indices >= 0)
         json_object_set_new(out, "indices", json_integer(indices));
-    json_array_append_new(meshes, json_pack("{s:[o]}", "primitives", out));
+    json_t *out_mesh = json_object();
+    const GltfObject mesh = gltf_entry(reader, "meshes", primitive->mesh);
+    targets_pack(packing, &mesh, &object, vertex_count, out_mesh, out);
+    json_object_set_new(out_mesh, "primitives", json_pack("[o]", out));
+    json_array_append_new(meshes, out_mesh);
     json_array_append_new(nodes, json_pack("{s:I}", "mesh", (json_int_t)packing->count));
     json_array_append_new(scene, json_integer((json_int_t)packing->count));
     packing->primitives[packing->count++] = index;
@@ -175,107 +202,22 @@ static bool document_make(Packing *packing)
     return !reader->failed;
 }
 
-/* ---- files for Assimp -------------------------------------------------------------------------------------------- */
-
-/* A file in memory, followed by zeros up to `size`. */
-typedef struct MemoryFile {
-    struct aiFile file;
-    const unsigned char *data;
-    size_t data_size, size, position;
-} MemoryFile;
-
-static MemoryFile *memory_file(struct aiFile *file)
-{
-    return (MemoryFile *)(void *)file->UserData;
-}
-
-static size_t memory_read(struct aiFile *file, char *out, size_t size, size_t count)
-{
-    MemoryFile *memory = memory_file(file);
-    size_t left = memory->size - memory->position, whole = size > 0 ? left / size : 0;
-    count = count < whole ? count : whole;
-    size_t bytes = size * count;
-    size_t real = memory->position < memory->data_size ? memory->data_size - memory->position : 0;
-    real = real < bytes ? real : bytes;
-    if (real > 0)
-        memcpy(out, memory->data + memory->position, real);
-    memset(out + real, 0, bytes - real);
-    memory->position += bytes;
-    return count;
-}
-
-static size_t memory_write(struct aiFile *file, const char *data, size_t size, size_t count)
-{
-    (void)file;
-    (void)data;
-    (void)size;
-    (void)count;
-    return 0;
-}
-
-static size_t memory_tell(struct aiFile *file)
-{
-    return memory_file(file)->position;
-}
-
-static size_t memory_size(struct aiFile *file)
-{
-    return memory_file(file)->size;
-}
-
-static enum aiReturn memory_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
-{
-    MemoryFile *memory = memory_file(file);
-    size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? memory->position : memory->size;
-    if (offset > memory->size - base)
-        return aiReturn_FAILURE;
-    memory->position = base + offset;
-    return aiReturn_SUCCESS;
-}
-
-static void memory_flush(struct aiFile *file)
-{
-    (void)file;
-}
-
-/* The document, or buffer N by the name N.bin. */
-static struct aiFile *memory_open(struct aiFileIO *io, const char *name, const char *mode)
-{
-    const Packing *packing = (const Packing *)(void *)io->UserData;
-    const char *last = strrchr(name, '/') ? strrchr(name, '/') + 1 : name;
-    char *end;
-    (void)mode;
-    MemoryFile *memory = calloc(1, sizeof *memory);
-    if (!memory)
-        return NULL;
-    size_t index = strtoul(last, &end, 10);
-    if (strcmp(last, DOCUMENT_NAME) == 0) {
-        memory->data = (const unsigned char *)packing->document;
-        memory->data_size = memory->size = strlen(packing->document);
-    } else if (strcmp(end, ".bin") == 0 && end != last && index < packing->gltf->buffer_count) {
-        memory->data = packing->gltf->buffers[index].data;
-        memory->data_size = packing->gltf->buffers[index].size;
-        memory->size = memory->data_size + BUFFER_PADDING;
-    } else {
-        free(memory);
-        return NULL;
-    }
-    memory->file = (struct aiFile){
-        memory_read, memory_write, memory_tell, memory_size, memory_seek, memory_flush, (aiUserData)(void *)memory};
-    return &memory->file;
-}
-
-static void memory_close(struct aiFileIO *io, struct aiFile *file)
-{
-    (void)io;
-    free(memory_file(file));
-}
-
 /* ---- what Assimp returns ----------------------------------------------------------------------------------------- */
 
 static float *floats_allocate(size_t count)
 {
     return malloc((count + 1) * sizeof(float));
+}
+
+/* Adds `weight` times what a morph target moves vectors by. */
+static void vectors_morph(float *out, const struct aiVector3D *base, const struct aiVector3D *moved, size_t count,
+                          float weight)
+{
+    for (size_t i = 0; out && moved && i < count; ++i) {
+        out[3 * i] += weight * (moved[i].x - base[i].x);
+        out[3 * i + 1] += weight * (moved[i].y - base[i].y);
+        out[3 * i + 2] += weight * (moved[i].z - base[i].z);
+    }
 }
 
 static float *vectors_copy(const struct aiVector3D *from, size_t count)
@@ -333,6 +275,11 @@ static bool mesh_copy(GltfReader *reader, const char *name, const struct aiMesh 
     *mesh = (PlyMesh){.vertex_count = count};
     mesh->positions = vectors_copy(from->mVertices, count);
     mesh->normals = vectors_copy(from->mNormals, count);
+    for (unsigned k = 0; k < from->mNumAnimMeshes; ++k) {
+        const struct aiAnimMesh *moved = from->mAnimMeshes[k];
+        vectors_morph(mesh->positions, from->mVertices, moved->mVertices, count, moved->mWeight);
+        vectors_morph(mesh->normals, from->mNormals, moved->mNormals, count, moved->mWeight);
+    }
     mesh->uvs = uvs_copy(from->mTextureCoords[0], count, bake);
     mesh->triangles = malloc((3 * (size_t)from->mNumFaces + 1) * sizeof(uint));
     if (!mesh->positions || !mesh->triangles || (from->mNormals && !mesh->normals) ||
@@ -354,13 +301,14 @@ static bool primitive_unpack(Packing *packing, const struct aiMesh *from, size_t
     Gltf *gltf = packing->gltf;
     GltfReader *reader = packing->reader;
     GltfPrimitive *primitive = &gltf->primitives[index];
-    const GltfMaterial *material = &gltf->materials[primitive->material];
+    GltfMaterial *material = &gltf->materials[primitive->material];
     char name[96];
     PlyMesh mesh = {0};
     snprintf(name, sizeof name, "meshes[%zu].primitives[%zu]", primitive->mesh, primitive->number);
     primitive->first_part = gltf->parts.count;
     bool good =
         mesh_copy(reader, name, from, &material->bake, &mesh) && gltf_emission_split(gltf, reader, material, &mesh);
+    material->used = true;
     primitive->part_count = gltf->parts.count - primitive->first_part;
     ply_destroy(&mesh);
     return good;
@@ -369,7 +317,8 @@ static bool primitive_unpack(Packing *packing, const struct aiMesh *from, size_t
 static bool document_import(Packing *packing)
 {
     GltfReader *reader = packing->reader;
-    struct aiFileIO io = {memory_open, memory_close, (aiUserData)(void *)packing};
+    MemoryFiles files = {packing->document, packing->gltf->buffers, packing->gltf->buffer_count};
+    struct aiFileIO io = memory_files_io(&files);
     const struct aiScene *scene = aiImportFileEx(DOCUMENT_NAME, 0, &io);
     if (!scene)
         return gltf_fail(reader, "Assimp cannot unpack the meshes: %.300s", aiGetErrorString());

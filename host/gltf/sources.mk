@@ -13,6 +13,7 @@ GLTF_WITH_ASSIMP = \
 	host/gltf/import.c \
 	host/gltf/json_value.c host/gltf/json_value.h \
 	host/gltf/materials.c \
+	host/gltf/memory_files.c host/gltf/memory_files.h \
 	host/gltf/meshes.c host/gltf/meshes.h \
 	host/gltf/nodes.c \
 	host/gltf/translate.c host/gltf/translate.h \

@@ -264,20 +264,11 @@ bool gltf_material_invisible(const GltfMaterial *material)
            (material->alpha == GLTF_BLEND && material->base[3] == 0.0);
 }
 
-/* Whether a shape of the scene has the material. */
-static bool material_used(const Gltf *gltf, int material)
-{
-    for (size_t i = 0; i < gltf->primitive_count; ++i)
-        if (gltf->primitives[i].material == material && gltf->primitives[i].part_count > 0)
-            return true;
-    return false;
-}
-
 bool gltf_translate_materials(Translation *translation)
 {
     const Gltf *gltf = translation->gltf;
     for (size_t i = 0; i < gltf->material_count && !translation->reader->failed; ++i)
-        if (material_used(gltf, (int)i))
+        if (gltf->materials[i].used)
             material_print(translation, (int)i);
     return !translation->reader->failed;
 }

@@ -89,6 +89,22 @@ START_TEST(sparse_accessors_replace_elements)
 }
 END_TEST
 
+START_TEST(morph_targets_have_default_weights)
+{
+    Scene scene;
+    /* By half the normals, which as positions are (0, 0, 1); the second target does not count. */
+    gltf_scene(
+        "\"meshes\":[{\"weights\":[0.5,0],\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":3,"
+        "\"targets\":[{\"POSITION\":1,\"NORMAL\":0},{\"POSITION\":0}]}]}]," ONE_NODE,
+        &scene);
+    assert_vec3(ELEMENT(&scene, positions, Vec3, 0), 0, 0, 0.5, 0);
+    assert_vec3(ELEMENT(&scene, positions, Vec3, 2), 1, 1, 0.5, 0);
+    assert_vec3(ELEMENT(&scene, normals, Vec3, 0), 0, 0, 1, 0);
+    assert_vec3(ELEMENT(&scene, normals, Vec3, 1), sqrt(0.2), 0, sqrt(0.8), 1e-6); /* (0, 0, 1) + (1, 0, 0) / 2 */
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(nodes_are_placed)
 {
     Scene scene;
@@ -254,7 +270,7 @@ START_TEST(what_is_not_shown_is_said)
     gltf_says("the extension KHR_materials_sheen is not supported and is ignored");
     gltf_says("animations are not played");
     gltf_says("skins are not applied");
-    gltf_says("morph targets are not applied");
+    gltf_says("morph targets have the default weights of their meshes");
     gltf_says("the vertex colours of meshes[0].primitives[0] are ignored");
     gltf_says("has 2 cameras: that of nodes[1] is used");
     ck_assert_ptr_null(strstr(gltf_log(), "KHR_lights_punctual is not supported"));
@@ -269,6 +285,7 @@ TCase *gltf_scene_case(void)
     tcase_add_test(tests, buffers_may_be_data_uris);
     tcase_add_test(tests, strips_become_triangles);
     tcase_add_test(tests, sparse_accessors_replace_elements);
+    tcase_add_test(tests, morph_targets_have_default_weights);
     tcase_add_test(tests, nodes_are_placed);
     tcase_add_test(tests, mirrored_nodes_keep_their_front);
     tcase_add_test(tests, shared_meshes_are_instances);
