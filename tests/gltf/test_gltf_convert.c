@@ -62,6 +62,43 @@ START_TEST(conversions_are_the_same_scene)
 }
 END_TEST
 
+/* A PNG of 2 x 1 pixels with 16 bits per channel: (0x1234, 0x8000, 0xffff), (0x101, 0x4000, 0xc000). */
+static const char DEEP[] =
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mMQMmlg+P+fkdGB4QADABmdA8fj0rMgAAAAAElFTkSu"
+    "QmCC";
+
+START_TEST(deep_images_are_floats)
+{
+    char members[4096];
+    Error error = {{0}, {0}};
+    Scene read, written;
+    snprintf(members, sizeof members,
+             GLTF_SQUARE ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},"
+                         "\"metallicRoughnessTexture\":{\"index\":0},\"metallicFactor\":0}}],"
+                         "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}],\"textures\":[{\"source\":0}],"
+                         "\"nodes\":[{\"mesh\":0}]",
+             DEEP);
+    const char *path = gltf_write("deep.glb", members), *converted = gltf_path("deep.pbrt");
+    scene_init(&read);
+    scene_init(&written);
+    ck_assert_msg(scene_file_load(path, false, &read, &error), "%s", error.message);
+    Gltf *gltf = gltf_open(path, &error);
+    ck_assert_msg(gltf && gltf_convert(gltf, converted, &error), "%s", error.message);
+    gltf_close(gltf);
+    ck_assert_int_eq(access(gltf_path("deep-textures/0.exr"), R_OK), 0);
+    ck_assert_msg(pbrt_load(converted, false, &written, &error), "%s", error.message);
+    assert_same_scene(&read, &written);
+    /* Image 0 is the roughness: the green channel, as it is. */
+    const float *green = (const float *)read.texels.data;
+    TEST_NEAR(green[0], 0x8000 / 65535.0, 1e-7);
+    TEST_NEAR(green[1], 0x4000 / 65535.0, 1e-7);
+    scene_destroy(&read);
+    scene_destroy(&written);
+    folder_remove(gltf_path("deep-meshes"));
+    folder_remove(gltf_path("deep-textures"));
+}
+END_TEST
+
 /* The same content by hand. */
 START_TEST(scenes_are_those_of_pbrt)
 {
@@ -111,6 +148,7 @@ TCase *gltf_convert_case(void)
 {
     TCase *tests = gltf_case("convert");
     tcase_add_test(tests, conversions_are_the_same_scene);
+    tcase_add_test(tests, deep_images_are_floats);
     tcase_add_test(tests, scenes_are_those_of_pbrt);
     tcase_add_test(tests, conversions_keep_their_inputs);
     return tests;
