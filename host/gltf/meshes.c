@@ -176,7 +176,7 @@ static json_t *buffers_make(const Gltf *gltf)
         char name[32];
         snprintf(name, sizeof name, "%zu.bin", i);
         json_array_append_new(buffers, json_pack("{s:s, s:I}", "uri", name, "byteLength",
-                                                 (json_int_t)(gltf->buffers[i].size + BUFFER_PADDING)));
+                                                 (json_int_t)gltf->buffers[i].size + BUFFER_PADDING));
     }
     return buffers;
 }
