@@ -81,6 +81,13 @@ static void emission_read(GltfReader *reader, const GltfObject *object, GltfMate
     material->emissive_texture = texture_read(reader, object, "emissiveTexture", &info);
 }
 
+/* Whether KHR_materials_specular asks for more than all of the specular reflection or none. */
+static bool specular_is_partial(const GltfObject *specular, double factor)
+{
+    size_t plain = json_object_get(specular->json, "specularFactor") ? 1 : 0;
+    return factor != 0.0 && (factor != 1.0 || json_object_size(specular->json) > plain);
+}
+
 static void extensions_read(GltfReader *reader, const GltfObject *object, GltfMaterial *material)
 {
     GltfObject info;
@@ -99,7 +106,7 @@ static void extensions_read(GltfReader *reader, const GltfObject *object, GltfMa
     }
     double factor = gltf_number(reader, &specular, "specularFactor", 1.0, 0.0, 1e30);
     material->matte = unlit.json != NULL || factor == 0.0 || material->ior == 1.0;
-    if (specular.json && factor != 0.0)
+    if (specular_is_partial(&specular, factor))
         log_message(LOG_WARNING, "%s: %s: KHR_materials_specular is ignored unless its factor is 0", reader->path,
                     object->name);
     if (unlit.json) {

@@ -128,6 +128,30 @@ START_TEST(surfaces_without_gloss_are_diffuse)
 }
 END_TEST
 
+START_TEST(partial_gloss_is_said)
+{
+    static const struct {
+        const char *members;
+        bool partial;
+    } CASES[] = {{"", false},
+                 {"\"specularFactor\":1", false},
+                 {"\"specularFactor\":0", false},
+                 {"\"specularFactor\":0.5", true},
+                 {"\"specularColorFactor\":[1,0,0]", true}};
+    for (int i = 0; i < 5; ++i) {
+        char members[1024];
+        Scene scene;
+        snprintf(members, sizeof members,
+                 GLTF_SQUARE ",\"materials\":[{\"extensions\":{\"KHR_materials_specular\":{%s}}}],"
+                             "\"nodes\":[{\"mesh\":0}," GLTF_LIGHT_NODE "]," GLTF_LIGHT,
+                 CASES[i].members);
+        gltf_scene(members, &scene);
+        ck_assert_int_eq(strstr(gltf_log(), "KHR_materials_specular is ignored") != NULL, CASES[i].partial);
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
 START_TEST(emission_has_its_strength)
 {
     Scene scene;
@@ -197,6 +221,7 @@ TCase *gltf_materials_case(void)
     tcase_add_test(tests, metallic_is_a_mix);
     tcase_add_test(tests, transmission_is_glass);
     tcase_add_test(tests, surfaces_without_gloss_are_diffuse);
+    tcase_add_test(tests, partial_gloss_is_said);
     tcase_add_test(tests, emission_has_its_strength);
     tcase_add_test(tests, emission_of_shared_meshes_is_repeated);
     tcase_add_test(tests, alpha_is_transparency);
