@@ -224,6 +224,7 @@ tests_test_film_SOURCES = tests/film/test_film.c \
 
 tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
 	tests/geometry/test_geometry_backend.c \
+	tests/geometry/test_geometry_cylinder.c \
 	tests/geometry/test_geometry_quadrics.c \
 	tests/geometry/test_geometry_rays.c
 
@@ -246,7 +247,8 @@ tests_test_import_SOURCES = tests/pbrt/test_import.c \
 	tests/pbrt/test_import_shapes.c \
 	tests/pbrt/test_import_text.c \
 	tests/pbrt/test_import_textures.c \
-	tests/pbrt/test_import_transform.c
+	tests/pbrt/test_import_transform.c \
+	tests/pbrt/test_subdivide.c
 
 tests_test_light_SOURCES = tests/light/test_light.c \
 	tests/light/test_light_area.c \

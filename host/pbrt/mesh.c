@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "pbrt/errors.h"
 #include "pbrt/ply.h"
+#include "pbrt/subdivide.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,13 +117,56 @@ static bool params_mesh_read(PbrtImport *im, ParamList *list, const ShapeContext
     return good;
 }
 
-static bool polygons_report(PbrtImport *im, SourcePlace place, const PlyMesh *ply)
+static bool subdivided_add(PbrtImport *im, const ShapeContext *context, const MeshParams *params, const uint *indices,
+                           unsigned levels)
+{
+    SubdividedMesh surface;
+    Error error = {0};
+    if (!context->has_inverse)
+        return singular_refuse(im);
+    if (!subdivide_loop(params->positions, params->vertex_count, indices, params->index_count / 3, levels, &surface,
+                        &error)) {
+        if (error_is_memory(&error)) {
+            *im->error = error;
+            return false;
+        }
+        error_at(im->error, context->place, "%s", error_text(&error));
+        return error_fix(im->error, "%s", error.fix);
+    }
+    MeshData mesh = {
+        .vertex_count = surface.vertex_count, .indices = surface.indices, .triangle_count = surface.triangle_count};
+    bool good = shape_add_mesh(im, context, PRIMITIVE_TRIANGLE, surface.positions, surface.normals, &mesh);
+    subdivided_destroy(&surface);
+    return good;
+}
+
+static bool loopsubdiv_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    MeshParams params = {0};
+    int levels = param_integer(list, "levels", 3);
+    size_t count;
+    params.positions = param_floats(list, "P", PARAM_POINT3, &count);
+    params.vertex_count = count / 3;
+    params.indices = param_integers(list, "indices", &params.index_count);
+    param_string(list, "scheme", "loop");
+    if (!params.positions)
+        param_error(list, "P", "%s lacks \"point3 P\", its vertices", list->owner);
+    if (levels < 0)
+        param_error(list, "levels", "\"levels\" is negative");
+    uint *indices = indices_make(list, &params, 3);
+    bool good =
+        param_list_finish(list, im->options.lenient) && subdivided_add(im, context, &params, indices, (unsigned)levels);
+    free(indices);
+    return good;
+}
+
+static bool small_faces_report(PbrtImport *im, SourcePlace place, const PlyMesh *ply)
 {
     char what[96];
-    if (ply->polygon_count == 0)
+    if (ply->small_count == 0)
         return true;
-    snprintf(what, sizeof what, "a PLY face with other than 3 or 4 vertices (there are %zu)", ply->polygon_count);
-    return import_unsupported(im, place, what, "these faces are left out", "triangulate the mesh");
+    snprintf(what, sizeof what, "a PLY face with fewer than 3 vertices (there are %zu)", ply->small_count);
+    return import_unsupported(im, place, what, "these faces are left out", "remove them from the mesh");
 }
 
 /* Triangles and bilinear patches of a file become two shapes, as in pbrt. The vertices of a quad go around the face;
@@ -180,7 +224,7 @@ static bool plymesh_read(PbrtImport *im, ParamList *list, const ShapeContext *co
         return false;
     SourcePlace place = param_place(list, "filename");
     PlyMesh ply = {0};
-    bool good = ply_find(im, name, place, &ply) && polygons_report(im, place, &ply) && ply_add(im, context, &ply);
+    bool good = ply_find(im, name, place, &ply) && small_faces_report(im, place, &ply) && ply_add(im, context, &ply);
     ply_destroy(&ply);
     return good;
 }
@@ -189,6 +233,8 @@ bool mesh_read(PbrtImport *im, const char *kind, ParamList *list, const ShapeCon
 {
     if (strcmp(kind, "plymesh") == 0)
         return plymesh_read(im, list, context);
+    if (strcmp(kind, "loopsubdiv") == 0)
+        return loopsubdiv_read(im, list, context);
     return params_mesh_read(im, list, context,
                             strcmp(kind, "trianglemesh") == 0 ? PRIMITIVE_TRIANGLE : PRIMITIVE_BILINEAR);
 }

@@ -1,4 +1,4 @@
-/* trianglemesh, plymesh and bilinearmesh. */
+/* trianglemesh, plymesh, bilinearmesh and loopsubdiv. */
 #ifndef TWINLIGHT_PBRT_MESH_H
 #define TWINLIGHT_PBRT_MESH_H
 

@@ -4,6 +4,7 @@
 #include "base/file_read.h"
 #include "base/text_number.h"
 #include "pbrt/ply_header.h"
+#include "pbrt/polygon.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@ typedef struct Cursor {
     const char *p, *end;
     PlyMesh *mesh;
     Array triangles, quads; /* uint */
+    Array polygons; /* uint: of each, the number of vertices and their indices */
 } Cursor;
 
 static bool truncated(const Cursor *c)
@@ -133,11 +135,17 @@ static bool values_skip(Cursor *c, PlyType type, uint64_t count)
 /* Reads the `count` indices of one face. */
 static bool face_next(Cursor *c, PlyType type, uint64_t count)
 {
-    if (count != 3 && count != 4) {
-        ++c->mesh->polygon_count;
+    if (count < 3) {
+        ++c->mesh->small_count;
         return values_skip(c, type, count);
     }
-    uint *out = array_grow(count == 3 ? &c->triangles : &c->quads, (size_t)count, c->source->error);
+    size_t least = c->header->format == PLY_ASCII ? 2 : ply_type_size(type);
+    if (count >= NONE || count > ((uint64_t)(c->end - c->p) + 1) / least)
+        return truncated(c);
+    Array *faces = count == 3 ? &c->triangles : count == 4 ? &c->quads : &c->polygons;
+    uint *out = array_grow(faces, (size_t)count + (count > 4 ? 1 : 0), c->source->error);
+    if (out && count > 4)
+        *out++ = (uint)count;
     for (uint64_t i = 0; out && i < count; ++i) {
         uint64_t index = 0;
         if (!integer_next(c, type, &index))
@@ -284,14 +292,43 @@ static bool faces_read(Cursor *c, const PlyElement *element)
     return element_walk(c, &rest);
 }
 
-static bool indices_check(const Cursor *c, const Array *indices)
+static bool indices_check(const Cursor *c, const uint *indices, size_t count)
 {
     size_t vertex_count = c->mesh->vertex_count;
-    for (size_t i = 0; i < indices->count; ++i)
-        if (ARRAY_AT(indices, uint, i) >= vertex_count)
-            return ply_error(c->source, "vertex index %d is out of range: the file has %zu vertices",
-                             (int)ARRAY_AT(indices, uint, i), vertex_count);
+    for (size_t i = 0; i < count; ++i)
+        if (indices[i] >= vertex_count)
+            return ply_error(c->source, "vertex index %d is out of range: the file has %zu vertices", (int)indices[i],
+                             vertex_count);
     return true;
+}
+
+/* Appends the triangles of a polygon. */
+static bool polygon_add(Cursor *c, const uint *corner, size_t count, Array *scratch)
+{
+    scratch->count = 0;
+    uint *out = array_grow(&c->triangles, 3 * (count - 2), c->source->error);
+    uint *room = out ? array_grow(scratch, 3 * count, c->source->error) : NULL;
+    if (!room)
+        return false;
+    if (polygon_triangulate(c->mesh->positions, corner, count, out, room))
+        return true;
+    return ply_error(c->source, "a face has %zu vertices and is not convex: at most %u can be triangulated", count,
+                     POLYGON_CONCAVE_MAX);
+}
+
+/* Polygons wait until all vertices are known, since the element vertex may come last. */
+static bool polygons_add(Cursor *c)
+{
+    Array scratch;
+    bool good = true;
+    array_init(&scratch, sizeof(uint));
+    for (size_t i = 0, count; good && i < c->polygons.count; i += 1 + count) {
+        const uint *face = &ARRAY_AT(&c->polygons, uint, i);
+        count = face[0];
+        good = indices_check(c, face + 1, count) && polygon_add(c, face + 1, count, &scratch);
+    }
+    array_destroy(&scratch);
+    return good;
 }
 
 static bool body_read(Cursor *c)
@@ -306,7 +343,8 @@ static bool body_read(Cursor *c)
         if (!good)
             return false;
     }
-    return indices_check(c, &c->triangles) && indices_check(c, &c->quads);
+    return indices_check(c, c->triangles.data, c->triangles.count) && indices_check(c, c->quads.data, c->quads.count) &&
+           polygons_add(c);
 }
 
 bool ply_read_memory(const char *path, SourcePlace place, const char *data, size_t size, PlyMesh *mesh, Error *error)
@@ -319,7 +357,9 @@ bool ply_read_memory(const char *path, SourcePlace place, const char *data, size
     Cursor c = {.source = &source, .header = &header, .p = data + header.size, .end = data + size, .mesh = mesh};
     array_init(&c.triangles, sizeof(uint));
     array_init(&c.quads, sizeof(uint));
+    array_init(&c.polygons, sizeof(uint));
     bool good = body_read(&c);
+    array_destroy(&c.polygons);
     mesh->triangles = c.triangles.data;
     mesh->triangle_count = c.triangles.count / 3;
     mesh->quads = c.quads.data;

@@ -10,13 +10,14 @@ typedef struct PlyMesh {
     float *positions; /* 3 per vertex */
     float *normals; /* 3 per vertex, or NULL */
     float *uvs; /* 2 per vertex, or NULL */
-    uint *triangles; /* 3 indices each, all below vertex_count */
+    uint *triangles; /* 3 indices each, all below vertex_count; those of polygons come last */
     uint *quads; /* 4 indices each, in the file's order, around the face */
-    size_t polygon_count; /* number of faces with other than 3 or 4 vertices, which are left out */
+    size_t small_count; /* number of faces with fewer than 3 vertices, which are left out */
 } PlyMesh;
 
 /* Reads element vertex (x y z, nx ny nz, u v | s t | texture_u texture_v | texture_s texture_t) and element face
- * (vertex_indices or vertex_index); everything else is skipped. Fails, naming the path at `place` (the parameter in the
+ * (vertex_indices or vertex_index); everything else is skipped. Faces of more than 4 vertices are divided into triangles
+ * (pbrt/polygon.h). Fails, naming the path at `place` (the parameter in the
  * scene), if the file cannot be read, is damaged or truncated, or an index is out of range. Memory is bounded by a
  * multiple of the (decompressed) file's size. */
 bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error);

@@ -130,7 +130,8 @@ bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, floa
 /* Whether the corners of the quadric's bounding box are in range; an error if not. */
 static bool quadric_fits(PbrtImport *im, const Quadric *quadric, const Matrix *matrix)
 {
-    double radius = fmax((double)quadric->radius, fabs((double)quadric->z_min));
+    double height = fmax(fabs((double)quadric->z_min), fabs((double)quadric->z_max));
+    double radius = fmax((double)quadric->radius, height);
     for (int i = 0; i < 3; ++i) {
         const double *row = &matrix->m[4 * i];
         if (!(fabs(row[3]) + radius * (fabs(row[0]) + fabs(row[1]) + fabs(row[2])) <= IMPORT_COORDINATE_MAX)) {
@@ -211,7 +212,7 @@ bool emissive_shape_add(PbrtImport *im, const EmissiveShape *shape, const Matrix
                  IMPORT_COPIES_MAX);
         return error_fix(im->error, "give the light source its own mesh, with few vertices");
     }
-    bool quadric = shape->kind == PRIMITIVE_SPHERE || shape->kind == PRIMITIVE_DISK;
+    bool quadric = PRIMITIVE_IS_QUADRIC(shape->kind);
     /* An instance is the image of its object (geometry/surface.h). A mesh's geometric normal is a cross product in
      * world space, which a reflection flips; a quadric's normal is transformed. */
     if (!quadric && matrix_swaps_handedness(ctm))

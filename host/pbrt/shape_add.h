@@ -21,7 +21,7 @@ typedef struct ShapeContext {
 bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, float *positions, float *normals,
                     const MeshData *mesh);
 
-/* Adds a sphere or disk. */
+/* Adds a sphere, disk or cylinder. */
 bool shape_add_quadric(PbrtImport *im, const ShapeContext *context, uint kind, const Quadric *quadric);
 
 /* Adds an emissive shape of an object definition to the world, transformed by the instance's ctm. */

@@ -42,6 +42,22 @@ static bool disk_read(PbrtImport *im, ParamList *list, const ShapeContext *conte
     return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_DISK, &quadric);
 }
 
+/* As pbrt's Cylinder::Create: the heights in either order. */
+static bool cylinder_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    float radius = param_float(list, "radius", 1.0f), phi = param_float(list, "phimax", 360.0f);
+    float a = param_float(list, "zmin", -1.0f), b = param_float(list, "zmax", 1.0f);
+    if (!(radius > 0.0f))
+        param_error(list, "radius", "the radius of a cylinder must be above 0");
+    if (a == b)
+        param_error(list, "zmax", "the cylinder has no height: \"zmin\" and \"zmax\" are equal");
+    Quadric quadric = {.radius = radius,
+                       .z_min = float_min(a, b),
+                       .z_max = float_max(a, b),
+                       .phi_max = float_clamp(phi, 0.0f, 360.0f) * DEGREES_TO_RADIANS};
+    return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_CYLINDER, &quadric);
+}
+
 /* Reads the alpha texture, or a constant below 1. */
 static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
 {
@@ -98,29 +114,43 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
            alpha_emission_check(im, list, context);
 }
 
+static bool mesh_kind_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
+{
+    return mesh_read(im, list->owner, list, context);
+}
+
+static const struct ShapeKind {
+    const char *name;
+    bool (*read)(PbrtImport *im, ParamList *list, const ShapeContext *context);
+    bool quadric; /* needs the inverse of the transform */
+} KINDS[] = {{"sphere", sphere_read, true},        {"disk", disk_read, true},
+             {"cylinder", cylinder_read, true},    {"trianglemesh", mesh_kind_read, false},
+             {"plymesh", mesh_kind_read, false},   {"bilinearmesh", mesh_kind_read, false},
+             {"loopsubdiv", mesh_kind_read, false}};
+#define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
+
+static bool kind_missing(PbrtImport *im, const char *kind)
+{
+    const char *known[KIND_COUNT];
+    if (strcmp(kind, "curve") == 0)
+        return import_unsupported(im, im->place, "the shape \"curve\"", "the shape is left out",
+                                  "turn it into a plymesh");
+    for (size_t i = 0; i < KIND_COUNT; ++i)
+        known[i] = KINDS[i].name;
+    return import_unknown(im, im->place, "shape", kind, known, KIND_COUNT);
+}
+
 static bool shape_read(PbrtImport *im, const char *kind, ParamList *list)
 {
-    static const char *const KNOWN[] = {"sphere", "disk", "trianglemesh", "plymesh", "bilinearmesh"};
-    static const char *const UNSUPPORTED[] = {"cylinder", "curve", "loopsubdiv"};
     ShapeContext context;
-    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)
-        if (strcmp(kind, UNSUPPORTED[i]) == 0) {
-            char what[64];
-            snprintf(what, sizeof what, "the shape \"%s\"", kind);
-            return import_unsupported(im, im->place, what, "the shape is left out", "turn it into a plymesh");
-        }
-    bool quadric = strcmp(kind, "sphere") == 0 || strcmp(kind, "disk") == 0;
-    size_t known = 0;
-    while (known < sizeof KNOWN / sizeof *KNOWN && strcmp(kind, KNOWN[known]) != 0)
-        ++known;
-    if (known == sizeof KNOWN / sizeof *KNOWN)
-        return import_unknown(im, im->place, "shape", kind, KNOWN, known);
-    if (!context_make(im, list, &context))
-        return false;
-    if (quadric)
-        return import_inverse(im, im->place, &context.ctm, &context.inverse) &&
-               (kind[0] == 's' ? sphere_read(im, list, &context) : disk_read(im, list, &context));
-    return mesh_read(im, kind, list, &context);
+    size_t k = 0;
+    while (k < KIND_COUNT && strcmp(kind, KINDS[k].name) != 0)
+        ++k;
+    if (k == KIND_COUNT)
+        return kind_missing(im, kind);
+    return context_make(im, list, &context) &&
+           (!KINDS[k].quadric || import_inverse(im, im->place, &context.ctm, &context.inverse)) &&
+           KINDS[k].read(im, list, &context);
 }
 
 bool import_shape(PbrtImport *im, const char *kind)

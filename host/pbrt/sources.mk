@@ -16,9 +16,11 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/parser.c host/pbrt/parser.h \
 	host/pbrt/ply.c host/pbrt/ply.h \
 	host/pbrt/ply_header.c host/pbrt/ply_header.h \
+	host/pbrt/polygon.c host/pbrt/polygon.h \
 	host/pbrt/readers.h \
 	host/pbrt/shape_add.c host/pbrt/shape_add.h \
 	host/pbrt/shapes.c \
 	host/pbrt/state.c host/pbrt/state.h \
+	host/pbrt/subdivide.c host/pbrt/subdivide.h \
 	host/pbrt/textures.c \
 	host/pbrt/values.c host/pbrt/values.h

@@ -33,7 +33,8 @@ bool photon_light_is_far(const PhotonLights *lights, uint light)
     return lights->view.lights[light].kind >= LIGHT_DISTANT;
 }
 
-/* Sums the areas of a shape's lights, then turns each light's into a radius. A sphere shows a quarter of its area. */
+/* Sums the areas of a shape's lights, then turns each light's into a radius. A sphere shows a quarter of its area, a
+ * cylinder one part in pi. */
 static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
 {
     const SceneView *view = &lights->view;
@@ -48,7 +49,8 @@ static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
         if (view->lights[i].kind != LIGHT_AREA)
             continue;
         uint word = view->primitives[view->lights[i].primitive].shape_and_kind;
-        double part = word >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? 0.25 : 1.0;
+        uint kind = word >> PRIMITIVE_KIND_SHIFT;
+        double part = kind == PRIMITIVE_SPHERE ? 0.25 : kind == PRIMITIVE_CYLINDER ? 1.0 / M_PI : 1.0;
         lights->radius[i] = sqrt(part * areas[word & PRIMITIVE_SHAPE_MASK] / M_PI);
     }
     free(areas);

@@ -76,8 +76,7 @@ static void quadrics_move(Scene *scene, Vec3 offset)
     const Object *world = &ARRAY_AT(&scene->objects, Object, 0);
     for (uint i = 0; i < world->primitive_count; ++i) {
         const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, world->first_primitive + i);
-        uint kind = p->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-        if (kind != PRIMITIVE_SPHERE && kind != PRIMITIVE_DISK)
+        if (!PRIMITIVE_IS_QUADRIC(p->shape_and_kind >> PRIMITIVE_KIND_SHIFT))
             continue;
         Quadric *quadric = &ARRAY_AT(&scene->quadrics, Quadric, p->a);
         placement_move(&quadric->world_from_object, &quadric->object_from_world, offset);

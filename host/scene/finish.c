@@ -250,7 +250,7 @@ static uint geometry_features(const Scene *scene)
         features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
         features |= shape->flags & SHAPE_HAS_NORMALS ? FEATURE_NORMALS : 0u;
     }
-    /* FEATURE_TRIANGLE << kind: the four kinds have consecutive bits in the order of their numbers */
+    /* FEATURE_TRIANGLE << kind: the kinds have consecutive bits in the order of their numbers */
     for (size_t i = 0; i < scene->primitives.count; ++i)
         features |= (uint)FEATURE_TRIANGLE
                     << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);

@@ -92,7 +92,7 @@ static Cone area_normals(const SceneView *view, uint light)
 {
     Primitive primitive = view->primitives[view->lights[light].primitive];
     uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    if (kind == PRIMITIVE_SPHERE)
+    if (kind == PRIMITIVE_SPHERE || kind == PRIMITIVE_CYLINDER)
         return (Cone){NO_CONE.axis, M_PI};
     Cone cone = NO_CONE;
     for (int corner = 0; corner < (kind == PRIMITIVE_BILINEAR ? 4 : 1); ++corner) {
@@ -103,13 +103,20 @@ static Cone area_normals(const SceneView *view, uint light)
     return cone.angle > 0.5 * M_PI ? (Cone){NO_CONE.axis, M_PI} : cone;
 }
 
+/* The largest part of a surface's area that is seen from one direction, with its cosine: of a sphere, that of its disc; of
+ * a cylinder, that of its silhouette, also where it is flattened to almost two sides. */
+static double area_shown(uint kind)
+{
+    return kind == PRIMITIVE_SPHERE ? 0.25 : kind == PRIMITIVE_CYLINDER ? 0.5 : 1.0;
+}
+
 /* power: its flux. intensity: the largest in any direction, so that intensity / distance^2 is what arrives there. */
 static Bounds area_bounds(const SceneView *view, uint light, double power)
 {
     const Light *source = &view->lights[light];
     uint kind = view->primitives[source->primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     bool two_sided = (source->flags & LIGHT_TWO_SIDED) != 0;
-    double facing = kind == PRIMITIVE_SPHERE ? 0.25 : 1.0; /* of the area of a sphere, that of its disc */
+    double facing = area_shown(kind);
     return (Bounds){.box = primitive_box(view, source->primitive),
                     .normals = area_normals(view, light),
                     .emission = 0.5 * M_PI,

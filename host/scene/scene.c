@@ -273,7 +273,7 @@ static double area_stretch(const Quadric *quadric, const double n[3])
     return fabs(determinant) * length3(transformed);
 }
 
-#define SPHERE_STEPS 64 /* for the area of an emissive sphere */
+#define QUADRIC_STEPS 64 /* for the area of an emissive sphere or cylinder */
 
 /* Area by the midpoint rule with steps x steps points. */
 static double sphere_area(const Quadric *quadric, int steps)
@@ -301,8 +301,22 @@ static double disk_area(const Quadric *quadric)
     return 0.5 * (double)quadric->phi_max * fmax(0.0, r * r - inner * inner) * area_stretch(quadric, n);
 }
 
+/* Area by the midpoint rule with `steps` points around the axis. */
+static double cylinder_area(const Quadric *quadric, int steps)
+{
+    double sum = 0.0, height = (double)quadric->z_max - (double)quadric->z_min;
+    for (int i = 0; i < steps; ++i) {
+        double phi = (double)quadric->phi_max * (i + 0.5) / steps;
+        double n[3] = {cos(phi), sin(phi), 0.0};
+        sum += area_stretch(quadric, n);
+    }
+    return (double)quadric->phi_max * (double)quadric->radius * fmax(0.0, height) * sum / steps;
+}
+
 static double quadric_area(const Quadric *quadric, uint kind, int steps)
 {
+    if (kind == PRIMITIVE_CYLINDER)
+        return cylinder_area(quadric, steps);
     return kind == PRIMITIVE_SPHERE ? sphere_area(quadric, steps) : disk_area(quadric);
 }
 
@@ -333,7 +347,7 @@ bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const
     primitive->shape_and_kind = shape_and_kind(index, kind, &shape);
     /* a few steps suffice to tell whether there is any area; scenes with a million spheres that are no lights load
      * faster */
-    if (!((float)quadric_area(stored, kind, emission ? SPHERE_STEPS : 4) > 0.0f)) {
+    if (!((float)quadric_area(stored, kind, emission ? QUADRIC_STEPS : 4) > 0.0f)) {
         --scene->primitives.count;
         scene->counts.zero_area_lights += emission ? 1 : 0;
         ++scene->counts.degenerate_triangles;
@@ -434,6 +448,6 @@ double scene_primitive_area(const Scene *scene, uint primitive)
         return patch_area(positions, &ARRAY_AT(&scene->patches, Patch, p->a));
     default:
         return quadric_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a), p->shape_and_kind >> PRIMITIVE_KIND_SHIFT,
-                            SPHERE_STEPS);
+                            QUADRIC_STEPS);
     }
 }

@@ -116,9 +116,9 @@ bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float
 bool scene_add_patches(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
-/* A sphere or disk; shape, emission and light_flags as above. */
+/* A sphere, disk or cylinder; shape, emission and light_flags as above. */
 typedef struct QuadricData {
-    uint kind; /* PRIMITIVE_SPHERE or PRIMITIVE_DISK */
+    uint kind; /* PRIMITIVE_SPHERE, PRIMITIVE_DISK or PRIMITIVE_CYLINDER */
     Quadric quadric; /* radius, inner_radius, z_min, z_max and phi_max; the rest is set by scene_add_quadric */
     const double *world_from_object, *object_from_world; /* 4x4, row-major; inverse to each other */
 } QuadricData;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk"};
+static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk", "cylinder"};
 #define TEXT(NAME, name, text, traits) text,
 static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {MATERIAL_LIST(TEXT)};
 #define LIGHT_TEXT(NAME, name, text, feature, position) text,

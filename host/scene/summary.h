@@ -6,8 +6,6 @@
 
 #include <stdio.h>
 
-#define PRIMITIVE_KINDS 4
-
 typedef struct SceneSummary {
     size_t primitives[PRIMITIVE_KINDS]; /* by PRIMITIVE_*; those of an object count once, not per instance */
     size_t materials[MATERIAL_KINDS]; /* by MATERIAL_* */

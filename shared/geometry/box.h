@@ -171,8 +171,9 @@ SHARED_FUNCTION Box quadric_box(__global const Quadric *quadric, uint kind)
         box_add(&box, vec3_add(quadric->center, vec3_splat(w)));
         return box;
     }
-    box_add(&box, vec3(-r, -r, kind == PRIMITIVE_DISK ? quadric->z_min : float_max(-r, quadric->z_min)));
-    box_add(&box, vec3(r, r, kind == PRIMITIVE_DISK ? quadric->z_min : float_min(r, quadric->z_max)));
+    box_add(&box, vec3(-r, -r, kind == PRIMITIVE_SPHERE ? float_max(-r, quadric->z_min) : quadric->z_min));
+    float high = kind == PRIMITIVE_DISK ? quadric->z_min : quadric->z_max;
+    box_add(&box, vec3(r, r, kind == PRIMITIVE_SPHERE ? float_min(r, high) : high));
     box = box_transform(&box, quadric->world_from_object);
     /* Rounding of the two transforms: of the box here, and of rays in the primitive's test. */
     return box_inflate(box, 4.0f * FLOAT_EPSILON * box_largest(&box));

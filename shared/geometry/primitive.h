@@ -5,6 +5,7 @@
 
 #include "geometry/bilinear.h"
 #include "geometry/box.h"
+#include "geometry/cylinder.h"
 #include "geometry/disk.h"
 #include "geometry/sphere.h"
 #include "geometry/texture.h"
@@ -48,25 +49,36 @@ SHARED_FUNCTION Vec2 patch_uv(const SceneView *scene, const Shape *shape, uint p
                 w00 * corner[0].y + w10 * corner[1].y + w01 * corner[2].y + w11 * corner[3].y);
 }
 
-/* The point of the sphere or disk at o + t d, put back onto it, in object space; *world: in the space around. */
+/* False without a look at the primitive in scenes without cylinders. */
+SHARED_FUNCTION bool primitive_is_cylinder(const SceneView *scene, const Primitive *primitive)
+{
+    return SCENE_HAS(scene, FEATURE_CYLINDER) &&
+           primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_CYLINDER;
+}
+
+/* The point of the quadric at o + t d, put back onto it, in object space; *world: in the space around. */
 SHARED_FUNCTION Vec3 quadric_point(const SceneView *scene, const Primitive *primitive, Vec3 o, Vec3 d, float t,
                                    Vec3 *world)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    if (primitive_is_cylinder(scene, primitive))
+        return cylinder_point(quadric, o, d, t, world);
     return primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? sphere_point(quadric, o, d, t, world)
                                                                                  : disk_point(quadric, o, d, t, world);
 }
 
-/* Texture coordinates of a point of a sphere or disk in object space. Hits do not store them: on a sphere they take
+/* Texture coordinates of a point of a quadric in object space. Hits do not store them: on a sphere they take
  * four arc functions, and only textures need them. */
 SHARED_FUNCTION Vec2 quadric_uv(const SceneView *scene, const Primitive *primitive, Vec3 p)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    if (primitive_is_cylinder(scene, primitive))
+        return cylinder_parameters(quadric, p);
     return primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE ? sphere_parameters(quadric, p)
                                                                                  : disk_parameters(quadric, p);
 }
 
-/* Hashes of a sphere's far side use the primitive's number with this bit set. */
+/* Hashes of the far side of a sphere or cylinder use the primitive's number with this bit set. */
 #define PRIMITIVE_FAR_SIDE 0x80000000u
 
 /* A number in [0, 1) that depends on the bits of the ray and on the primitive. */
@@ -126,8 +138,15 @@ SHARED_FUNCTION bool primitive_keeps(const SceneView *scene, const RayQuery *que
            primitive_alpha_keeps(scene, query, asked, &primitive, hit);
 }
 
-/* The first intersection with a primitive other than a triangle, alpha textures ignored; for a sphere, the first beyond
- * `after`. */
+/* Whether a ray can hit the primitive twice and the second hit is looked for: spheres and cylinders. */
+SHARED_FUNCTION bool primitive_has_far_side(const SceneView *scene, const Primitive *primitive)
+{
+    return primitive_is_cylinder(scene, primitive) ||
+           (SCENE_HAS(scene, FEATURE_SPHERE) && primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE);
+}
+
+/* The first intersection with a primitive other than a triangle, alpha textures ignored; for a sphere or cylinder, the
+ * first beyond `after`. */
 SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primitive *primitive, const RayQuery *query,
                                            float after, Hit *hit)
 {
@@ -136,9 +155,11 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
         PatchCorners corners = patch_corners(scene, primitive->a);
         return patch_query(&corners, query, &hit->t, &hit->u, &hit->v);
     }
-    if (!SCENE_HAS(scene, FEATURE_SPHERE | FEATURE_DISK))
+    if (!SCENE_HAS(scene, FEATURES_QUADRIC))
         return false;
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
+    if (primitive_is_cylinder(scene, primitive))
+        return cylinder_query(quadric, query, after, &hit->t);
     return kind == PRIMITIVE_SPHERE ? sphere_query(quadric, query, after, &hit->t)
                                     : disk_query(quadric, query, &hit->t);
 }
@@ -152,7 +173,7 @@ SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, ui
     return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, asked, hit);
 }
 
-/* primitive_query for all but triangles. A hole in the near side of a sphere shows its far side; otherwise rays from
+/* primitive_query for all but triangles. A hole in the near side of a sphere or cylinder shows its far side; otherwise rays from
  * inside would escape where rays from outside hit nothing. Each side has a hash of its own. */
 SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
@@ -162,8 +183,7 @@ SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, con
     float first = hit->t;
     if (primitive_curved_counts(scene, id, id, query, hit))
         return true;
-    return SCENE_HAS(scene, FEATURE_ALPHA) && SCENE_HAS(scene, FEATURE_SPHERE) &&
-           primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_SPHERE &&
+    return SCENE_HAS(scene, FEATURE_ALPHA) && primitive_has_far_side(scene, &primitive) &&
            primitive_curved_from(scene, &primitive, query, first, hit) &&
            primitive_curved_counts(scene, id, id ^ PRIMITIVE_FAR_SIDE, query, hit);
 }

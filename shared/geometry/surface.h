@@ -189,15 +189,22 @@ SHARED_FUNCTION void disk_tangents(__global const Quadric *quadric, Vec3 p, Vec3
     *dpdv = vec3_scale(vec3(x, y, 0.0f), quadric->inner_radius - quadric->radius);
 }
 
+SHARED_FUNCTION void cylinder_tangents(__global const Quadric *quadric, Vec3 p, Vec3 *dpdu, Vec3 *dpdv)
+{
+    *dpdu = vec3(-quadric->phi_max * p.y, quadric->phi_max * p.x, 0.0f);
+    *dpdv = vec3(0.0f, 0.0f, quadric->z_max - quadric->z_min);
+}
+
 /* o, d: the ray in the space that world_from_object leads to. */
 SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *shape, const Primitive *primitive,
                                           Vec3 o, Vec3 d, const Hit *hit, Surface *surface)
 {
     __global const Quadric *quadric = &scene->quadrics[primitive->a];
     bool sphere = (primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT) == PRIMITIVE_SPHERE;
+    bool cylinder = primitive_is_cylinder(scene, primitive);
     Vec3 p = quadric_point(scene, primitive, o, d, hit->t, &surface->p);
     /* the direction of dp/du x dp/dv, which itself loses it near a sphere's poles */
-    Vec3 normal = sphere ? p : vec3(0.0f, 0.0f, 1.0f);
+    Vec3 normal = sphere ? p : cylinder ? vec3(p.x, p.y, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
     surface_normals_set(surface, affine_normal(quadric->object_from_world, normal), vec3_splat(0.0f), shape->flags);
     surface->uv = SCENE_HAS(scene, FEATURE_TEXTURE) ? quadric_uv(scene, primitive, p) : vec2(0.0f, 0.0f);
     surface->dpdu = surface->dpdv = vec3_splat(0.0f);
@@ -206,6 +213,8 @@ SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *s
     Vec3 dpdu, dpdv;
     if (sphere)
         sphere_tangents(quadric, p, &dpdu, &dpdv);
+    else if (cylinder)
+        cylinder_tangents(quadric, p, &dpdu, &dpdv);
     else
         disk_tangents(quadric, p, &dpdu, &dpdv);
     surface->dpdu = affine_vector(quadric->world_from_object, dpdu);

@@ -27,7 +27,7 @@ typedef struct Surface {
     Vec3 ng; /* geometric normal, unit, on the side that pbrt calls outside (an area light shines to this side) */
     Vec3 ns; /* shading normal, unit; in the hemisphere of ng before bump mapping */
     Vec3 dpdu, dpdv; /* shading tangents; only in scenes with FEATURE_TANGENTS */
-    Vec2 uv; /* texture coordinates; of spheres and disks only in scenes with FEATURE_TEXTURE */
+    Vec2 uv; /* texture coordinates; of quadrics only in scenes with FEATURE_TEXTURE */
     float u, v; /* as in Hit: where on the primitive */
     uint shape;
 } Surface;

@@ -19,6 +19,7 @@
     X(BILINEAR, bilinear, "bilinear", 0u)                                                                              \
     X(SPHERE, sphere, "sphere", 0u)                                                                                    \
     X(DISK, disk, "disk", 0u)                                                                                          \
+    X(CYLINDER, cylinder, "cylinder", 0u)                                                                              \
     X(INSTANCE, instance, "instance", 0u)                                                                              \
     X(ALPHA, alpha, "alpha", 0u) /* alpha-textured shapes */                                                           \
     X(NORMALS, normals, "normals", 0u) /* per-vertex normals */                                                        \
@@ -42,12 +43,18 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 enum { FEATURE_LIST(FEATURE_BIT) FEATURE_NONE = 0 };
 #undef FEATURE_BIT
 
+#define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
+
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
 
 #define PRIMITIVE_TRIANGLE 0u /* a, b, c: vertices */
 #define PRIMITIVE_BILINEAR 1u /* a: index into `patches`, four vertices p00 p10 p01 p11 as in pbrt */
 #define PRIMITIVE_SPHERE 2u /* a: index into `quadrics` */
 #define PRIMITIVE_DISK 3u /* a: index into `quadrics` */
+#define PRIMITIVE_CYLINDER 4u /* a: index into `quadrics` */
+#define PRIMITIVE_KINDS 5
+
+#define PRIMITIVE_IS_QUADRIC(kind) ((kind) >= PRIMITIVE_SPHERE)
 
 /* `shape_and_kind`: bits 0-27 the index into `shapes`, bit 28 set when the shape has an alpha texture, bits 29-31 the
  * kind. Kept in the primitive so that the intersection test of an opaque triangle reads no Shape. */
@@ -86,9 +93,10 @@ typedef struct Patch {
     uint v[4];
 } Patch;
 
-/* A sphere or disk in its object space, pbrt's parametrisation.
+/* A sphere, disk or cylinder in its object space, pbrt's parametrisation.
  * Sphere: radius, z_min, z_max (clipping heights, equal to -+radius when whole), phi_max in radians.
- * Disk: radius, inner_radius, z_min = height, phi_max. */
+ * Disk: radius, inner_radius, z_min = height, phi_max.
+ * Cylinder: radius, z_min < z_max, phi_max. */
 typedef struct Quadric {
     Affine world_from_object;
     Affine object_from_world;

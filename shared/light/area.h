@@ -1,4 +1,4 @@
-/* Points on emitting surfaces: triangles, bilinear patches, spheres and disks, in world space. Only the world's own
+/* Points on emitting surfaces: triangles, bilinear patches and quadrics, in world space. Only the world's own
  * geometry emits; object instances do not, as in pbrt.
  *
  * A full sphere seen from outside is sampled in the cone that it subtends, uniformly in solid angle. Everything else is
@@ -73,7 +73,7 @@ SHARED_FUNCTION AreaPoint patch_light_sample(const SceneView *scene, const Primi
     return point;
 }
 
-/* ---- sphere and disk --------------------------------------------------------------------------------------------- */
+/* ---- quadrics ---------------------------------------------------------------------------------------------------- */
 
 /* Density per world area, at the unit world-space normal `ng`, of a point drawn uniformly in object space from a
  * quadric with area `object_area` there: an affine map M with n' = M^-T n / |M^-T n| scales areas by |det M| |M^-T n| =
@@ -109,6 +109,11 @@ SHARED_FUNCTION float disk_object_area(__global const Quadric *quadric)
            (quadric->radius + quadric->inner_radius);
 }
 
+SHARED_FUNCTION float cylinder_object_area(__global const Quadric *quadric)
+{
+    return quadric->phi_max * quadric->radius * (quadric->z_max - quadric->z_min);
+}
+
 /* The point of a quadric whose position and normal in object space are p and n. The caller sets uv. */
 SHARED_FUNCTION AreaPoint quadric_light_point(const SceneView *scene, const Primitive *primitive, Vec3 p, Vec3 n,
                                               float object_area)
@@ -136,6 +141,21 @@ SHARED_FUNCTION AreaPoint disk_light_sample(const SceneView *scene, const Primit
     AreaPoint point = quadric_light_point(scene, primitive, p, vec3(0.0f, 0.0f, 1.0f), disk_object_area(quadric));
     if (SCENE_HAS(scene, FEATURE_ALPHA))
         point.uv = disk_parameters(quadric, p);
+    return point;
+}
+
+/* Uniform in object space over the part of the cylinder between the heights and angles. */
+SHARED_FUNCTION_APART AreaPoint cylinder_light_sample(const SceneView *scene, const Primitive *primitive, Vec2 u)
+{
+    __global const Quadric *quadric = scene->quadrics + primitive->a;
+    float sin_phi, cos_phi;
+    float_sincos(u.y * quadric->phi_max, &sin_phi, &cos_phi);
+    float r = quadric->radius;
+    Vec3 p = vec3(r * cos_phi, r * sin_phi, (1.0f - u.x) * quadric->z_min + u.x * quadric->z_max);
+    Vec3 n = vec3(cos_phi, sin_phi, 0.0f);
+    AreaPoint point = quadric_light_point(scene, primitive, p, n, cylinder_object_area(quadric));
+    if (SCENE_HAS(scene, FEATURE_ALPHA))
+        point.uv = cylinder_parameters(quadric, p);
     return point;
 }
 
@@ -276,6 +296,8 @@ SHARED_FUNCTION AreaPoint area_light_point(const SceneView *scene, uint light, c
         return sphere_light_sample_area(scene, primitive, u);
     if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK)
         return disk_light_sample(scene, primitive, u);
+    if (primitive_is_cylinder(scene, primitive))
+        return cylinder_light_sample(scene, primitive, u);
     return triangle_light_sample(scene, primitive, scene->lights[light].area, u);
 }
 
@@ -295,6 +317,10 @@ SHARED_FUNCTION float area_light_pdf_a(const SceneView *scene, uint light, const
     if (SCENE_HAS(scene, FEATURE_DISK) && kind == PRIMITIVE_DISK) {
         __global const Quadric *disk = scene->quadrics + primitive->a;
         return quadric_light_pdf(disk, disk_object_area(disk), hit->ng);
+    }
+    if (primitive_is_cylinder(scene, primitive)) {
+        __global const Quadric *cylinder = scene->quadrics + primitive->a;
+        return quadric_light_pdf(cylinder, cylinder_object_area(cylinder), hit->ng);
     }
     return 1.0f / scene->lights[light].area;
 }

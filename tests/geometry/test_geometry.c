@@ -260,6 +260,7 @@ int main(void)
     tcase_add_test(tcase, test_float_step);
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, geometry_quadrics_tcase());
+    suite_add_tcase(suite, geometry_cylinder_tcase());
     suite_add_tcase(suite, geometry_rays_tcase());
     suite_add_tcase(suite, geometry_backend_tcase());
     return test_run(suite);

@@ -53,6 +53,14 @@ static const EmitShape SHAPES[] = {
      .flags = LIGHT_TWO_SIDED,
      .quadric = {.radius = 1, .phi_max = TWO_PI_F},
      .matrix = IDENTITY},
+    {.kind = PRIMITIVE_CYLINDER,
+     .quadric = {.radius = 1.5f, .z_min = -1, .z_max = 2, .phi_max = TWO_PI_F},
+     .matrix = IDENTITY},
+    {.kind = PRIMITIVE_CYLINDER,
+     .flags = LIGHT_TWO_SIDED,
+     .shape_flags = SHAPE_FLIP_NORMAL,
+     .quadric = {.radius = 0.5f, .z_min = 0.3f, .z_max = 4, .phi_max = 4},
+     .matrix = SHEARED},
 };
 enum { SHAPE_COUNT = sizeof SHAPES / sizeof *SHAPES };
 
@@ -104,6 +112,9 @@ static void shape_point(const EmitShape *s, double a, double b, double p[3])
     if (s->kind == PRIMITIVE_SPHERE) {
         z = (1.0 - a) * (double)q->z_min + a * (double)q->z_max;
         r = sqrt(fmax(0.0, outer * outer - z * z));
+    } else if (s->kind == PRIMITIVE_CYLINDER) {
+        z = (1.0 - a) * (double)q->z_min + a * (double)q->z_max;
+        r = outer;
     } else {
         r = sqrt((1.0 - a) * inner * inner + a * outer * outer);
     }
@@ -159,7 +170,7 @@ static void shape_invert(const EmitShape *s, const double p[3], double *a, doubl
         transform(inverse, p, q);
         double phi = atan2(q[1], q[0]);
         *b = (phi < 0.0 ? phi + 2.0 * M_PI : phi) / (double)s->quadric.phi_max;
-        if (s->kind == PRIMITIVE_SPHERE)
+        if (s->kind != PRIMITIVE_DISK)
             *a = (q[2] - (double)s->quadric.z_min) / (double)(s->quadric.z_max - s->quadric.z_min);
         else
             *a = (q[0] * q[0] + q[1] * q[1] - inner * inner) / (outer * outer - inner * inner);

@@ -7,7 +7,7 @@
 #define CONE_TOTAL 0.5f
 #define CONE_FALLOFF 0.8f
 
-enum { SQUARE, TRIANGLE, PATCH, SPHERE, PART, DISK, POINT, SPOT, DISTANT, CONSTANT, IMAGE, LIGHT_CASES };
+enum { SQUARE, TRIANGLE, PATCH, SPHERE, PART, DISK, CYLINDER, POINT, SPOT, DISTANT, CONSTANT, IMAGE, LIGHT_CASES };
 
 /* One light that illuminates the receiver from above. Returns its power; 0 if that has no closed form. */
 static double setup(LightFixture *f, int which)
@@ -18,6 +18,8 @@ static double setup(LightFixture *f, int which)
     static const double turned[16] = {0.6, 0, 0.8, 0, 0, 1.5, 0, 0, -0.8, 0, 0.6, 0, 0, 0, 0, 1};
     const Quadric part = {.radius = 1, .z_min = -0.5f, .z_max = 1, .phi_max = 5};
     const Quadric disk = {.radius = 2, .inner_radius = 1, .phi_max = 6.28318531f};
+    const Quadric tube = {.radius = 0.4f, .z_min = -0.2f, .z_max = 0.4f, .phi_max = 6.28318531f};
+    static const double uniform[16] = {0, 2, 0, 0, 1.2, 0, -1.6, 0, 1.6, 0, 1.2, 0, 0, 0, 0, 1};
     float texels[3 * 128];
     const double scene = 4.0 * M_PI; /* area of the bounding sphere's disc */
     double power = 0.0, mean = 0.0;
@@ -46,6 +48,10 @@ static double setup(LightFixture *f, int which)
     case DISK:
         fixture_add_quadric(f, PRIMITIVE_DISK, disk, turned, 1.0f, SHAPE_FLIP_NORMAL, 0);
         power = M_PI * M_PI * 3.0 * 1.5;
+        break;
+    case CYLINDER:
+        fixture_add_quadric(f, PRIMITIVE_CYLINDER, tube, uniform, 1.0f, 0, 0);
+        power = M_PI * 4.0 * (2.0 * M_PI * 0.4 * 0.6);
         break;
     case POINT:
         fixture_add_light(f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});

@@ -82,6 +82,7 @@ int main(void)
     suite_add_tcase(suite, import_transform_case());
     suite_add_tcase(suite, import_settings_case());
     suite_add_tcase(suite, import_shapes_case());
+    suite_add_tcase(suite, import_subdivide_case());
     suite_add_tcase(suite, import_objects_case());
     suite_add_tcase(suite, import_materials_case());
     suite_add_tcase(suite, import_textures_case());

@@ -10,6 +10,7 @@ TCase *import_params_case(void);
 TCase *import_transform_case(void);
 TCase *import_settings_case(void); /* film, camera, filter, integrator, sampler */
 TCase *import_shapes_case(void);
+TCase *import_subdivide_case(void);
 TCase *import_objects_case(void);
 TCase *import_materials_case(void);
 TCase *import_textures_case(void);

@@ -97,7 +97,7 @@ static void mesh_is_right(const PlyMesh *mesh)
     ck_assert_uint_eq(mesh->vertex_count, 4);
     ck_assert_uint_eq(mesh->triangle_count, 1);
     ck_assert_uint_eq(mesh->quad_count, 1);
-    ck_assert_uint_eq(mesh->polygon_count, 0);
+    ck_assert_uint_eq(mesh->small_count, 0);
     ck_assert_ptr_nonnull(mesh->normals);
     ck_assert_ptr_nonnull(mesh->uvs);
     for (int i = 0; i < 4; ++i) {
@@ -266,6 +266,35 @@ START_TEST(quads_become_patches)
 }
 END_TEST
 
+/* A concave face of five corners and a square of six, before the vertices, with a face of two corners left out. */
+START_TEST(polygons_become_triangles)
+{
+    static const char TEXT[] = "ply\nformat ascii 1.0\nelement face 3\nproperty list uchar int vertex_indices\n"
+                               "element vertex 6\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+                               "5 0 1 2 3 4\n2 0 1\n6 0 1 5 2 3 4\n"
+                               "0 0 0\n2 2 0\n0 4 0\n0.5 2.5 0\n0.5 1.5 0\n1 3 0\n";
+    Bytes bytes = {.size = sizeof TEXT - 1};
+    memcpy(bytes.data, TEXT, bytes.size);
+    PlyMesh mesh;
+    read_memory(&bytes, &mesh);
+    ck_assert_uint_eq(mesh.triangle_count, 3 + 4);
+    ck_assert_uint_eq(mesh.quad_count, 0);
+    ck_assert_uint_eq(mesh.small_count, 1);
+    double area = 0.0;
+    for (size_t i = 0; i < mesh.triangle_count; ++i) {
+        const float *p[3];
+        for (size_t k = 0; k < 3; ++k)
+            p[k] = mesh.positions + 3 * mesh.triangles[3 * i + k];
+        double part =
+            0.5 * (double)((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+        ck_assert(part >= 0.0);
+        area += part;
+    }
+    ck_assert_double_eq_tol(area, 2 * 2.75, 1e-6);
+    ply_destroy(&mesh);
+}
+END_TEST
+
 TCase *import_ply_case(void)
 {
     TCase *tcase = tcase_create("ply");
@@ -277,5 +306,6 @@ TCase *import_ply_case(void)
     tcase_add_test(tcase, damaged_headers);
     tcase_add_test(tcase, a_million_triangles);
     tcase_add_test(tcase, quads_become_patches);
+    tcase_add_test(tcase, polygons_become_triangles);
     return tcase;
 }

@@ -38,6 +38,29 @@ START_TEST(disk_defaults)
 }
 END_TEST
 
+/* Heights in either order, as in pbrt. */
+START_TEST(cylinder_defaults)
+{
+    Scene scene;
+    import_world("Shape \"cylinder\" Shape \"cylinder\" \"float radius\" 2 \"float zmin\" 5 \"float zmax\" -7 "
+                 "\"float phimax\" 90",
+                 &scene);
+    const Quadric *whole = &ELEMENT(&scene, quadrics, Quadric, 0), *part = &ELEMENT(&scene, quadrics, Quadric, 1);
+    ASSERT_FLOAT(whole->radius, 1.0f);
+    ASSERT_FLOAT(whole->z_min, -1.0f);
+    ASSERT_FLOAT(whole->z_max, 1.0f);
+    ASSERT_NEAR(whole->phi_max, 2.0f * PI, 1e-6f);
+    ck_assert_uint_eq(whole->whole, 0);
+    ASSERT_FLOAT(part->radius, 2.0f);
+    ASSERT_FLOAT(part->z_min, -7.0f);
+    ASSERT_FLOAT(part->z_max, 5.0f);
+    ASSERT_NEAR(part->phi_max, 0.5f * PI, 1e-6f);
+    ck_assert_uint_eq(ELEMENT(&scene, primitives, Primitive, 1).shape_and_kind >> PRIMITIVE_KIND_SHIFT,
+                      PRIMITIVE_CYLINDER);
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(mesh_data)
 {
     Scene scene;
@@ -168,10 +191,10 @@ END_TEST
 START_TEST(unsupported_shapes_are_left_out)
 {
     Scene scene;
-    import_text_in("WorldBegin Shape \"cylinder\" \"float radius\" 1 Shape \"sphere\"", "", true, &scene);
+    import_text_in("WorldBegin Shape \"curve\" \"float width\" 1 Shape \"sphere\"", "", true, &scene);
     ck_assert_uint_eq(scene.primitives.count, 1);
     ck_assert_ptr_nonnull(
-        strstr(import_log(), "warning: the shape \"cylinder\" is not supported; instead: the shape is left out"));
+        strstr(import_log(), "warning: the shape \"curve\" is not supported; instead: the shape is left out"));
     scene_destroy(&scene);
 }
 END_TEST
@@ -181,6 +204,7 @@ TCase *import_shapes_case(void)
     TCase *tcase = tcase_create("shapes");
     tcase_add_test(tcase, sphere_defaults_and_clipping);
     tcase_add_test(tcase, disk_defaults);
+    tcase_add_test(tcase, cylinder_defaults);
     tcase_add_test(tcase, mesh_data);
     tcase_add_test(tcase, normals_transform_as_normals);
     tcase_add_test(tcase, orientation_flags);

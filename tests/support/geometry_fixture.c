@@ -195,7 +195,8 @@ void test_scene_quadrics(TestScene *test, TestRandom *random, uint count)
             quadric.z_min = 0.1f;
             quadric.inner_radius = i % 2 == 0 ? 0.2f : 0.0f;
         }
-        test_scene_quadric(test, disk ? PRIMITIVE_DISK : PRIMITIVE_SPHERE, quadric, m);
+        uint round = i % 6 == 4 || i % 6 == 1 ? PRIMITIVE_CYLINDER : PRIMITIVE_SPHERE;
+        test_scene_quadric(test, disk ? PRIMITIVE_DISK : round, quadric, m);
     }
 }
 
