@@ -296,7 +296,8 @@ tests_test_serve_SOURCES = tests/serve/test_serve.c \
 tests_test_texture_SOURCES = tests/image/test_texture.c \
 	tests/image/test_texture_color.c \
 	tests/image/test_texture_files.c \
-	tests/image/test_texture_image.c
+	tests/image/test_texture_image.c \
+	tests/image/test_texture_procedural.c
 
 # Rules of the source tree, and end-to-end tests of the program.
 script_tests = \

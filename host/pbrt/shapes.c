@@ -58,12 +58,25 @@ static bool cylinder_read(PbrtImport *im, ParamList *list, const ShapeContext *c
     return param_list_finish(list, im->options.lenient) && shape_add_quadric(im, context, PRIMITIVE_CYLINDER, &quadric);
 }
 
+/* Rays ask for alpha before there is a normal. */
+static void alpha_check(const PbrtImport *im, ParamList *list, uint program)
+{
+    for (uint i = program; ARRAY_AT(&im->scene->texture_ops, TextureOp, i).code != TEXTURE_END; ++i)
+        if (ARRAY_AT(&im->scene->texture_ops, TextureOp, i).code == TEXTURE_DIRECTION_MIX) {
+            param_error(list, "alpha", "alpha cannot depend on the normal (texture \"directionmix\")");
+            error_fix(list->error, "use another texture for alpha");
+            return;
+        }
+}
+
 /* Reads the alpha texture, or a constant below 1. */
 static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
 {
     FloatParam param = {.value = 1.0f, .program = NONE};
     value_float_param(im, list, "alpha", &param);
     *alpha = param.program;
+    if (param.program != NONE)
+        alpha_check(im, list, param.program);
     if (param.program != NONE || list->failed)
         return !list->failed;
     if (param.value < 0.0f)

@@ -22,5 +22,6 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/shapes.c \
 	host/pbrt/state.c host/pbrt/state.h \
 	host/pbrt/subdivide.c host/pbrt/subdivide.h \
+	host/pbrt/texture_builder.h host/pbrt/texture_procedural.c \
 	host/pbrt/textures.c \
 	host/pbrt/values.c host/pbrt/values.h

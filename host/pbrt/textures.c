@@ -4,24 +4,12 @@
 #include "pbrt/errors.h"
 #include "pbrt/readers.h"
 #include "pbrt/state.h"
+#include "pbrt/texture_builder.h"
 #include "pbrt/values.h"
 
-#include <stdio.h>
 #include <string.h>
 
-/* Maximum number of ops of a texture, including those of the textures it refers to, which can double at each level. */
-#define TEXTURE_OPS_MAX 256
-
-/* A program under construction. */
-typedef struct Builder {
-    PbrtImport *im;
-    ParamList *list;
-    bool spectrum;
-    TextureOp ops[TEXTURE_OPS_MAX];
-    uint count;
-} Builder;
-
-static void ops_add(Builder *b, const TextureOp *ops, uint count)
+void builder_ops(Builder *b, const TextureOp *ops, uint count)
 {
     if (b->list->failed)
         return;
@@ -35,20 +23,19 @@ static void ops_add(Builder *b, const TextureOp *ops, uint count)
     b->count += count;
 }
 
-static void constant_add(Builder *b, Vec3 value)
+void builder_constant(Builder *b, Vec3 value)
 {
     TextureOp op = {.code = TEXTURE_CONSTANT, .value = value};
-    ops_add(b, &op, 1);
+    builder_ops(b, &op, 1);
 }
 
 static void code_add(Builder *b, uint code)
 {
     TextureOp op = {.code = code};
-    ops_add(b, &op, 1);
+    builder_ops(b, &op, 1);
 }
 
-/* Adds a parameter that is a texture or a constant; returns the index of its first op. */
-static uint operand_add(Builder *b, const char *name, bool spectrum, float fallback)
+uint builder_operand(Builder *b, const char *name, bool spectrum, float fallback)
 {
     uint first = b->count;
     unsigned constants = spectrum ? PARAM_COLORS : PARAM_BIT(PARAM_FLOAT);
@@ -57,7 +44,7 @@ static uint operand_add(Builder *b, const char *name, bool spectrum, float fallb
         uint texture = value_texture_index(b->im, b->list, param, spectrum);
         if (texture != NONE) {
             const ImportTexture *found = &ARRAY_AT(&b->im->textures, ImportTexture, texture);
-            ops_add(b, found->ops, found->count);
+            builder_ops(b, found->ops, found->count);
         }
         return first;
     }
@@ -66,7 +53,7 @@ static uint operand_add(Builder *b, const char *name, bool spectrum, float fallb
         value_color(b->im, b->list, name, COLOR_REFLECTANCE, rgb);
     else
         rgb[0] = rgb[1] = rgb[2] = param_float(b->list, name, fallback);
-    constant_add(b, vec3(rgb[0], rgb[1], rgb[2]));
+    builder_constant(b, vec3(rgb[0], rgb[1], rgb[2]));
     return first;
 }
 
@@ -78,7 +65,7 @@ static bool is_constant(const Builder *b, uint first, uint end)
 
 static void constant_read(Builder *b)
 {
-    operand_add(b, "value", b->spectrum, 1.0f);
+    builder_operand(b, "value", b->spectrum, 1.0f);
 }
 
 static void ops_drop(Builder *b, uint first, uint count)
@@ -96,8 +83,8 @@ static bool is_image(const Builder *b, uint first, uint end)
  * in pbrt. */
 static void scale_read(Builder *b)
 {
-    uint tex = operand_add(b, "tex", b->spectrum, 1.0f);
-    uint scale = operand_add(b, "scale", false, 1.0f), end = b->count;
+    uint tex = builder_operand(b, "tex", b->spectrum, 1.0f);
+    uint scale = builder_operand(b, "scale", false, 1.0f), end = b->count;
     if (b->list->failed)
         return;
     bool tex_constant = is_constant(b, tex, scale), scale_constant = is_constant(b, scale, end);
@@ -120,9 +107,9 @@ static void scale_read(Builder *b)
 /* (1 - amount) tex1 + amount tex2 */
 static void mix_read(Builder *b)
 {
-    uint amount = operand_add(b, "amount", false, 0.5f);
-    uint tex1 = operand_add(b, "tex1", b->spectrum, 0.0f);
-    uint tex2 = operand_add(b, "tex2", b->spectrum, 1.0f), end = b->count;
+    uint amount = builder_operand(b, "amount", false, 0.5f);
+    uint tex1 = builder_operand(b, "tex1", b->spectrum, 0.0f);
+    uint tex2 = builder_operand(b, "tex2", b->spectrum, 1.0f), end = b->count;
     if (b->list->failed)
         return;
     if (!is_constant(b, amount, tex1) || !is_constant(b, tex1, tex2) || !is_constant(b, tex2, end)) {
@@ -133,7 +120,7 @@ static void mix_read(Builder *b)
     ops_drop(b, tex1, 2);
 }
 
-static void space_set(Builder *b, TextureOp *op)
+void builder_space(Builder *b, TextureOp *op)
 {
     Matrix ctm, inverse;
     if (b->list->failed || !import_ctm_inverse(b->im, b->im->place, &ctm, &inverse)) {
@@ -153,11 +140,10 @@ static void planar_read(Builder *b, TextureOp *op)
     memcpy(op->uv_map + 4, v2, sizeof v2);
     op->uv_map[7] = param_float(b->list, "vdelta", 0.0f);
     op->mapping = MAPPING_PLANAR;
-    space_set(b, op);
+    builder_space(b, op);
 }
 
-/* A mapping accepts only its own parameters; those of other mappings are unknown, as in pbrt. */
-static void mapping_read(Builder *b, TextureOp *op)
+void builder_mapping(Builder *b, TextureOp *op)
 {
     static const char *const KNOWN[] = {"uv", "planar", "spherical", "cylindrical"};
     const char *mapping = param_string(b->list, "mapping", "uv");
@@ -171,7 +157,7 @@ static void mapping_read(Builder *b, TextureOp *op)
         planar_read(b, op);
     } else if (strcmp(mapping, "spherical") == 0 || strcmp(mapping, "cylindrical") == 0) {
         op->mapping = mapping[0] == 's' ? MAPPING_SPHERICAL : MAPPING_CYLINDRICAL;
-        space_set(b, op);
+        builder_space(b, op);
     } else if (!b->list->failed) {
         b->list->failed = !import_unknown(b->im, param_place(b->list, "mapping"), "mapping", mapping, KNOWN, 4);
     }
@@ -181,17 +167,17 @@ static void checkerboard_read(Builder *b)
 {
     TextureOp op = {.code = TEXTURE_CHECKERBOARD};
     int dimension = param_integer(b->list, "dimension", 2);
-    operand_add(b, "tex1", b->spectrum, 1.0f);
-    operand_add(b, "tex2", b->spectrum, 0.0f);
+    builder_operand(b, "tex1", b->spectrum, 1.0f);
+    builder_operand(b, "tex2", b->spectrum, 0.0f);
     if (dimension == 2) {
-        mapping_read(b, &op);
+        builder_mapping(b, &op);
     } else if (dimension == 3) {
         op.mapping = MAPPING_3D;
-        space_set(b, &op);
+        builder_space(b, &op);
     } else {
         param_error(b->list, "dimension", "the dimension of a checkerboard is 2 or 3");
     }
-    ops_add(b, &op, 1);
+    builder_ops(b, &op, 1);
 }
 
 static uint choice_read(Builder *b, const char *name, const char *fallback, const char *const *known, size_t count)
@@ -230,42 +216,63 @@ static void imagemap_read(Builder *b)
     const char *file = param_string(b->list, "filename", "");
     if (!*file)
         param_error(b->list, "filename", "imagemap lacks \"string filename\"");
-    mapping_read(b, &op);
+    builder_mapping(b, &op);
     image_options_read(b, file, &options);
     op.scale = param_float(b->list, "scale", 1.0f);
     op.invert = param_bool(b->list, "invert", false);
     const char *path = b->list->failed ? NULL : import_path(b->im, file);
     if (!path || !value_image(b->im, param_place(b->list, "filename"), path, &options, "texture", &op.index))
         b->list->failed = true;
-    ops_add(b, &op, 1);
+    builder_ops(b, &op, 1);
 }
 
-static const struct {
+#define TEXTURE_OF_FLOATS 1u
+#define TEXTURE_OF_SPECTRA 2u
+
+static const struct TextureKind {
     const char *kind;
     void (*read)(Builder *b);
-} KINDS[] = {{"constant", constant_read},
-             {"scale", scale_read},
-             {"mix", mix_read},
-             {"imagemap", imagemap_read},
-             {"checkerboard", checkerboard_read}};
+    unsigned types; /* TEXTURE_OF_* */
+} KINDS[] = {{"constant", constant_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"scale", scale_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"mix", mix_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"imagemap", imagemap_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"checkerboard", checkerboard_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"dots", texture_dots_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"directionmix", texture_direction_mix_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"bilerp", texture_bilerp_read, TEXTURE_OF_FLOATS | TEXTURE_OF_SPECTRA},
+             {"fbm", texture_fbm_read, TEXTURE_OF_FLOATS},
+             {"wrinkled", texture_wrinkled_read, TEXTURE_OF_FLOATS},
+             {"windy", texture_windy_read, TEXTURE_OF_FLOATS},
+             {"marble", texture_marble_read, TEXTURE_OF_SPECTRA}};
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
-/* Substitutes a constant of about their mean for pbrt's other textures. */
-static bool texture_substitute(Builder *b, const char *kind)
+static unsigned type_wanted(const Builder *b)
 {
-    static const char *const UNSUPPORTED[] = {"directionmix", "bilerp", "dots",   "fbm",
-                                              "wrinkled",     "windy",  "marble", "ptex"};
+    return b->spectrum ? TEXTURE_OF_SPECTRA : TEXTURE_OF_FLOATS;
+}
+
+/* There is no texture of this kind and type. Substitutes a constant of about its mean for pbrt's ptex. */
+static bool kind_missing(Builder *b, const char *kind)
+{
     const char *known[KIND_COUNT];
-    char what[96];
-    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)
-        if (strcmp(kind, UNSUPPORTED[i]) == 0) {
-            snprintf(what, sizeof what, "the texture \"%s\"", kind);
-            constant_add(b, vec3_splat(0.5f));
-            return import_unsupported(b->im, b->im->place, what, "the constant 0.5", "bake it into an imagemap");
+    size_t count = 0;
+    if (strcmp(kind, "ptex") == 0) {
+        builder_constant(b, vec3_splat(0.5f));
+        return import_unsupported(b->im, b->im->place, "the texture \"ptex\"", "the constant 0.5",
+                                  "bake it into an imagemap");
+    }
+    for (size_t i = 0; i < KIND_COUNT; ++i) {
+        if ((KINDS[i].types & type_wanted(b)) != 0) {
+            known[count++] = KINDS[i].kind;
+        } else if (strcmp(kind, KINDS[i].kind) == 0) {
+            const char *type = b->spectrum ? "float" : "spectrum";
+            error_at(b->im->error, b->im->place, "there is no %s texture \"%s\"", b->spectrum ? "spectrum" : "float",
+                     kind);
+            return error_fix(b->im->error, "\"%s\" makes textures of type %s", kind, type);
         }
-    for (size_t i = 0; i < KIND_COUNT; ++i)
-        known[i] = KINDS[i].kind;
-    return import_unknown(b->im, b->im->place, "texture", kind, known, KIND_COUNT);
+    }
+    return import_unknown(b->im, b->im->place, "texture", kind, known, count);
 }
 
 static bool texture_store(Builder *b, const char *name)
@@ -298,11 +305,11 @@ static bool stack_check(Builder *b)
 static bool texture_read(Builder *b, const char *name, const char *kind)
 {
     for (size_t i = 0; i < KIND_COUNT; ++i)
-        if (strcmp(kind, KINDS[i].kind) == 0) {
+        if (strcmp(kind, KINDS[i].kind) == 0 && (KINDS[i].types & type_wanted(b)) != 0) {
             KINDS[i].read(b);
             return param_list_finish(b->list, b->im->options.lenient) && stack_check(b) && texture_store(b, name);
         }
-    return texture_substitute(b, kind) && texture_store(b, name);
+    return kind_missing(b, kind) && texture_store(b, name);
 }
 
 bool import_texture(PbrtImport *im, const char *name, SourcePlace name_place, const char *type, const char *kind)

@@ -268,6 +268,8 @@ static uint scene_features(const Scene *scene)
         features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
     for (size_t i = 0; i < scene->lights.count; ++i)
         features |= FEATURE_OF_LIGHT[ARRAY_AT(&scene->lights, Light, i).kind];
+    for (size_t i = 0; i < scene->texture_ops.count; ++i)
+        features |= ARRAY_AT(&scene->texture_ops, TextureOp, i).code >= TEXTURE_FBM ? FEATURE_PROCEDURAL : 0u;
     if (scene->camera_settings.lens_radius > 0.0f)
         features |= FEATURE_LENS;
     return features;

@@ -243,12 +243,20 @@ static int op_operands(const TextureOp *op)
     case TEXTURE_CONSTANT:
     case TEXTURE_IMAGE:
     case TEXTURE_IMAGE_FLOAT:
+    case TEXTURE_FBM:
+    case TEXTURE_WRINKLED:
+    case TEXTURE_WINDY:
+    case TEXTURE_MARBLE:
         return 0;
     case TEXTURE_SCALE:
     case TEXTURE_CHECKERBOARD:
+    case TEXTURE_DOTS:
+    case TEXTURE_DIRECTION_MIX:
         return 2;
     case TEXTURE_MIX:
         return 3;
+    case TEXTURE_BILERP:
+        return 4;
     default:
         return -1;
     }

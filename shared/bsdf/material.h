@@ -19,6 +19,7 @@ SHARED_FUNCTION TexturePoint texture_point(const Surface *surface)
     TexturePoint point;
     point.p = surface->p;
     point.uv = surface->uv;
+    point.n = surface->ng;
     return point;
 }
 

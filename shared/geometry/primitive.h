@@ -113,6 +113,7 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
     uint kind = primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     TexturePoint point;
     point.p = vec3_mad(query->o, hit->t, query->d);
+    point.n = vec3_splat(0.0f);
     if (kind == PRIMITIVE_TRIANGLE)
         point.uv = triangle_uv(scene, &shape, primitive, hit->u, hit->v);
     else if (kind == PRIMITIVE_BILINEAR)

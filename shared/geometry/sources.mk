@@ -9,4 +9,6 @@ SHARED_FILES += \
 	shared/geometry/sphere.h \
 	shared/geometry/surface.h \
 	shared/geometry/texture.h \
+	shared/geometry/texture_map.h \
+	shared/geometry/texture_procedural.h \
 	shared/geometry/triangle.h

@@ -4,14 +4,8 @@
 #ifndef TWINLIGHT_GEOMETRY_TEXTURE_H
 #define TWINLIGHT_GEOMETRY_TEXTURE_H
 
+#include "geometry/texture_procedural.h"
 #include "layout/scene_view.h"
-#include "math/elementary.h"
-
-/* Where a texture is evaluated: world-space position and the surface's (u, v). */
-typedef struct TexturePoint {
-    Vec3 p;
-    Vec2 uv;
-} TexturePoint;
 
 /* Brings a texture coordinate into a range whose texel numbers fit an int, without changing the result of wrapping: [0,
  * 1] for repeat (u - floor(u) rounds to 1 for -1e-9), [-1, 2] for black and clamp. Not finite: 0. */
@@ -126,31 +120,6 @@ SHARED_FUNCTION float image_lookup_float(const SceneView *scene, uint index, Vec
     return image_filter(scene, &image, uv, image.channels == 4u ? IMAGE_READ_ALPHA : IMAGE_READ_COLOR).x;
 }
 
-/* pbrt: s = theta / pi, t = phi / (2 pi) around the origin of the texture's space. */
-SHARED_FUNCTION Vec2 texture_map_spherical(Vec3 p)
-{
-    float length = vec3_length(p);
-    float z = length > 0.0f ? p.z / length : 1.0f;
-    float phi = float_atan2(p.y, p.x);
-    phi = phi < 0.0f ? phi + 2.0f * PI : phi;
-    return vec2(float_acos(float_clamp(z, -1.0f, 1.0f)) * INV_PI, phi * INV_2PI);
-}
-
-SHARED_FUNCTION Vec2 texture_map(__global const TextureOp *op, const TexturePoint *point)
-{
-    __global const float *map = op->uv_map;
-    if (op->mapping == MAPPING_UV)
-        return vec2(map[0] * point->uv.x + map[2], map[1] * point->uv.y + map[3]);
-    Affine texture_from_world = op->texture_from_world;
-    Vec3 p = affine_point(texture_from_world, point->p);
-    if (op->mapping == MAPPING_PLANAR)
-        return vec2(map[3] + vec3_dot(p, vec3(map[0], map[1], map[2])),
-                    map[7] + vec3_dot(p, vec3(map[4], map[5], map[6])));
-    if (op->mapping == MAPPING_SPHERICAL)
-        return texture_map_spherical(p);
-    return vec2((PI + float_atan2(p.y, p.x)) * INV_2PI, p.z);
-}
-
 /* 1 when floor(x) is odd, else 0; exact for every float, 0 for NaN and infinities. */
 SHARED_FUNCTION uint texture_cell_odd(float x)
 {
@@ -161,8 +130,7 @@ SHARED_FUNCTION uint texture_cell_odd(float x)
 SHARED_FUNCTION uint texture_checkerboard_odd(__global const TextureOp *op, const TexturePoint *point)
 {
     if (op->mapping == MAPPING_3D) {
-        Affine texture_from_world = op->texture_from_world;
-        Vec3 p = affine_point(texture_from_world, point->p);
+        Vec3 p = texture_map_3d(op, point);
         return texture_cell_odd(p.x) ^ texture_cell_odd(p.y) ^ texture_cell_odd(p.z);
     }
     Vec2 st = texture_map(op, point);
@@ -198,6 +166,8 @@ SHARED_FUNCTION Vec3 texture_run(const SceneView *scene, uint program, const Tex
             --top;
             if (texture_checkerboard_odd(op, point))
                 stack[top - 1u] = stack[top];
+        } else if (SCENE_HAS(scene, FEATURE_PROCEDURAL) && op->code >= TEXTURE_FBM) {
+            top = texture_procedural(op, point, stack, top);
         } else {
             top -= 2u; /* TEXTURE_MIX */
             stack[top - 1u] = vec3_lerp(stack[top], stack[top + 1u], vec3_mean(stack[top - 1u]));

@@ -27,6 +27,7 @@
     X(BUMP, bump, "bump", 0u) /* normal maps or displacement */                                                        \
     X(MIX, mix, "mix", 0u) /* mix materials */
 #define FEATURE_LIST_AFTER(X)                                                                                          \
+    X(PROCEDURAL, procedural, "procedural texture", 0u) /* TEXTURE_FBM and those after it */                           \
     X(ROUGH, rough, "rough", 0u) /* a microfacet lobe that is not a delta */                                           \
     X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
     X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
@@ -135,6 +136,14 @@ typedef struct Instance {
 #define TEXTURE_MIX 4u /* amount a b -> (1 - amount) a + amount b; amount is the mean of its channels */
 #define TEXTURE_CHECKERBOARD 5u /* a b -> a on even squares, b on odd */
 #define TEXTURE_IMAGE_FLOAT 6u /* TEXTURE_IMAGE inside a float texture: grey, the mean of RGB, or the A of RGBA */
+/* Those that follow make FEATURE_PROCEDURAL (geometry/texture_procedural.h). */
+#define TEXTURE_FBM 7u /* push noise of `index` octaves and roughness uv_map[0] at the point in the texture's space */
+#define TEXTURE_WRINKLED 8u /* the same, of absolute values */
+#define TEXTURE_WINDY 9u
+#define TEXTURE_MARBLE 10u /* a colour; octaves as above, of the point times `scale`, times the variation uv_map[1] */
+#define TEXTURE_DOTS 11u /* a b -> a inside of dots, b outside */
+#define TEXTURE_DIRECTION_MIX 12u /* a b -> w a + (1 - w) b, w = |n . value| with the geometric normal n */
+#define TEXTURE_BILERP 13u /* v00 v10 v01 v11 -> their bilinear interpolation at the mapped (u,v) */
 
 #define WRAP_REPEAT 0u
 #define WRAP_BLACK 1u
@@ -145,16 +154,16 @@ typedef struct Instance {
 #define MAPPING_PLANAR 1u /* (ds + p.vs, dt + p.vt) in the texture's space */
 #define MAPPING_SPHERICAL 2u
 #define MAPPING_CYLINDRICAL 3u
-#define MAPPING_3D 4u /* checkerboard of dimension 3 */
+#define MAPPING_3D 4u /* a point of the texture's space: checkerboard of dimension 3, noise */
 
 typedef struct TextureOp {
     uint code;
     uint index; /* image */
     uint mapping;
     uint invert;
-    Vec3 value; /* constant */
+    Vec3 value; /* constant; direction mix: a unit direction in world space */
     float scale;
-    float uv_map[8]; /* UV: su sv du dv. planar: vs.xyz ds vt.xyz dt */
+    float uv_map[8]; /* UV: su sv du dv. planar: vs.xyz ds vt.xyz dt. noise: roughness, variation */
     Affine texture_from_world; /* planar, spherical, cylindrical, 3D */
 } TextureOp;
 

@@ -271,6 +271,7 @@ SHARED_FUNCTION float area_light_alpha(const SceneView *scene, const Primitive *
         return 1.0f;
     TexturePoint at;
     at.p = p;
+    at.n = vec3_splat(0.0f);
     at.uv = uv;
     uint alpha = scene->shapes[primitive->shape_and_kind & PRIMITIVE_SHAPE_MASK].alpha;
     return float_clamp(texture_eval_float(scene, alpha, &at), 0.0f, 1.0f);

@@ -1,5 +1,6 @@
 SHARED_FILES += \
 	shared/math/elementary.h \
+	shared/math/noise.h \
 	shared/math/platform.h \
 	shared/math/platform_double.h \
 	shared/math/rng.h \

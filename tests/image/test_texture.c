@@ -11,6 +11,7 @@
 TCase *texture_color_tcase(void);
 TCase *texture_files_tcase(void);
 TCase *texture_image_tcase(void);
+TCase *texture_procedural_tcase(void);
 
 static SceneView view_make(const Scene *scene)
 {
@@ -223,7 +224,7 @@ START_TEST(test_programs)
 {
     Scene scene;
     scene_init(&scene);
-    const TexturePoint point = {{0.1f, 0.2f, 0.3f}, {0.4f, 0.6f}};
+    const TexturePoint point = {.p = {0.1f, 0.2f, 0.3f}, .uv = {0.4f, 0.6f}};
     float number;
     const TextureOp constant[] = {op_constant(1, 2, 3), {.code = TEXTURE_END}};
     vec3_check(program_run(constant, 2, &scene, &point, &number), 1, 2, 3);
@@ -411,5 +412,6 @@ int main(void)
     suite_add_tcase(suite, texture_color_tcase());
     suite_add_tcase(suite, texture_files_tcase());
     suite_add_tcase(suite, texture_image_tcase());
+    suite_add_tcase(suite, texture_procedural_tcase());
     return test_run(suite);
 }

@@ -192,14 +192,56 @@ START_TEST(float_image_in_a_colour_texture)
 }
 END_TEST
 
+START_TEST(procedural_textures)
+{
+    Scene scene;
+    const TextureOp *ops;
+    const char *codes =
+        program_codes("Scale 2 2 2 Texture \"n\" \"float\" \"wrinkled\" \"integer octaves\" 3 \"float roughness\" "
+                      "0.25\nTexture \"m\" \"spectrum\" \"marble\" \"float scale\" 4 \"float variation\" 1\n"
+                      "Texture \"t\" \"spectrum\" \"mix\" \"texture amount\" \"n\" \"texture tex2\" \"m\"",
+                      &scene, &ops);
+    const char wanted[] = {'0' + TEXTURE_WRINKLED, '0' + TEXTURE_CONSTANT, '0' + TEXTURE_MARBLE, '0' + TEXTURE_MIX, 0};
+    ck_assert_str_eq(codes, wanted);
+    ck_assert_uint_eq(ops[0].index, 3);
+    ASSERT_FLOAT(ops[0].uv_map[0], 0.25f);
+    ASSERT_FLOAT(ops[0].texture_from_world.m[0], 0.5f);
+    ck_assert_uint_eq(ops[0].mapping, MAPPING_3D);
+    ck_assert_uint_eq(ops[2].index, 8);
+    ASSERT_FLOAT(ops[2].scale, 4.0f);
+    ASSERT_FLOAT(ops[2].uv_map[1], 1.0f);
+    scene_destroy(&scene);
+    codes = program_codes(
+        "Rotate 90 0 0 1 Texture \"t\" \"spectrum\" \"directionmix\" \"rgb tex1\" [ 1 0 0 ] \"vector3 dir\" "
+        "[ 0 5 0 ]",
+        &scene, &ops);
+    ck_assert_uint_eq(ops[2].code, TEXTURE_DIRECTION_MIX);
+    assert_vec3(ops[2].value, -1, 0, 0, 1e-6f);
+    assert_vec3(ops[0].value, 1, 0, 0, 0.0f);
+    assert_vec3(ops[1].value, 1, 1, 1, 0.0f);
+    scene_destroy(&scene);
+    program_codes("Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v10\" [ 0 0 1 ] \"float uscale\" 3", &scene, &ops);
+    assert_vec3(ops[0].value, 0, 0, 0, 0.0f);
+    assert_vec3(ops[1].value, 0, 0, 1, 0.0f);
+    assert_vec3(ops[2].value, 1, 1, 1, 0.0f);
+    ASSERT_FLOAT(ops[4].uv_map[0], 3.0f);
+    scene_destroy(&scene);
+    program_codes("Texture \"t\" \"spectrum\" \"dots\" \"rgb outside\" [ 0 0 1 ]", &scene, &ops);
+    ck_assert_uint_eq(ops[2].code, TEXTURE_DOTS);
+    assert_vec3(ops[0].value, 1, 1, 1, 0.0f);
+    assert_vec3(ops[1].value, 0, 0, 1, 0.0f);
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(unsupported_textures)
 {
     Scene scene;
-    import_text_in("WorldBegin Texture \"t\" \"spectrum\" \"marble\" \"float variation\" 1\n"
+    import_text_in("WorldBegin Texture \"t\" \"spectrum\" \"ptex\" \"string filename\" \"a\"\n"
                    "Material \"diffuse\" \"texture reflectance\" \"t\"",
                    "", true, &scene);
     assert_vec3(ELEMENT(&scene, materials, Material, 0).color0.value, 0.5f, 0.5f, 0.5f, 0.0f);
-    ck_assert_ptr_nonnull(strstr(import_log(), "the texture \"marble\" is not supported; instead: the constant 0.5"));
+    ck_assert_ptr_nonnull(strstr(import_log(), "the texture \"ptex\" is not supported; instead: the constant 0.5"));
     scene_destroy(&scene);
 }
 END_TEST
@@ -215,6 +257,7 @@ TCase *import_textures_case(void)
     tcase_add_test(tcase, float_textures_of_materials);
     tcase_add_test(tcase, images);
     tcase_add_test(tcase, float_image_in_a_colour_texture);
+    tcase_add_test(tcase, procedural_textures);
     tcase_add_test(tcase, unsupported_textures);
     return tcase;
 }
