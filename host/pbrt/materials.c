@@ -32,6 +32,8 @@ static Material material_blank(uint kind)
                       .roughness_v = float_constant(0.0f),
                       .amount = float_constant(0.5f),
                       .displacement = float_constant(0.0f),
+                      .base_u = float_constant(0.0f),
+                      .base_v = float_constant(0.0f),
                       .eta = 1.5f,
                       .scale = 1.0f,
                       .normal_map = NONE,
@@ -47,24 +49,25 @@ static void roughness_check(MaterialReader *r, const char *name, const FloatPara
 }
 
 /* names: roughness, uroughness, vroughness; the latter two default to the first. */
-static void roughness_read(MaterialReader *r, const char *const names[3])
+static void roughness_pair_read(MaterialReader *r, const char *const names[3], FloatParam *u, FloatParam *v)
 {
-    Material *m = &r->material;
     FloatParam both = float_constant(0.0f);
     value_float_param(r->im, r->list, names[0], &both);
-    m->roughness_u = m->roughness_v = both;
-    value_float_param(r->im, r->list, names[1], &m->roughness_u);
-    value_float_param(r->im, r->list, names[2], &m->roughness_v);
+    *u = *v = both;
+    value_float_param(r->im, r->list, names[1], u);
+    value_float_param(r->im, r->list, names[2], v);
     roughness_check(r, names[0], &both);
-    roughness_check(r, names[1], &m->roughness_u);
-    roughness_check(r, names[2], &m->roughness_v);
+    roughness_check(r, names[1], u);
+    roughness_check(r, names[2], v);
     if (param_bool(r->list, "remaproughness", true))
-        m->flags |= MATERIAL_REMAP_ROUGHNESS;
+        r->material.flags |= MATERIAL_REMAP_ROUGHNESS;
 }
 
-static const char *const ROUGHNESS[] = {"roughness", "uroughness", "vroughness"};
-static const char *const CONDUCTOR_ROUGHNESS[] = {"conductor.roughness", "conductor.uroughness",
-                                                  "conductor.vroughness"};
+static void roughness_read(MaterialReader *r)
+{
+    static const char *const NAMES[] = {"roughness", "uroughness", "vroughness"};
+    roughness_pair_read(r, NAMES, &r->material.roughness_u, &r->material.roughness_v);
+}
 
 /* A normal map overrides displacement, as in pbrt. */
 static void relief_read(MaterialReader *r)
@@ -96,17 +99,14 @@ static void diffuse_read(MaterialReader *r)
     value_color_param(r->im, r->list, "reflectance", COLOR_REFLECTANCE, &r->material.color0);
 }
 
-static void coated_diffuse_read(MaterialReader *r)
+/* The medium of a coat: returns its thickness. */
+static float coat_medium_read(MaterialReader *r)
 {
     FloatParam ignored = float_constant(0.0f), thickness = float_constant(0.01f);
     ColorParam albedo = color_constant(0.0f);
-    diffuse_read(r);
-    roughness_read(r, ROUGHNESS);
-    r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
     if (value_float_param(r->im, r->list, "thickness", &thickness) && !r->list->failed &&
         (thickness.program != NONE || thickness.value < 0.0f))
         param_error(r->list, "thickness", "the thickness of a coat must be a number of at least 0");
-    r->material.color1.value.x = thickness.value;
     value_float_param(r->im, r->list, "g", &ignored);
     param_integer(r->list, "maxdepth", 10);
     param_integer(r->list, "nsamples", 1);
@@ -114,6 +114,15 @@ static void coated_diffuse_read(MaterialReader *r)
         (albedo.program != NONE || !vec3_is_zero(albedo.value)) && !r->list->failed)
         r->list->failed = !import_unsupported(r->im, param_place(r->list, "albedo"), "a medium inside a coat (albedo)",
                                               "a clear coat", NULL);
+    return thickness.value;
+}
+
+static void coated_diffuse_read(MaterialReader *r)
+{
+    diffuse_read(r);
+    roughness_read(r);
+    r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
+    r->material.color1.value.x = coat_medium_read(r);
 }
 
 /* Reads eta and k, or reflectance; copper by default. Names differ for the inner layer of a coated conductor. */
@@ -140,13 +149,25 @@ static void conductor_colors_read(MaterialReader *r, const char *eta_name, const
 static void conductor_read(MaterialReader *r)
 {
     conductor_colors_read(r, "eta", "k");
-    roughness_read(r, ROUGHNESS);
+    roughness_read(r);
+}
+
+static void coated_conductor_read(MaterialReader *r)
+{
+    static const char *const COAT[] = {"interface.roughness", "interface.uroughness", "interface.vroughness"};
+    static const char *const BASE[] = {"conductor.roughness", "conductor.uroughness", "conductor.vroughness"};
+    Material *m = &r->material;
+    conductor_colors_read(r, "conductor.eta", "conductor.k");
+    roughness_pair_read(r, COAT, &m->roughness_u, &m->roughness_v);
+    roughness_pair_read(r, BASE, &m->base_u, &m->base_v);
+    m->eta = value_eta(r->im, r->list, "interface.eta", 1.5f);
+    m->scale = coat_medium_read(r);
 }
 
 static void dielectric_read(MaterialReader *r)
 {
     r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
-    roughness_read(r, ROUGHNESS);
+    roughness_read(r);
 }
 
 static void thin_dielectric_read(MaterialReader *r)
@@ -215,13 +236,6 @@ static const struct {
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
 /* Substitutes for unsupported materials with --lenient. */
-static void coated_conductor_substitute(MaterialReader *r)
-{
-    r->material = material_blank(MATERIAL_CONDUCTOR);
-    conductor_colors_read(r, "conductor.eta", "conductor.k");
-    roughness_read(r, CONDUCTOR_ROUGHNESS);
-}
-
 static void diffuse_substitute(MaterialReader *r)
 {
     r->material = material_blank(MATERIAL_DIFFUSE);
@@ -232,8 +246,7 @@ static const struct {
     const char *name;
     const char *substitute;
     void (*read)(MaterialReader *r);
-} UNSUPPORTED[] = {{"coatedconductor", "the conductor without its coat", coated_conductor_substitute},
-                   {"hair", "diffuse, with its reflectance or 0.5", diffuse_substitute},
+} UNSUPPORTED[] = {{"hair", "diffuse, with its reflectance or 0.5", diffuse_substitute},
                    {"subsurface", "diffuse, with its reflectance or 0.5", diffuse_substitute},
                    {"measured", "diffuse, reflectance 0.5", diffuse_substitute}};
 
@@ -263,7 +276,7 @@ static bool material_read(MaterialReader *r, const char *kind, SourcePlace place
             snprintf(what, sizeof what, "the material \"%s\"", kind);
             if (!import_unsupported(im, place, what, UNSUPPORTED[i].substitute,
                                     "use diffuse, conductor, dielectric, thindielectric, coateddiffuse, "
-                                    "diffusetransmission or mix"))
+                                    "coatedconductor, diffusetransmission or mix"))
                 return false;
             UNSUPPORTED[i].read(r);
             return !r->list->failed;

@@ -7,6 +7,7 @@
 #include "scene/aim_setup.h"
 #include "scene/camera_setup.h"
 #include "scene/center.h"
+#include "scene/coat_base_table.h"
 #include "scene/coat_table.h"
 #include "scene/filter_setup.h"
 #include "scene/light_guide_setup.h"
@@ -203,10 +204,22 @@ static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
     return roughness->program != NONE || material_alpha(m, roughness) >= ALPHA_DELTA;
 }
 
+/* The surface itself or, of a coated one, the coat. */
+static bool interface_is_rough(const Material *m)
+{
+    return roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v);
+}
+
+static bool base_is_rough(const Material *m)
+{
+    return m->kind == MATERIAL_COATED_CONDUCTOR &&
+           (roughness_is_rough(m, &m->base_u) || roughness_is_rough(m, &m->base_v));
+}
+
 bool scene_material_is_rough(const Material *m)
 {
     return m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_MICROFACET) != 0u &&
-           (roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v));
+           (interface_is_rough(m) || base_is_rough(m));
 }
 
 bool scene_material_has_delta(const Scene *scene, uint material)
@@ -227,11 +240,22 @@ bool scene_has_delta(const Scene *scene)
     return false;
 }
 
+/* Of a coated conductor, whose record is kept with what rough lobes need. */
+static uint base_features(const Material *m)
+{
+    uint features = FEATURE_ROUGH;
+    if (m->base_u.program != m->base_v.program || m->base_u.value != m->base_v.value)
+        features |= FEATURE_TANGENTS;
+    return m->base_u.program != NONE || m->base_v.program != NONE ? features | FEATURE_TEXTURE : features;
+}
+
 static uint material_features(const Material *m)
 {
     uint features = FEATURE_OF_MATERIAL[m->kind];
     if (scene_material_is_rough(m))
         features |= FEATURE_ROUGH;
+    if (m->kind == MATERIAL_COATED_CONDUCTOR)
+        features |= base_features(m);
     if (m->normal_map != NONE || m->displacement.program != NONE)
         features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
     if (m->roughness_u.program != m->roughness_v.program || m->roughness_u.value != m->roughness_v.value)
@@ -275,7 +299,7 @@ static uint scene_features(const Scene *scene)
     return features;
 }
 
-/* ---- tables of rough coats --------------------------------------------------------------------------------------- */
+/* ---- tables of coats --------------------------------------------------------------------------------------------- */
 
 static bool roughness_is_textured(const Material *m)
 {
@@ -288,6 +312,8 @@ static bool roughness_is_textured(const Material *m)
 /* Whether m can use the table of `other`. */
 static bool coat_serves(const Material *m, const Material *other)
 {
+    if (other->kind != m->kind || (m->kind == MATERIAL_COATED_CONDUCTOR && other->scale != m->scale))
+        return false;
     if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
         return false;
     return roughness_is_textured(m) ||
@@ -295,12 +321,21 @@ static bool coat_serves(const Material *m, const Material *other)
             material_alpha(m, &m->roughness_v) == material_alpha(other, &other->roughness_v));
 }
 
-static bool coat_build(Material *m, Array *lookup, Error *error)
+static bool interface_build(const Material *m, Array *lookup, uint32_t *first, Error *error)
 {
     if (roughness_is_textured(m))
-        return coat_table_build_range(m->eta, lookup, &m->coat_table, error);
+        return coat_table_build_range(m->eta, lookup, first, error);
     return coat_table_build(material_alpha(m, &m->roughness_u), material_alpha(m, &m->roughness_v), m->eta, lookup,
-                            &m->coat_table, error);
+                            first, error);
+}
+
+static bool coat_build(Material *m, Array *lookup, Error *error)
+{
+    uint32_t interface; /* follows the record */
+    if (m->kind != MATERIAL_COATED_CONDUCTOR)
+        return interface_build(m, lookup, &m->coat_table, error);
+    return coat_base_build(m->eta, m->scale, interface_is_rough(m), lookup, &m->coat_table, error) &&
+           (!interface_is_rough(m) || interface_build(m, lookup, &interface, error));
 }
 
 /* Sets the table of m: that of an equal material in `owners` (uint), or a new one, which makes m an owner. */
@@ -315,8 +350,8 @@ static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
         }
     }
     if (owners->count >= COATS_MAX) {
-        error_set(error, "the scene has more than %d different rough coats", COATS_MAX);
-        return error_fix(error, "give materials of \"coateddiffuse\" fewer values of roughness and eta");
+        error_set(error, "the scene has more than %d different coats", COATS_MAX);
+        return error_fix(error, "give coated materials fewer values of roughness, eta and thickness");
     }
     uint *owner = array_grow(owners, 1, error);
     if (!owner)
@@ -325,7 +360,7 @@ static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
     return coat_build(m, &scene->lookup, error);
 }
 
-/* Builds the tables of rough coats; materials with equal coats share one. */
+/* Builds the tables of rough coats and of all coats over conductors; materials with equal coats share one. */
 static bool scene_coat_tables(Scene *scene, Error *error)
 {
     Array owners;
@@ -334,10 +369,10 @@ static bool scene_coat_tables(Scene *scene, Error *error)
     for (size_t i = 0; good && i < scene->materials.count; ++i) {
         Material *m = &ARRAY_AT(&scene->materials, Material, i);
         m->coat_table = NONE;
-        if (m->kind != MATERIAL_COATED_DIFFUSE)
-            continue;
-        m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        good = !scene_material_is_rough(m) || coat_find(scene, &owners, (uint)i, error);
+        if (m->kind == MATERIAL_COATED_DIFFUSE)
+            m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
+        if (m->kind == MATERIAL_COATED_CONDUCTOR || (m->kind == MATERIAL_COATED_DIFFUSE && scene_material_is_rough(m)))
+            good = coat_find(scene, &owners, (uint)i, error);
     }
     array_destroy(&owners);
     return good;

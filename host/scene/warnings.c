@@ -4,13 +4,6 @@
 #include "base/log.h"
 #include "layout/scene_view.h"
 
-/* Whether the material scatters only specularly (mirror or smooth glass). */
-static bool material_is_delta(const Material *m)
-{
-    return m->kind == MATERIAL_THIN_DIELECTRIC ||
-           ((m->kind == MATERIAL_DIELECTRIC || m->kind == MATERIAL_CONDUCTOR) && !scene_material_is_rough(m));
-}
-
 static void strays_report(const Scene *scene)
 {
     const BackendScene packed = scene_backend_view(scene);
@@ -27,10 +20,7 @@ static void strays_report(const Scene *scene)
 
 void scene_advise(const Scene *scene, bool photons)
 {
-    bool delta = false;
-    for (size_t i = 0; i < scene->materials.count; ++i)
-        delta = delta || material_is_delta(&ARRAY_AT(&scene->materials, Material, i));
-    if (delta && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
+    if (scene_has_delta(scene) && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
         log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
                               "and after a rough surface is found by photons alone and is missing: render by mmlt, or "
                               "by pt with --photons=1048576");

@@ -4,6 +4,7 @@
 #define TWINLIGHT_BSDF_BSDF_H
 
 #include "bsdf/coated.h"
+#include "bsdf/coated_conductor.h"
 #include "bsdf/conductor.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
@@ -23,7 +24,7 @@ SHARED_FUNCTION uint bsdf_traits(uint kind)
 #undef TRAITS_OF
 }
 
-/* To be called after kind, alphas, eta and coat_table are set: derives BSDF_SMOOTH and BSDF_ROUGH, and clamps the
+/* To be called after kind, alphas, eta, coat_table and the alphas of a base (BSDF_BASE_SHIFT) are set: derives BSDF_SMOOTH and BSDF_ROUGH, and clamps the
  * alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
@@ -35,7 +36,7 @@ SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
         bsdf->flags |= BSDF_ROUGH;
         bsdf->alpha_x = float_clamp(bsdf->alpha_x, ALPHA_MIN, ALPHA_MAX);
         bsdf->alpha_y = float_clamp(bsdf->alpha_y, ALPHA_MIN, ALPHA_MAX);
-    } else if ((traits & TRAIT_DELTA) != 0u) {
+    } else if ((traits & TRAIT_DELTA) != 0u && bsdf->flags >> BSDF_BASE_SHIFT == 0u) {
         bsdf->flags |= BSDF_SMOOTH;
     }
 }

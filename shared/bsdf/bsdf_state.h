@@ -20,8 +20,9 @@
 #define STORED_FRAME_WORDS 6u
 
 /* Materials whose Bsdf has a second colour, and those with an index of refraction. */
-#define FEATURES_COLOR1 (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_DIFFUSE_TRANSMISSION)
-#define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE)
+#define FEATURES_COLOR1                                                                                                \
+    (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR | FEATURE_DIFFUSE_TRANSMISSION)
+#define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR)
 
 /* Stores only the members that some material of the scene uses. */
 SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint item,

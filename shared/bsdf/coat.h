@@ -1,4 +1,4 @@
-/* Transmission through the dielectric coat of coateddiffuse: closed form where it is smooth, a table where it is rough.
+/* The dielectric coat of coateddiffuse and coatedconductor: its transmission and its reflection. Transmission: closed form where it is smooth, a table where it is rough.
  *
  * T(w) is the fraction of the light arriving from direction w outside that the interface sends inside. Averaged over a
  * diffuse field, T_mean = integral of T(c) 2 c dc over 0..1. By reciprocity of the interface the fraction of a diffuse
@@ -28,6 +28,8 @@
 #define TWINLIGHT_BSDF_COAT_H
 
 #include "bsdf/fresnel.h"
+#include "bsdf/microfacet.h"
+#include "layout/path_types.h"
 #include "layout/scene_view.h"
 #include "math/elementary.h"
 
@@ -121,6 +123,20 @@ SHARED_FUNCTION float coat_absorption(float thickness, float eta, float cosine)
         return 1.0f;
     float cos_t = refraction_cosine(cosine, eta);
     return cos_t > 0.0f ? float_exp(-thickness / cos_t) : 0.0f;
+}
+
+/* Adds the reflection of a rough coat for o.z, i.z > 0; p_o, p_i: probability of drawing it given o, and given i. */
+SHARED_FUNCTION void coat_reflection_add(const Bsdf *bsdf, Vec3 o, Vec3 i, float p_o, float p_i, BsdfValue *value)
+{
+    Vec3 h = vec3_add(o, i);
+    float density = 0.5f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y);
+    float root_o = ggx_root(o, bsdf->alpha_x, bsdf->alpha_y);
+    float root_i = ggx_root(i, bsdf->alpha_x, bsdf->alpha_y);
+    float reflectance = fresnel_dielectric(float_min(0.5f * vec3_length(h), 1.0f), bsdf->eta);
+    float f_cos = reflectance * density * i.z / (root_o * i.z + root_i * o.z);
+    value->f_cos = vec3_add(value->f_cos, vec3_splat(f_cos));
+    value->pdf_w += p_o * density / (o.z + root_o);
+    value->pdf_rev_w += p_i * density / (i.z + root_i);
 }
 
 #endif

@@ -73,17 +73,8 @@ SHARED_FUNCTION BsdfValue coated_eval_above(const SceneView *scene, const Bsdf *
     value.f_cos = vec3_scale(base, absorbed * t_o * t_i * i.z * INV_PI);
     value.pdf_w = (1.0f - specular_o) * i.z * INV_PI;
     value.pdf_rev_w = (1.0f - specular_i) * o.z * INV_PI;
-    if (!bsdf_is_rough(scene, bsdf))
-        return value;
-    Vec3 h = vec3_add(o, i);
-    float density = 0.5f * ggx_density(h, bsdf->alpha_x, bsdf->alpha_y);
-    float root_o = ggx_root(o, bsdf->alpha_x, bsdf->alpha_y);
-    float root_i = ggx_root(i, bsdf->alpha_x, bsdf->alpha_y);
-    float reflectance = fresnel_dielectric(float_min(0.5f * vec3_length(h), 1.0f), bsdf->eta);
-    float f_cos = reflectance * density * i.z / (root_o * i.z + root_i * o.z);
-    value.f_cos = vec3_add(value.f_cos, vec3_splat(f_cos));
-    value.pdf_w += specular_o * density / (o.z + root_o);
-    value.pdf_rev_w += specular_i * density / (i.z + root_i);
+    if (bsdf_is_rough(scene, bsdf))
+        coat_reflection_add(bsdf, o, i, specular_o, specular_i, &value);
     return value;
 }
 

@@ -94,6 +94,23 @@ SHARED_FUNCTION Vec3 color_unit(Vec3 c)
     return vec3(float_clamp(c.x, 0.0f, 1.0f), float_clamp(c.y, 0.0f, 1.0f), float_clamp(c.z, 0.0f, 1.0f));
 }
 
+/* Index and alphas of the conductor below a coat, as it has them in the coat. */
+SHARED_FUNCTION void coated_conductor_set(const SceneView *scene, __global const Material *material,
+                                          const TexturePoint *point, Bsdf *bsdf)
+{
+    Vec3 eta = bsdf->color0, k = color_param_eval(scene, material->color1, point);
+    if ((material->flags & MATERIAL_CONDUCTOR_REFLECTANCE) != 0u) {
+        k = vec3(extinction_from_reflectance(eta.x), extinction_from_reflectance(eta.y),
+                 extinction_from_reflectance(eta.z));
+        eta = vec3_splat(1.0f);
+    }
+    bsdf->color0 = vec3_scale(eta, 1.0f / bsdf->eta);
+    bsdf->color1 = vec3_scale(k, 1.0f / bsdf->eta);
+    float alpha_x = alpha_from_roughness(material->flags, float_param_eval(scene, material->base_u, point));
+    float alpha_y = alpha_from_roughness(material->flags, float_param_eval(scene, material->base_v, point));
+    bsdf->flags |= bsdf_base_pack(alpha_x, alpha_y);
+}
+
 /* Looks up the parameters of a plain material (not a mix). */
 SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const TexturePoint *point)
 {
@@ -113,6 +130,8 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
             bsdf.flags |= BSDF_REFLECTANCE;
             bsdf.color0 = color_unit(bsdf.color0);
         }
+    } else if (SCENE_HAS(scene, FEATURE_COATED_CONDUCTOR) && bsdf.kind == MATERIAL_COATED_CONDUCTOR) {
+        coated_conductor_set(scene, material, point, &bsdf);
     } else if (bsdf.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         bsdf.color1 = color_unit(vec3_scale(color_param_eval(scene, material->color1, point), material->scale));
         bsdf.color0 = color_unit(vec3_scale(bsdf.color0, material->scale));
@@ -145,7 +164,7 @@ SHARED_FUNCTION void material_resolve(const SceneView *scene, float u_mix, Surfa
         if (scene->materials[material].displacement.program != NONE)
             bump_apply(scene, scene->materials[material].displacement, surface);
     }
-    if (bsdf->alpha_x != bsdf->alpha_y) {
+    if (bsdf->alpha_x != bsdf->alpha_y || bsdf_base_is_anisotropic(bsdf->flags)) {
         frame->n = surface->ns;
         frame->t = vec3_normalize(vec3_orthogonal_part(surface->dpdu, surface->ns));
         frame->b = vec3_cross(frame->n, frame->t);

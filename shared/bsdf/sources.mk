@@ -3,6 +3,7 @@ SHARED_FILES += \
 	shared/bsdf/bsdf_state.h \
 	shared/bsdf/coat.h \
 	shared/bsdf/coated.h \
+	shared/bsdf/coated_conductor.h \
 	shared/bsdf/conductor.h \
 	shared/bsdf/dielectric.h \
 	shared/bsdf/diffuse.h \

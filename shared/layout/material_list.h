@@ -7,7 +7,7 @@
 #define TRAIT_COSINE 0x1u /* a cosine lobe, drawn with BsdfDraw.u_base */
 #define TRAIT_MICROFACET 0x2u /* a microfacet lobe, or a delta if both alphas are below ALPHA_DELTA */
 #define TRAIT_INTERFACE 0x4u /* ... of an interface, which is smooth if its relative index is close to 1 */
-#define TRAIT_DELTA 0x8u /* only deltas if it is not rough */
+#define TRAIT_DELTA 0x8u /* only deltas if it is not rough, nor its base */
 
 /* X(NAME, name, text, traits): MATERIAL_NAME; functions bsdf_name_eval, _sample and _invert (bsdf/bsdf.h) and
  * name_read (host/pbrt/materials.c); what pbrt calls it. */
@@ -17,6 +17,8 @@
     X(DIELECTRIC, dielectric, "dielectric", TRAIT_MICROFACET | TRAIT_INTERFACE | TRAIT_DELTA)                          \
     X(THIN_DIELECTRIC, thin_dielectric, "thindielectric", TRAIT_DELTA)                                                 \
     X(COATED_DIFFUSE, coated_diffuse, "coateddiffuse", TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE)              \
+    X(COATED_CONDUCTOR, coated_conductor, "coatedconductor",                                                           \
+      TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE | TRAIT_DELTA)                                                 \
     X(DIFFUSE_TRANSMISSION, diffuse_transmission, "diffusetransmission", TRAIT_COSINE)
 
 /* All BSDFs, and the materials that are not BSDFs themselves. */

@@ -41,12 +41,15 @@ typedef struct Surface {
  * kind: MATERIAL_DIFFUSE ... MATERIAL_DIFFUSE_TRANSMISSION. */
 typedef struct Bsdf {
     uint kind;
-    uint flags; /* BSDF_* */
-    Vec3 color0; /* diffuse, coated, transmission: reflectance. conductor: eta or reflectance. */
-    Vec3 color1; /* conductor: k. diffuse transmission: transmittance. coated: thickness, round trip (bsdf/coat.h) */
+    uint flags; /* BSDF_*; from BSDF_BASE_SHIFT on the alphas of a coated conductor (bsdf/coated_conductor.h) */
+    Vec3 color0; /* diffuse, coated diffuse, transmission: reflectance. conductor: eta or reflectance. coated conductor:
+                    eta, relative to the coat */
+    Vec3
+        color1; /* conductor: k. diffuse transmission: transmittance. coated diffuse: thickness, round trip (bsdf/coat.h).
+                    coated conductor: k, relative to the coat */
     float alpha_x, alpha_y; /* GGX; below ALPHA_DELTA the lobe is a delta */
     float eta; /* inside over outside of the surface */
-    uint coat_table; /* first float in `lookup`, NONE when smooth */
+    uint coat_table; /* first float in `lookup`, NONE without; that of bsdf/coated_conductor.h has more */
 } Bsdf;
 
 #define BSDF_REFLECTANCE 0x1u /* conductor given by reflectance at normal incidence */

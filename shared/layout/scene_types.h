@@ -197,12 +197,13 @@ typedef struct FloatParam {
 /* ---- materials ------------------------------------------------------------------------------------------------- */
 
 #define MATERIAL_REMAP_ROUGHNESS 0x1u
-#define MATERIAL_CONDUCTOR_REFLECTANCE 0x2u /* color0 is reflectance at normal incidence; else eta color0, k color1 */
+#define MATERIAL_CONDUCTOR_REFLECTANCE                                                                                 \
+    0x2u /* also of a coated one: color0 is reflectance at normal incidence; else eta color0, k color1 */
 
-/* color0: diffuse, coated, transmission: reflectance. conductor: eta or reflectance.
- * color1: conductor: k. diffuse transmission: transmittance. coated: x the coat's optical thickness along its normal
+/* color0: diffuse, coated diffuse, transmission: reflectance. conductor, coated or not: eta or reflectance.
+ * color1: conductor: k. diffuse transmission: transmittance. coated diffuse: x the coat's optical thickness along its normal
  * (pbrt's "thickness"), y what scene_finish makes of it: the transmittance of one internal round trip (bsdf/coat.h).
- * roughness_u/v: as given in the scene; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
+ * roughness_u/v: as given in the scene, of a coat that of its interface, base_u/v that of the conductor below; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
  * mix: `mix_a` where the random number is >= amount, `mix_b` where it is below. */
 typedef struct Material {
     uint kind;
@@ -213,11 +214,15 @@ typedef struct Material {
     FloatParam roughness_v;
     FloatParam amount; /* mix */
     FloatParam displacement; /* program NONE: no bump */
+    FloatParam base_u; /* coated conductor */
+    FloatParam base_v;
     float eta; /* dielectric, coated: relative index of refraction, inside over outside */
-    float scale; /* diffuse transmission */
+    float scale; /* diffuse transmission; coated conductor: optical thickness of the coat */
     uint normal_map; /* index into `images`, NONE without */
     uint mix_a, mix_b;
-    uint coat_table; /* coated: first float in `lookup` of the coat's albedo table (bsdf/coat.h), NONE when smooth */
+    uint
+        coat_table; /* coated diffuse: first float in `lookup` of the coat's table (bsdf/coat.h), NONE when smooth; coated
+                        conductor: of its record (bsdf/coated_conductor.h) */
 } Material;
 
 /* ---- lights ---------------------------------------------------------------------------------------------------- */

@@ -80,6 +80,8 @@
     MEMBER(Material, roughness_v)                                                                                      \
     MEMBER(Material, amount)                                                                                           \
     MEMBER(Material, displacement)                                                                                     \
+    MEMBER(Material, base_u)                                                                                           \
+    MEMBER(Material, base_v)                                                                                           \
     MEMBER(Material, eta)                                                                                              \
     MEMBER(Material, scale)                                                                                            \
     MEMBER(Material, normal_map)                                                                                       \

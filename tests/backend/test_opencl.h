@@ -75,6 +75,20 @@ static inline bool test_device_promises(void)
     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.4 "                \
     "0.3 0.2 ]\n"                                                                                                      \
     "AttributeBegin Translate 0.5 -0.5 0 Shape \"sphere\" \"float radius\" 0.45 AttributeEnd\n"                        \
+    "Texture \"noise\" \"float\" \"fbm\" \"integer octaves\" 3\n"                                                      \
+    "Texture \"windy\" \"float\" \"windy\"\n"                                                                          \
+    "Texture \"dots\" \"spectrum\" \"dots\" \"float uscale\" 8 \"float vscale\" 8\n"                                   \
+    "Texture \"stone\" \"spectrum\" \"marble\" \"float scale\" 5\n"                                                    \
+    "Texture \"sides\" \"spectrum\" \"directionmix\" \"texture tex1\" \"stone\" \"texture tex2\" \"dots\"\n"           \
+    "Texture \"ramp\" \"spectrum\" \"bilerp\" \"rgb v11\" [ 0.2 0.9 0.4 ]\n"                                           \
+    "Texture \"all\" \"spectrum\" \"mix\" \"texture tex1\" \"sides\" \"texture tex2\" \"ramp\"\n"                      \
+    "Material \"diffuse\" \"texture reflectance\" \"all\" \"texture displacement\" \"windy\"\n"                        \
+    "AttributeBegin Translate -0.2 1.4 0 Shape \"cylinder\" \"float radius\" 0.3 \"float phimax\" 300 AttributeEnd\n"  \
+    "Texture \"scratches\" \"float\" \"wrinkled\" \"integer octaves\" 2 \"float roughness\" 0.3\n"                     \
+    "Material \"coatedconductor\" \"float interface.roughness\" 0.05 \"texture conductor.roughness\" \"scratches\"\n"  \
+    "AttributeBegin Translate -1 1.4 0 Shape \"cylinder\" \"float radius\" 0.3 \"float zmax\" 0.4 AttributeEnd\n"      \
+    "Material \"coatedconductor\" \"float thickness\" 0.1\n"                                                           \
+    "AttributeBegin Translate 0.6 1.4 0 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"                          \
     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0.9 0.1 0.1 ]\n"                        \
     "MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float "                     \
     "roughness\" 0\n"                                                                                                  \

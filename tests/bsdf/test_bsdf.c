@@ -9,5 +9,6 @@ int main(void)
     suite_add_tcase(suite, bsdf_inverse_tests());
     suite_add_tcase(suite, bsdf_energy_tests());
     suite_add_tcase(suite, bsdf_coated_tests());
+    suite_add_tcase(suite, bsdf_coated_conductor_tests());
     return test_run(suite);
 }

@@ -89,7 +89,8 @@ static void pair_check(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 w
     float h = vec3_length(half);
     float graze = fminf(fabsf(vec3_dot(wo, half)), fabsf(vec3_dot(wi, half))) / h;
     float alpha = fminf(bsdf->alpha_x, bsdf->alpha_y);
-    float tolerance = 2e-5f + ((bsdf->flags & BSDF_ROUGH) != 0u ? 3e-6f / (h * fminf(alpha, graze)) : 0.0f);
+    bool rough = (bsdf->flags & BSDF_ROUGH) != 0u || bsdf->flags >> BSDF_BASE_SHIFT != 0u;
+    float tolerance = 2e-5f + (rough ? 3e-6f / (h * fminf(alpha, graze)) : 0.0f);
     REQUIRE_MSG(near_float(f_a * eta * eta, f_b, tolerance), "kind %u, alpha %g, eta %g: %.9g and %.9g, |h| = %g",
                 bsdf->kind, (double)alpha, (double)bsdf->eta, (double)(f_a * eta * eta), (double)f_b, (double)h);
     REQUIRE(near_float(a.pdf_rev_w, b.pdf_w, tolerance) && near_float(a.pdf_w, b.pdf_rev_w, tolerance));
@@ -172,8 +173,9 @@ START_TEST(test_extreme_inputs)
     static const float NUMBERS[] = {0.0f, 0x1.fffffep-1f, 0x1p-24f, 0.5f, 1.0f - 0x1p-20f};
     TestScene scene;
     test_scene_init(&scene);
-    uint32_t range;
+    uint32_t range, record;
     Error error;
+    REQUIRE(coat_base_build(1.5f, 0.1f, true, &scene.lookup, &record, &error));
     REQUIRE(coat_table_build_range(1.5f, &scene.lookup, &range, &error));
     scene.view.lookup = scene.lookup.data;
     TestRandom random = {4};
@@ -185,8 +187,13 @@ START_TEST(test_extreme_inputs)
         bsdf.color1 = vec3(extreme(&random, COLORS, conductor ? 6 : 5), extreme(&random, COLORS, 5), 0.5f);
         bsdf.alpha_x = extreme(&random, ALPHAS, 10);
         bsdf.alpha_y = n & 2 ? bsdf.alpha_x : extreme(&random, ALPHAS, 10);
-        bsdf.eta = bsdf.kind == MATERIAL_COATED_DIFFUSE && !(n & 1) ? 1.5f : extreme(&random, ETAS, 8) + 0.05f;
+        bool coated = bsdf.kind == MATERIAL_COATED_DIFFUSE || bsdf.kind == MATERIAL_COATED_CONDUCTOR;
+        bsdf.eta = coated && !(n & 1) ? 1.5f : extreme(&random, ETAS, 8) + 0.05f;
         bsdf.flags = n & 4 && conductor ? BSDF_REFLECTANCE : 0u;
+        if (bsdf.kind == MATERIAL_COATED_CONDUCTOR) {
+            bsdf.coat_table = n & 1 ? NONE : record;
+            bsdf.flags = bsdf_base_pack(extreme(&random, ALPHAS, 10), extreme(&random, ALPHAS, 10));
+        }
         bsdf_flags_set(&bsdf);
         double side_o = n & 8 ? 1.0 : -1.0, side_i = n & 16 ? 1.0 : -1.0;
         Vec3 wo = random_direction(&random, side_o * (double)extreme(&random, COSINES, 8));

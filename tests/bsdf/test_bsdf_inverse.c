@@ -27,11 +27,30 @@ static double lobe_probability(const TestScene *scene, const Bsdf *bsdf, Vec3 wo
     return same ? reflectance : 1.0 - reflectance;
 }
 
+/* A coated conductor has two lobes that are drawn with the same point. */
+static double density_of_coated_conductor(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi)
+{
+    Vec3 o = direction_flip(wo, wo.z < 0.0f);
+    CoatedConductor c = coated_conductor(&scene->view, bsdf);
+    CoatedSide side = coated_side(&scene->view, bsdf, &c, o);
+    const float ends[4] = {0.0f, side.coat, side.direct, 1.0f};
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        BsdfInverse inverse;
+        float width = ends[k + 1] - ends[k];
+        if (width > 0.0f && bsdf_invert(&scene->view, bsdf, wo, wi, ends[k] + 0.5f * width, &inverse))
+            sum += (double)width * (double)inverse.pdf_w;
+    }
+    return sum;
+}
+
 /* Sum over the lobes; a grid of u_lobe finds them all. */
 static double density_of_lobes(const TestScene *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi)
 {
     double sum = 0.0;
     bool seen[2] = {false, false};
+    if (bsdf->kind == MATERIAL_COATED_CONDUCTOR)
+        return density_of_coated_conductor(scene, bsdf, wo, wi);
     for (int k = 0; k < 1024; ++k) {
         BsdfInverse inverse;
         if (!bsdf_invert(&scene->view, bsdf, wo, wi, ((float)k + 0.5f) / 1024.0f, &inverse) || seen[inverse.base])

@@ -97,6 +97,8 @@ static LobeCase lobe_make(const TestScene *scene, Bsdf bsdf, Vec3 wo)
     double cos_t = (double)refraction_cosine(fabsf(wo.z), (float)eta);
     Vec3 refracted = vec3(-wo.x / (float)eta, -wo.y / (float)eta, (float)fmax(cos_t, 0.05));
     lobe.alpha = (bsdf.flags & BSDF_ROUGH) != 0u ? (double)fmaxf(bsdf.alpha_x, bsdf.alpha_y) : 1.0;
+    if (bsdf.kind == MATERIAL_COATED_CONDUCTOR)
+        lobe.alpha = fmax((double)bsdf_base_alphas(bsdf.flags).x, (double)bsdf_base_alphas(bsdf.flags).y);
     lobe.grid[0] = grid_make(vec3(-wo.x, -wo.y, wo.z), lobe.alpha);
     lobe.grid[1] = grid_make(vec3_normalize(refracted), lobe.alpha);
     lobe.side[0] = wo.z > 0.0f ? 1.0 : -1.0;

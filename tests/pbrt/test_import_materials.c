@@ -103,6 +103,63 @@ START_TEST(coated_diffuse)
 }
 END_TEST
 
+START_TEST(coated_conductor)
+{
+    Scene scene;
+    Material m = material_of("Material \"coatedconductor\"", &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_COATED_CONDUCTOR);
+    ASSERT_NEAR(m.color0.value.x, 0.43f, 0.01f); /* copper */
+    ASSERT_FLOAT(m.eta, 1.5f);
+    ASSERT_FLOAT(m.scale, 0.01f);
+    ck_assert_uint_eq(m.flags, MATERIAL_REMAP_ROUGHNESS);
+    ck_assert_uint_eq(scene_material_has_delta(&scene, 0), 1);
+    scene_destroy(&scene);
+    m = material_of(
+        "Material \"coatedconductor\" \"float interface.roughness\" 0.3 \"float interface.vroughness\" 0.2\n"
+        "\"float conductor.uroughness\" 0.1 \"float conductor.vroughness\" 0.4 \"float interface.eta\" 1.3\n"
+        "\"rgb conductor.eta\" [ 0.2 0.9 1.1 ] \"rgb conductor.k\" [ 3.9 2.4 2.1 ] \"float thickness\" 0.5\n"
+        "\"float g\" 0.1 \"integer maxdepth\" 3 \"integer nsamples\" 4 \"bool remaproughness\" false",
+        &scene);
+    assert_vec3(m.color0.value, 0.2f, 0.9f, 1.1f, 0.0f);
+    assert_vec3(m.color1.value, 3.9f, 2.4f, 2.1f, 0.0f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.3f);
+    ASSERT_FLOAT(m.roughness_v.value, 0.2f);
+    ASSERT_FLOAT(m.base_u.value, 0.1f);
+    ASSERT_FLOAT(m.base_v.value, 0.4f);
+    ASSERT_FLOAT(m.eta, 1.3f);
+    ASSERT_FLOAT(m.scale, 0.5f);
+    ck_assert_uint_eq(m.flags, 0);
+    ck_assert_uint_eq(scene_material_has_delta(&scene, 0), 0);
+    scene_destroy(&scene);
+    m = material_of("Material \"coatedconductor\" \"rgb reflectance\" [ 1 0.5 0 ]", &scene);
+    ck_assert_uint_eq(m.flags, MATERIAL_CONDUCTOR_REFLECTANCE | MATERIAL_REMAP_ROUGHNESS);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* Equal coats share a record, whatever lies below; others do not. */
+START_TEST(coats_are_shared)
+{
+    Scene scene;
+    Error error = {0};
+    import_world("LightSource \"point\" Shape \"sphere\" Material \"coatedconductor\" \"float thickness\" 0.25\n"
+                 "Shape \"sphere\" Material \"coatedconductor\" \"float thickness\" 0.5 Shape \"sphere\"\n"
+                 "Material \"coatedconductor\" \"float thickness\" 0.25 \"float conductor.roughness\" 0.3\n"
+                 "Shape \"sphere\"",
+                 &scene);
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    uint tables[3];
+    for (size_t i = 0; i < 3; ++i)
+        tables[i] = ELEMENT(&scene, materials, Material, i + 1).coat_table;
+    ASSERT_FLOAT(ELEMENT(&scene, lookup, float, tables[0]), 0.25f);
+    ASSERT_FLOAT(ELEMENT(&scene, lookup, float, tables[1]), 0.5f);
+    ck_assert_uint_eq(tables[0], tables[2]);
+    ck_assert_uint_eq(scene.features & (FEATURE_COATED_CONDUCTOR | FEATURE_ROUGH),
+                      FEATURE_COATED_CONDUCTOR | FEATURE_ROUGH);
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(named_and_mixed)
 {
     Scene scene;
@@ -142,10 +199,7 @@ START_TEST(substitutes)
     static const struct {
         const char *text;
         uint kind;
-    } cases[] = {{"hair", MATERIAL_DIFFUSE},
-                 {"measured", MATERIAL_DIFFUSE},
-                 {"subsurface", MATERIAL_DIFFUSE},
-                 {"coatedconductor", MATERIAL_CONDUCTOR}};
+    } cases[] = {{"hair", MATERIAL_DIFFUSE}, {"measured", MATERIAL_DIFFUSE}, {"subsurface", MATERIAL_DIFFUSE}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char text[256];
         Scene scene;
@@ -167,6 +221,8 @@ TCase *import_materials_case(void)
     tcase_add_test(tcase, conductors);
     tcase_add_test(tcase, spectra);
     tcase_add_test(tcase, coated_diffuse);
+    tcase_add_test(tcase, coated_conductor);
+    tcase_add_test(tcase, coats_are_shared);
     tcase_add_test(tcase, named_and_mixed);
     tcase_add_test(tcase, scopes);
     tcase_add_test(tcase, substitutes);

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_TESTS_SUPPORT_BSDF_CASES_H
 #define TWINLIGHT_TESTS_SUPPORT_BSDF_CASES_H
 
+#include "scene/coat_base_table.h"
 #include "scene/coat_table.h"
 #include "support/test_util.h"
 
@@ -18,6 +19,7 @@
 #define TEST_PI 3.14159265358979323846
 
 TCase *bsdf_coated_tests(void);
+TCase *bsdf_coated_conductor_tests(void);
 TCase *bsdf_energy_tests(void);
 TCase *bsdf_formula_tests(void);
 TCase *bsdf_identity_tests(void);
@@ -73,16 +75,35 @@ static inline void test_scene_destroy(TestScene *scene)
     array_destroy(&scene->lookup);
 }
 
+/* Gives a coated conductor its record. thickness: of the coat. */
+static inline void test_record_make(TestScene *scene, Bsdf *bsdf, float thickness)
+{
+    Error error;
+    uint32_t interface;
+    bool rough = (bsdf->flags & BSDF_ROUGH) != 0u;
+    REQUIRE(coat_base_build(bsdf->eta, thickness, rough, &scene->lookup, &bsdf->coat_table, &error));
+    if (rough)
+        REQUIRE(coat_table_build(bsdf->alpha_x, bsdf->alpha_y, bsdf->eta, &scene->lookup, &interface, &error));
+    scene->view.lookup = scene->lookup.data;
+}
+
+/* Added to MATERIAL_COATED_CONDUCTOR: alphas are those of the conductor, the coat is smooth; without it, both have them. */
+#define TEST_SMOOTH_COAT 0x100u
+
 /* A complete Bsdf with grey colours; a rough coat gets its table. */
 static inline Bsdf test_bsdf(TestScene *scene, uint kind, float alpha_x, float alpha_y, float eta, float color0,
                              float color1)
 {
     Bsdf bsdf = {0};
+    bool smooth_coat = (kind & TEST_SMOOTH_COAT) != 0u;
+    kind &= ~TEST_SMOOTH_COAT;
     bsdf.kind = kind;
     bsdf.color0 = vec3_splat(color0);
     bsdf.color1 = vec3_splat(color1);
-    bsdf.alpha_x = alpha_x;
-    bsdf.alpha_y = alpha_y;
+    bsdf.alpha_x = smooth_coat ? 0.0f : alpha_x;
+    bsdf.alpha_y = smooth_coat ? 0.0f : alpha_y;
+    if (kind == MATERIAL_COATED_CONDUCTOR)
+        bsdf.flags = bsdf_base_pack(alpha_x, alpha_y);
     bsdf.eta = eta;
     bsdf.coat_table = NONE;
     bsdf_flags_set(&bsdf);
@@ -91,6 +112,8 @@ static inline Bsdf test_bsdf(TestScene *scene, uint kind, float alpha_x, float a
         REQUIRE(coat_table_build(alpha_x, alpha_y, eta, &scene->lookup, &bsdf.coat_table, &error));
         scene->view.lookup = scene->lookup.data;
     }
+    if (kind == MATERIAL_COATED_CONDUCTOR)
+        test_record_make(scene, &bsdf, 0.01f);
     return bsdf;
 }
 
@@ -129,13 +152,16 @@ static const struct TestMaterial {
     uint kind;
     float eta, color0, color1;
     int alphas; /* how many of TEST_ALPHAS, starting at the second; 1: no roughness, or the delta one */
-} TEST_MATERIALS[] = {{"diffuse", MATERIAL_DIFFUSE, 1.0f, 0.5f, 0.0f, 1},
-                      {"diffuse transmission", MATERIAL_DIFFUSE_TRANSMISSION, 1.0f, 0.3f, 0.6f, 1},
-                      {"smooth coat", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, 1},
-                      {"conductor", MATERIAL_CONDUCTOR, 1.0f, 0.2f, 3.9f, TEST_ALPHA_COUNT},
-                      {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
-                      {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
-                      {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT}};
+} TEST_MATERIALS[] = {
+    {"diffuse", MATERIAL_DIFFUSE, 1.0f, 0.5f, 0.0f, 1},
+    {"diffuse transmission", MATERIAL_DIFFUSE_TRANSMISSION, 1.0f, 0.3f, 0.6f, 1},
+    {"smooth coat", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, 1},
+    {"conductor", MATERIAL_CONDUCTOR, 1.0f, 0.2f, 3.9f, TEST_ALPHA_COUNT},
+    {"dielectric", MATERIAL_DIELECTRIC, 1.5f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
+    {"dielectric 0.7", MATERIAL_DIELECTRIC, 0.7f, 0.0f, 0.0f, TEST_ALPHA_COUNT},
+    {"coated", MATERIAL_COATED_DIFFUSE, 1.5f, 0.5f, 0.0f, TEST_ALPHA_COUNT},
+    {"coated conductor", MATERIAL_COATED_CONDUCTOR, 1.5f, 0.2f, 3.9f, TEST_ALPHA_COUNT},
+    {"smooth coat on a conductor", MATERIAL_COATED_CONDUCTOR | TEST_SMOOTH_COAT, 1.5f, 0.2f, 3.9f, TEST_ALPHA_COUNT}};
 #define TEST_MATERIAL_COUNT ((int)(sizeof TEST_MATERIALS / sizeof TEST_MATERIALS[0]))
 
 #endif
