@@ -33,6 +33,7 @@ enum {
         Vec3: STRUCT_Vec3,                                                                                             \
         Vec3 *: STRUCT_Vec3,                                                                                           \
         Affine: STRUCT_Affine,                                                                                         \
+        Frame: STRUCT_Frame,                                                                                           \
         ColorParam: STRUCT_ColorParam,                                                                                 \
         FloatParam: STRUCT_FloatParam,                                                                                 \
         Camera: STRUCT_Camera,                                                                                         \
@@ -196,7 +197,9 @@ static bool scene_widen(KernelScene *out, const BackendScene *scene, Error *erro
                                 {STRUCT_TextureImage, from.images, &to->images},
                                 {STRUCT_Light, from.lights, &to->lights},
                                 {STRUCT_AliasBucket, from.light_alias, &to->light_alias},
+                                {STRUCT_LightNode, from.light_nodes, &to->light_nodes},
                                 {MEMBER_WORDS, from.infinite_lights, &to->infinite_lights},
+                                {STRUCT_Portal, from.portals, &to->portals},
                                 {STRUCT_Aim, from.aims, &to->aims},
                                 {STRUCT_Distribution2D, from.distributions2d, &to->distributions2d},
                                 {MEMBER_FLOATS, from.lookup, &to->lookup}};

@@ -258,6 +258,7 @@ tests_test_light_SOURCES = tests/light/test_light.c \
 	tests/light/test_light_filter.c \
 	tests/light/test_light_irradiance.c \
 	tests/light/test_light_mis.c \
+	tests/light/test_light_portal.c \
 	tests/light/test_light_select.c \
 	tests/light/test_light_tree.c
 

@@ -8,6 +8,7 @@
 #include "pbrt/state.h"
 #include "pbrt/values.h"
 #include "scene/light_setup.h"
+#include "scene/portal_setup.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -129,26 +130,28 @@ static void distant_read(LightReader *r)
     direction_set(r, from, to);
 }
 
-/* Illuminance of an upward-facing plane by the upper half of an octahedral map: 4 pi times the mean of luminance times
- * cosine, because its texels have equal solid angles. */
-static double map_illuminance(const Image *image, const float *rgb)
+/* Illuminance of an upward-facing plane by the upper half of a map: 4 pi times the mean of luminance times cosine over
+ * directions. Texels of an octahedral map have equal solid angles, those of the other are smaller by the sine of the angle
+ * from the pole: their mean sine is 2 / pi. */
+static double map_illuminance(const Image *image, const float *rgb, bool equirectangular)
 {
     double sum = 0.0;
     for (int y = 0; y < image->height; ++y)
         for (int x = 0; x < image->width; ++x) {
             Vec2 uv = vec2(((float)x + 0.5f) / (float)image->width, ((float)y + 0.5f) / (float)image->height);
-            double z = (double)octahedral_to_sphere(uv).z;
+            double z = equirectangular ? cos(M_PI * (double)uv.y) : (double)octahedral_to_sphere(uv).z;
+            double weight = equirectangular ? 0.5 * M_PI * sin(M_PI * (double)uv.y) : 1.0;
             const float *p = &rgb[3 * ((size_t)y * (size_t)image->width + (size_t)x)];
             if (z > 0.0)
-                sum += z * (double)rgb_luminance(vec3(p[0], p[1], p[2]));
+                sum += weight * z * (double)rgb_luminance(vec3(p[0], p[1], p[2]));
         }
     return 4.0 * M_PI * sum / ((double)image->width * (double)image->height);
 }
 
 /* pbrt multiplies by 2 pi where the integral over the sphere requires 4 pi; so does this, to give the same image. */
-static double illuminance_scale(const Image *image, const float *rgb, float wanted)
+static double illuminance_scale(const Image *image, const float *rgb, bool equirectangular, float wanted)
 {
-    double found = 0.5 * map_illuminance(image, rgb);
+    double found = 0.5 * map_illuminance(image, rgb, equirectangular);
     return found > 0.0 ? (double)wanted / found : 1.0;
 }
 
@@ -160,11 +163,12 @@ static bool map_check(LightReader *r, const Image *image, const char *path)
         param_error(r->list, "filename", "%s is grey; the image of an infinite light needs red, green and blue", path);
         return false;
     }
-    if (image->width == image->height)
+    if (image->width == image->height || (r->light.flags & LIGHT_EQUIRECTANGULAR) != 0)
         return true;
     snprintf(what, sizeof what, "an infinite light's image that is not square (%d x %d)", image->width, image->height);
     if (!import_unsupported(r->im, place, what, "read as latitude and longitude",
-                            "convert it with pbrt's imgtool makeequiarea")) {
+                            "if it is a latitude-longitude map, add \"string mapping\" \"latlong\"; pbrt's imgtool "
+                            "makeequiarea makes the square map that pbrt reads")) {
         r->list->failed = true;
         return false;
     }
@@ -201,8 +205,9 @@ static void map_load(LightReader *r, const Image *image, const char *path, float
     }
     if (map_finite(r, rgb, pixels, path)) {
         if (illuminance > 0.0f)
-            scale *= illuminance_scale(image, rgb, illuminance);
-        r->light.kind = LIGHT_INFINITE_IMAGE;
+            scale *= illuminance_scale(image, rgb, (r->light.flags & LIGHT_EQUIRECTANGULAR) != 0, illuminance);
+        if (r->light.kind == LIGHT_INFINITE)
+            r->light.kind = LIGHT_INFINITE_IMAGE;
         r->light.emission = emission_make(r->list, WHITE, scale);
         r->list->failed = r->list->failed || !texture_image_add(r->im->scene, image, &options, &r->light.image, error);
     }
@@ -242,6 +247,45 @@ static void infinite_transform_set(LightReader *r)
     r->light.light_from_world = matrix_affine(to_light.m);
 }
 
+/* "mapping", which pbrt does not have: how directions are laid out in the image. */
+static void mapping_read(LightReader *r)
+{
+    const char *mapping = param_string(r->list, "mapping", "equalarea");
+    if (strcmp(mapping, "latlong") == 0)
+        r->light.flags |= LIGHT_EQUIRECTANGULAR;
+    else if (strcmp(mapping, "equalarea") != 0) {
+        param_error(r->list, "mapping", "unknown mapping \"%s\" of an infinite light", mapping);
+        error_fix(r->list->error, "use equalarea or latlong");
+    }
+}
+
+/* "portal": four points in world space; pbrt does not apply the current transform to them. */
+static void portal_read(LightReader *r)
+{
+    size_t count = 0;
+    const float *points = param_floats(r->list, "portal", PARAM_POINT3, &count);
+    const float offset[3] = {r->im->offset.x, r->im->offset.y, r->im->offset.z};
+    double corners[4][3];
+    Portal portal;
+    Error error = {{0}, {0}};
+    if (!points)
+        return;
+    if (count != 12) {
+        param_error(r->list, "portal", "the portal of an infinite light has %zu points instead of four", count / 3);
+        error_fix(r->list->error, "give the four corners of a rectangle");
+        return;
+    }
+    for (int i = 0; i < 12; ++i)
+        corners[i / 3][i % 3] = (double)points[i] - (double)offset[i % 3];
+    if (!portal_make(corners, &portal, &error)) {
+        param_error(r->list, "portal", "%s", error_text(&error));
+        error_fix(r->list->error, "%s", error.fix);
+        return;
+    }
+    r->light.kind = LIGHT_PORTAL;
+    r->list->failed = r->list->failed || !scene_add_portal(r->im->scene, &portal, &r->light.portal, r->list->error);
+}
+
 static void infinite_read(LightReader *r)
 {
     float radiance[3] = {1.0f, 1.0f, 1.0f};
@@ -249,10 +293,9 @@ static void infinite_read(LightReader *r)
     double scale = (double)scale_read(r->list);
     float illuminance = param_float(r->list, "illuminance", -1.0f);
     const char *file = param_string(r->list, "filename", "");
-    const Param *portal = param_ignore(r->list, "portal");
-    if (portal && !r->list->failed)
-        r->list->failed = !import_unsupported(r->im, portal->place, "a portal of an infinite light",
-                                              "the light comes from everywhere", NULL);
+    r->light.kind = LIGHT_INFINITE;
+    mapping_read(r);
+    portal_read(r);
     if (has_radiance && *file)
         param_error(r->list, "filename", "an infinite light takes either L or filename");
     infinite_transform_set(r);
@@ -262,7 +305,6 @@ static void infinite_read(LightReader *r)
     }
     if (illuminance > 0.0f)
         scale *= (double)illuminance / M_PI;
-    r->light.kind = LIGHT_INFINITE;
     r->light.emission = emission_make(r->list, radiance, scale);
 }
 

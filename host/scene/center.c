@@ -110,6 +110,10 @@ bool scene_center(Scene *scene, const Box *world)
         if (light_has_position(light->kind))
             light->position = vec3_sub(light->position, offset);
     }
+    for (size_t i = 0; i < scene->portals.count; ++i) {
+        Portal *portal = &ARRAY_AT(&scene->portals, Portal, i);
+        portal->corner = vec3_sub(portal->corner, offset);
+    }
     for (size_t i = 0; i < scene->texture_ops.count; ++i)
         argument_move(&ARRAY_AT(&scene->texture_ops, TextureOp, i).texture_from_world, offset);
     camera_move(&scene->camera_settings, offset);

@@ -13,6 +13,7 @@
 #include "scene/light_guide_setup.h"
 #include "scene/light_setup.h"
 #include "scene/pack.h"
+#include "scene/portal_setup.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -177,14 +178,20 @@ static float camera_reach(const Camera *camera)
 }
 
 /* The same for rays from a light: those from infinity start on a disk of the bounding sphere's radius, tangent to
- * it. */
-static float light_reach(const SceneParams *params, const Light *light)
+ * it, or as far from it as the portal that they pass. */
+static float light_reach(const Scene *scene, const Light *light)
 {
+    const SceneParams *params = &scene->frame.scene;
+    float portal = 0.0f;
     if (light->kind == LIGHT_AREA)
         return 0.0f;
     if (light_has_position(light->kind))
         return vec3_max_abs(light->position);
-    return vec3_max_abs(params->world_center) + 1.5f * params->world_radius;
+    for (int i = 0; light->kind == LIGHT_PORTAL && i < 4; ++i) {
+        Vec3 corner = portal_corner(&ARRAY_AT(&scene->portals, Portal, light->portal), i);
+        portal = fmaxf(portal, vec3_length(vec3_sub(corner, params->world_center)));
+    }
+    return vec3_max_abs(params->world_center) + fmaxf(1.5f * params->world_radius, portal + params->world_radius);
 }
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
@@ -422,8 +429,7 @@ bool scene_finish(Scene *scene, Error *error)
         !light_setup(scene, error))
         return false;
     for (size_t i = 0; i < scene->lights.count; ++i)
-        scene->ray_reach =
-            fmaxf(scene->ray_reach, light_reach(&scene->frame.scene, &ARRAY_AT(&scene->lights, Light, i)));
+        scene->ray_reach = fmaxf(scene->ray_reach, light_reach(scene, &ARRAY_AT(&scene->lights, Light, i)));
     light_guide_setup(scene);
     SceneView view = geometry_view(scene);
     if (!aim_setup(scene, &view, error))

@@ -3,6 +3,7 @@
 #include "geometry/box.h"
 #include "layout/distribution.h"
 #include "math/warp.h"
+#include "scene/portal_setup.h"
 
 /* A light guide. The primitives of an emissive shape form one: the mean of their boxes' centres, weighted by power. */
 typedef struct LightGuide {
@@ -81,6 +82,16 @@ static LightGuide environment_guide(const SceneView *view, const Light *light, d
                         .power = (double)light->select_pdf / (4.0 * radius * radius)};
 }
 
+/* Makes a light guide of the middle of a portal. */
+static LightGuide portal_guide(const Portal *portal, const Light *light)
+{
+    Vec3 first = portal_corner(portal, 0), last = portal_corner(portal, 2);
+    return (LightGuide){.place = {0.5 * ((double)first.x + (double)last.x), 0.5 * ((double)first.y + (double)last.y),
+                                  0.5 * ((double)first.z + (double)last.z)},
+                        .near = 1.0,
+                        .power = (double)light->select_pdf};
+}
+
 void light_guide_setup(Scene *scene)
 {
     SceneView view = {.positions = scene->positions.data,
@@ -100,6 +111,8 @@ void light_guide_setup(Scene *scene)
             next = shape_guide(scene, &view, i, &guide);
         else if (light->kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)
             guide = environment_guide(&view, light, radius);
+        else if (light->kind == LIGHT_PORTAL)
+            guide = portal_guide(&ARRAY_AT(&scene->portals, Portal, light->portal), light);
         guide_add(scene, &guide);
     }
 }

@@ -5,6 +5,7 @@
 #include "light/delta.h"
 #include "scene/distribution_build.h"
 #include "scene/light_tree.h"
+#include "scene/portal_setup.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -155,9 +156,10 @@ static double world_disk(const Scene *scene)
 }
 
 /* Luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
- * bounding sphere. */
-static bool light_power(Scene *scene, Light *light, double *power, Error *error)
+ * bounding sphere, or through their portal. */
+static bool light_power(Scene *scene, uint index, double *power, Error *error)
 {
+    Light *light = &ARRAY_AT(&scene->lights, Light, index);
     double disk = world_disk(scene), mean = luminance(light->emission);
     switch (light->kind) {
     case LIGHT_AREA:
@@ -169,6 +171,10 @@ static bool light_power(Scene *scene, Light *light, double *power, Error *error)
         break;
         LIGHT_LIST_DELTA(POWER)
 #undef POWER
+    case LIGHT_PORTAL:
+        if (!portal_setup(scene, index, power, error))
+            return false;
+        break;
     default:
         if (light->kind == LIGHT_INFINITE_IMAGE && !environment_setup(scene, light, &mean, error))
             return false;
@@ -207,7 +213,7 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     size_t count = scene->lights.count, dark = 0;
     double sum = 0.0;
     for (size_t i = 0; i < count; ++i) {
-        if (!light_power(scene, &ARRAY_AT(&scene->lights, Light, i), &powers[i], error))
+        if (!light_power(scene, (uint)i, &powers[i], error))
             return false;
         sum += powers[i];
         dark += powers[i] > 0.0 ? 0 : 1;

@@ -4,6 +4,7 @@
 #include "light/area.h"
 #include "light/delta.h"
 #include "light/light_tree.h"
+#include "scene/portal_setup.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -138,6 +139,18 @@ static Bounds position_bounds(const Light *light)
     return bounds;
 }
 
+/* As of an area light that emits the same flux. */
+static Bounds portal_bounds(const Portal *portal, double power)
+{
+    Bounds bounds = {.box = box_empty(),
+                     .normals = {vec3_negate(portal->axes.n), 0.0},
+                     .emission = 0.5 * M_PI,
+                     .intensity = power / M_PI};
+    for (int i = 0; i < 4; ++i)
+        box_add(&bounds.box, portal_corner(portal, i));
+    return bounds;
+}
+
 static Bounds light_bounds(const SceneView *view, uint light, double power, double disk)
 {
     const Light *source = &view->lights[light];
@@ -145,6 +158,8 @@ static Bounds light_bounds(const SceneView *view, uint light, double power, doub
         return area_bounds(view, light, power);
     if (light_has_position(source->kind))
         return position_bounds(source);
+    if (source->kind == LIGHT_PORTAL)
+        return portal_bounds(&view->portals[source->portal], power);
     double directions = source->kind >= LIGHT_INFINITE ? 0.25 : 1.0; /* 4 pi sr, of which pi counts at a surface */
     return (Bounds){.box = box_empty(), .normals = NO_CONE, .intensity = power * directions / disk, .infinite = true};
 }
@@ -382,7 +397,8 @@ bool light_tree_build(Scene *scene, const double *powers, double disk, Error *er
                       .shapes = scene->shapes.data,
                       .patches = scene->patches.data,
                       .quadrics = scene->quadrics.data,
-                      .lights = scene->lights.data};
+                      .lights = scene->lights.data,
+                      .portals = scene->portals.data};
     scene->light_nodes.count = 0;
     Leaf *leaves = malloc(light_count * sizeof *leaves);
     LightNode *nodes = array_grow(&scene->light_nodes, most, error);

@@ -33,6 +33,7 @@ static bool tables_pack(Scene *scene, Error *error)
            words_append(words, &scene->light_alias, &layout->light_alias, error) &&
            words_append(words, &scene->light_nodes, &layout->light_nodes, error) &&
            words_append(words, &scene->infinite_lights, &layout->infinite_lights, error) &&
+           words_append(words, &scene->portals, &layout->portals, error) &&
            words_append(words, &scene->aims, &layout->aims, error) &&
            words_append(words, &scene->distributions2d, &layout->distributions2d, error) &&
            words_append(words, &scene->lookup, &layout->lookup, error);

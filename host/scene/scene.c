@@ -23,6 +23,7 @@
     X(light_alias, AliasBucket)                                                                                        \
     X(light_nodes, LightNode)                                                                                          \
     X(infinite_lights, uint)                                                                                           \
+    X(portals, Portal)                                                                                                 \
     X(aims, Aim)                                                                                                       \
     X(distributions2d, Distribution2D)                                                                                 \
     X(lookup, float)                                                                                                   \
@@ -410,6 +411,16 @@ bool scene_add_light(Scene *scene, const Light *light, Error *error)
     if (!stored)
         return false;
     *stored = *light;
+    return true;
+}
+
+bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *error)
+{
+    Portal *stored = SCENE_GROW(scene, portals, Portal, 1, error);
+    if (!stored)
+        return false;
+    *stored = *portal;
+    *index = (uint)scene->portals.count - 1;
     return true;
 }
 

@@ -71,6 +71,7 @@ typedef struct Scene {
     Array light_alias; /* AliasBucket, set by scene_finish */
     Array light_nodes; /* LightNode, set by scene_finish; none for a single light */
     Array infinite_lights; /* uint */
+    Array portals; /* Portal; scene_finish sets its sums */
     Array aims; /* Aim, set by scene_finish */
     double light_power; /* luminance of the flux of all lights, set by scene_finish */
     Array distributions2d; /* Distribution2D */
@@ -134,6 +135,9 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
 /* Appends a material; *index: its index. */
 bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error);
 bool scene_add_light(Scene *scene, const Light *light, Error *error);
+
+/* Appends the portal of an infinite light (scene/portal_setup.h makes it); *index: Light.portal. */
+bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *error);
 
 /* Surface area of a primitive in world space, computed in double. Only before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);

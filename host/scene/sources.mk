@@ -12,6 +12,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/light_setup.c host/scene/light_setup.h \
 	host/scene/light_tree.c host/scene/light_tree.h \
 	host/scene/pack.c host/scene/pack.h \
+	host/scene/portal_setup.c host/scene/portal_setup.h \
 	host/scene/aim_setup.c host/scene/aim_setup.h \
 	host/scene/scene.c host/scene/scene.h \
 	host/scene/smooth_boxes.c host/scene/smooth_boxes.h \

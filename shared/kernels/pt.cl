@@ -148,17 +148,20 @@ SHARED_FUNCTION float path_choice_pdf(const SceneView *scene, __global const uin
                             state_load_vec3(paths, stride, PATH_NG, item));
 }
 
-/* Adds what the environment sends along d (unit) to a path that was scattered in that direction, weighted against light
- * sampling. */
-SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 d)
+/* Adds what the environment sends along the ray of a path, which has missed, weighted against light sampling. */
+SHARED_FUNCTION void path_add_environment(const SceneView *scene, __global uint *restrict paths, uint item,
+                                          const Ray *ray)
 {
     uint flags = state_load(paths, scene->frame->pass.stride, PATH_FLAGS, item);
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         uint light = scene->infinite_lights[i];
         float pdf_light = 0.0f;
+        if (!environment_reaches(scene, light, ray->o, ray->d))
+            continue;
         if ((flags & PATH_FLAG_DELTA) == 0u)
-            pdf_light = path_choice_pdf(scene, paths, item, light) * environment_pdf_w(scene, light, d);
-        path_add_met(scene, paths, item, environment_light_radiance(scene, light, d), pdf_light, 1.0f);
+            pdf_light =
+                path_choice_pdf(scene, paths, item, light) * environment_sample_pdf_w(scene, light, ray->o, ray->d);
+        path_add_met(scene, paths, item, environment_beyond(scene, light, ray->d), pdf_light, 1.0f);
     }
 }
 
@@ -195,7 +198,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     Hit hit = hit_load(hits, stride, item);
     if (hit.primitive == NONE) {
         if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            path_add_environment(scene, paths, item, ray.d);
+            path_add_environment(scene, paths, item, &ray);
         path_end(paths, rays, stride, item);
         return;
     }

@@ -93,7 +93,7 @@ typedef struct LightSample {
     Vec3 ng; /* its geometric normal (area lights) */
     Vec3 radiance; /* arriving; for delta lights already divided by the squared distance */
     float pdf_w; /* solid-angle density given the light; 1 for delta lights */
-    float pdf_emit; /* area lights: area density of emitting from p (light/emit.h) */
+    float pdf_emit; /* density of light subpaths (light/emit.h): area lights: per area at p; infinite: from wi */
     uint delta; /* 1: point, spot, distant: no sampled direction can hit it */
     uint infinite; /* 1: at infinity; trace along wi without end */
 } LightSample;

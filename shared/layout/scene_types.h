@@ -31,6 +31,7 @@
     X(ROUGH, rough, "rough", 0u) /* a microfacet lobe that is not a delta */                                           \
     X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
     X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
+    X(PORTAL, portal, "portal", 0u) /* an infinite light that is seen through a portal */                              \
     X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
     X(LIGHT_TREE, light_tree, "several lights", 0u) /* in different places or directions */                            \
     X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
@@ -236,12 +237,14 @@ typedef struct Material {
     X(SPOT, spot, "spot", FEATURE_DELTA_LIGHT, 1u)                                                                     \
     X(DISTANT, distant, "distant", FEATURE_DELTA_LIGHT, 0u)
 
-/* All lights. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment. */
+/* All lights. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment, LIGHT_PORTAL one that
+ * is constant or an image, and is seen through a portal alone (light/portal.h). */
 #define LIGHT_LIST(X)                                                                                                  \
     X(AREA, area, "area", FEATURE_AREA_LIGHT, 0u)                                                                      \
     LIGHT_LIST_DELTA(X)                                                                                                \
     X(INFINITE, infinite, "infinite", FEATURE_INFINITE_LIGHT, 0u)                                                      \
-    X(INFINITE_IMAGE, infinite_image, "infinite image", FEATURE_INFINITE_LIGHT, 0u)
+    X(INFINITE_IMAGE, infinite_image, "infinite image", FEATURE_INFINITE_LIGHT, 0u)                                    \
+    X(PORTAL, portal, "infinite portal", (FEATURE_INFINITE_LIGHT | FEATURE_PORTAL), 0u)
 
 #define LIGHT_ENUMERATE(NAME, name, text, feature, position) LIGHT_##NAME,
 enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
@@ -254,7 +257,7 @@ typedef struct Light {
     uint kind;
     uint flags;
     uint primitive; /* area */
-    uint image; /* infinite image */
+    uint image; /* infinite image; portal: NONE if its environment is constant */
     Vec3 emission; /* area, infinite: radiance (an image's scale). point, spot: intensity. distant: irradiance on a
                       plane facing it */
     float area; /* area: surface area in world space */
@@ -263,7 +266,8 @@ typedef struct Light {
     Vec3 direction; /* spot: axis. distant: direction in which the light travels. unit */
     float cos_total; /* spot: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle */
-    uint distribution; /* infinite image: index into `distributions2d` */
+    uint distribution; /* infinite image, portal (of light subpaths): index into `distributions2d` */
+    uint portal; /* portal: index into `portals` */
     uint leaf; /* number of leaves before it in the tree of lights; NONE: it has no power */
     Affine world_from_light; /* infinite: of directions, scaled to a determinant of 1 or -1 */
     Affine light_from_world;
@@ -277,6 +281,17 @@ typedef struct Distribution2D {
     uint first_marginal;
     uint first_conditional;
 } Distribution2D;
+
+/* The rectangle through which alone an infinite light is seen: corner + x axes.t + y axes.b with 0 <= x <= width and
+ * 0 <= y <= height. axes.n points away from the side that is lit. `sums`: index in `texels` of the first of (columns + 1) x
+ * (rows + 1) sums, modulo 2^32, over all cells of the rectified environment with smaller indices (light/portal.h). */
+typedef struct Portal {
+    Vec3 corner;
+    float width, height;
+    Frame axes;
+    uint columns, rows;
+    uint sums;
+} Portal;
 
 /* One bucket of an alias table (Walker 1977, Vose 1991): keep i with probability q, else take alias. */
 typedef struct AliasBucket {
@@ -353,8 +368,8 @@ typedef struct SceneLayout {
     /* geometry */
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
     /* tables */
-    uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, aims, distributions2d,
-        lookup;
+    uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, portals, aims,
+        distributions2d, lookup;
 } SceneLayout;
 
 #endif

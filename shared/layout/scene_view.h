@@ -28,6 +28,7 @@ typedef struct SceneView {
     __global const AliasBucket *light_alias;
     __global const LightNode *light_nodes;
     __global const uint *infinite_lights;
+    __global const Portal *portals;
     __global const Aim *aims;
     __global const Distribution2D *distributions2d;
     __global const float *lookup;
@@ -72,6 +73,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.light_alias = (__global const AliasBucket *)(tables + layout->light_alias);
     view.light_nodes = (__global const LightNode *)(tables + layout->light_nodes);
     view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
+    view.portals = (__global const Portal *)(tables + layout->portals);
     view.aims = (__global const Aim *)(tables + layout->aims);
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
     view.lookup = scene_lookup(frame, tables);

@@ -11,6 +11,10 @@
     MEMBER(Vec3, x)                                                                                                    \
     MEMBER(Vec3, y)                                                                                                    \
     MEMBER(Vec3, z)                                                                                                    \
+    STRUCT(Frame)                                                                                                      \
+    MEMBER(Frame, t)                                                                                                   \
+    MEMBER(Frame, b)                                                                                                   \
+    MEMBER(Frame, n)                                                                                                   \
     STRUCT(Affine)                                                                                                     \
     MEMBER(Affine, m)                                                                                                  \
     STRUCT(Primitive)                                                                                                  \
@@ -101,6 +105,7 @@
     MEMBER(Light, cos_total)                                                                                           \
     MEMBER(Light, cos_falloff)                                                                                         \
     MEMBER(Light, distribution)                                                                                        \
+    MEMBER(Light, portal)                                                                                              \
     MEMBER(Light, leaf)                                                                                                \
     MEMBER(Light, world_from_light)                                                                                    \
     MEMBER(Light, light_from_world)                                                                                    \
@@ -109,6 +114,14 @@
     MEMBER(Distribution2D, height)                                                                                     \
     MEMBER(Distribution2D, first_marginal)                                                                             \
     MEMBER(Distribution2D, first_conditional)                                                                          \
+    STRUCT(Portal)                                                                                                     \
+    MEMBER(Portal, corner)                                                                                             \
+    MEMBER(Portal, width)                                                                                              \
+    MEMBER(Portal, height)                                                                                             \
+    MEMBER(Portal, axes)                                                                                               \
+    MEMBER(Portal, columns)                                                                                            \
+    MEMBER(Portal, rows)                                                                                               \
+    MEMBER(Portal, sums)                                                                                               \
     STRUCT(AliasBucket)                                                                                                \
     MEMBER(AliasBucket, q)                                                                                             \
     MEMBER(AliasBucket, alias)                                                                                         \
@@ -153,6 +166,7 @@
     MEMBER(SceneLayout, light_alias)                                                                                   \
     MEMBER(SceneLayout, light_nodes)                                                                                   \
     MEMBER(SceneLayout, infinite_lights)                                                                               \
+    MEMBER(SceneLayout, portals)                                                                                       \
     MEMBER(SceneLayout, aims)                                                                                          \
     MEMBER(SceneLayout, distributions2d)                                                                               \
     MEMBER(SceneLayout, lookup)                                                                                        \

@@ -54,10 +54,10 @@ SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3
 
 /* Density, per area perpendicular to it, of the ray of a light at infinity that passes p along w (unit), given w. p must be
  * in the scene. */
-SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, Vec3 p, Vec3 w)
+SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, uint light, Vec3 p, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count;
-    float unaimed = light_emit_pdf_disc(scene), sum = 0.0f;
+    float unaimed = light_emit_pdf_passing(scene, light, p, w), sum = 0.0f;
     if (count == 0u)
         return unaimed;
     for (uint i = 0u; i < count; ++i) {
@@ -75,8 +75,7 @@ SHARED_FUNCTION void aim_from_infinity(const SceneView *scene, Aim aim, Vec2 u, 
     Vec2 disc = warp_disk_concentric(u);
     Vec3 offset = frame_to_world(frame_from_normal(emission->w), vec3(disc.x, disc.y, 0.0f));
     Vec3 passed = vec3_mad(aim.center, aim.radius, offset);
-    Vec3 from_center = vec3_sub(passed, scene->frame->scene.world_center);
-    emission->p = vec3_mad(passed, -(light_emit_disc_radius(scene) + vec3_dot(from_center, emission->w)), emission->w);
+    light_emit_from_far(scene, passed, emission);
 }
 
 /* Turns the ray to pass through the aim, which does not contain its origin; false if the light emits nothing there. */
@@ -114,8 +113,11 @@ SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float 
     if (emission->infinite != 0u) {
         if (aimed)
             aim_from_infinity(scene, aim, u_point, emission);
-        emission->pdf_p = light_aimed_pdf_disc(scene, emission->p, emission->w);
-        return true;
+        if (aimed && light_has_portal(scene, light) &&
+            !(light_emit_pdf_passing(scene, light, emission->p, emission->w) > 0.0f))
+            return false;
+        emission->pdf_p = light_aimed_pdf_disc(scene, light, emission->p, emission->w);
+        return emission->pdf_p > 0.0f;
     }
     if (aimed && aim_versine(aim, emission->p) > 0.0f && !aim_from_point(source, aim, u_direction, emission))
         return false;

@@ -17,10 +17,10 @@ SHARED_FUNCTION bool light_has_position(uint kind)
 #undef POSITION_OF
 }
 
-/* Whether a light of this kind is at infinity: distant, or an environment. */
+/* Whether light of this kind comes to all places from infinity: distant, or an environment without a portal. */
 SHARED_FUNCTION bool light_is_far(uint kind)
 {
-    return kind != LIGHT_AREA && !light_has_position(kind);
+    return kind != LIGHT_AREA && kind != LIGHT_PORTAL && !light_has_position(kind);
 }
 
 /* For light_NAME_sample of lights with a position: sets all but radiance. False: ref is that position. */

@@ -36,6 +36,15 @@ SHARED_FUNCTION float light_emit_pdf_disc(const SceneView *scene)
     return radius > 0.0f ? INV_PI / (radius * radius) : 0.0f;
 }
 
+/* Sets p and `infinite` for a ray from infinity that passes the point `passed` along w: it begins where it touches the
+ * plane of light_emit_from_disc. */
+SHARED_FUNCTION void light_emit_from_far(const SceneView *scene, Vec3 passed, LightEmission *emission)
+{
+    Vec3 from_center = vec3_sub(passed, scene->frame->scene.world_center);
+    emission->p = vec3_mad(passed, -(light_emit_disc_radius(scene) + vec3_dot(from_center, emission->w)), emission->w);
+    emission->infinite = 1u;
+}
+
 /* Sets p, pdf_p and `infinite` for light from infinity, given w. p is uniform on a disc perpendicular to w that touches
  * the bounding sphere on the side that w comes from. */
 SHARED_FUNCTION bool light_emit_from_disc(const SceneView *scene, Vec2 u, LightEmission *emission)

@@ -7,16 +7,50 @@
 
 /* ---- infinite ---------------------------------------------------------------------------------------------------- */
 
+/* light_emit of a light with a portal: along a direction in proportion to the light that passes it, through a uniform
+ * point of it. */
+SHARED_FUNCTION bool portal_light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
+                                       LightEmission *emission)
+{
+    Portal portal = light_portal(scene, light);
+    float pdf, stretch;
+    Distribution2D directions = scene->distributions2d[scene->lights[light].distribution];
+    Vec2 uv = distribution2d_sample(scene->lookup, directions, u_direction, &pdf);
+    Vec3 d = portal_direction(&portal, uv, &stretch);
+    Vec3 passed = vec3_mad(portal.corner, u_point.x * portal.width, portal.axes.t);
+    passed = vec3_mad(passed, u_point.y * portal.height, portal.axes.b);
+    emission->w = vec3_negate(d);
+    emission->radiance = environment_beyond(scene, light, d);
+    emission->pdf_w = pdf / stretch;
+    emission->pdf_p = portal_pdf_p(&portal, d);
+    light_emit_from_far(scene, passed, emission);
+    return emission->pdf_w > 0.0f && float_finite(emission->pdf_w) && emission->pdf_p > 0.0f &&
+           float_finite(emission->pdf_p) && scene->frame->scene.world_radius > 0.0f;
+}
+
 SHARED_FUNCTION bool light_emit_infinite(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                          LightEmission *emission)
 {
     LightSample sample;
-    if (!infinite_light_sample(scene, light, u_direction, &sample))
+    if (light_has_portal(scene, light))
+        return portal_light_emit(scene, light, u_point, u_direction, emission);
+    if (!infinite_light_sample(scene, light, vec3_splat(0.0f), u_direction, &sample))
         return false;
     emission->w = vec3_negate(sample.wi);
     emission->radiance = sample.radiance;
     emission->pdf_w = sample.pdf_w;
     return light_emit_from_disc(scene, u_point, emission);
+}
+
+/* Density, per area perpendicular to w, with which light_emit makes the ray of a light at infinity that passes p along w
+ * (unit), given w. */
+SHARED_FUNCTION float light_emit_pdf_passing(const SceneView *scene, uint light, Vec3 p, Vec3 w)
+{
+    if (!light_has_portal(scene, light))
+        return light_emit_pdf_disc(scene);
+    Portal portal = light_portal(scene, light);
+    Vec3 d = vec3_negate(w);
+    return portal_crossed(&portal, p, d) ? portal_pdf_p(&portal, d) : 0.0f;
 }
 
 /* ---- area -------------------------------------------------------------------------------------------------------- */
@@ -56,7 +90,7 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
 /* Draws a ray that leaves `light`. Area lights: the point by area_light_point, even on spheres, which light_sample
  * draws by solid angle; the direction with the cosine, on the side or sides that emit. Point lights: a uniform
  * direction; spots: roughly in proportion to their intensity. Light from infinity: the direction as in light_sample,
- * the point on a disc that covers the scene. False: no emission; *emission is then meaningless. */
+ * the point on a disc that covers the scene, or on the light's portal. False: no emission; *emission is then meaningless. */
 SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                 LightEmission *emission)
 {
@@ -77,7 +111,8 @@ SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point
 }
 
 /* pdf_p of light_emit. Area lights: at their point `hit` (ng, u, v are read), per area; other lights do not read `hit`.
- * Infinite and distant: per area perpendicular to the light's direction. Point and spot: 1. */
+ * Infinite and distant: per area perpendicular to the light's direction, unless the light has a portal
+ * (light_emit_pdf_passing). Point and spot: 1. */
 SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const Surface *hit)
 {
     uint kind = scene->lights[light].kind;

@@ -1,4 +1,4 @@
-/* Light at infinity from all directions: constant, or an image. */
+/* Light at infinity from all directions: constant, or an image; perhaps seen through a portal alone. */
 #ifndef TWINLIGHT_LIGHT_INFINITE_H
 #define TWINLIGHT_LIGHT_INFINITE_H
 
@@ -6,7 +6,29 @@
 #include "layout/distribution.h"
 #include "layout/path_types.h"
 #include "layout/scene_view.h"
+#include "light/portal.h"
 #include "math/warp.h"
+
+/* Whether the light has a portal. */
+SHARED_FUNCTION bool light_has_portal(const SceneView *scene, uint light)
+{
+    return SCENE_HAS(scene, FEATURE_PORTAL) && scene->lights[light].kind == LIGHT_PORTAL;
+}
+
+SHARED_FUNCTION Portal light_portal(const SceneView *scene, uint light)
+{
+    return scene->portals[scene->lights[light].portal];
+}
+
+/* Whether a light at infinity reaches p from direction d (unit, away from the scene), occlusion ignored: not past its
+ * portal. */
+SHARED_FUNCTION bool environment_reaches(const SceneView *scene, uint light, Vec3 p, Vec3 d)
+{
+    if (!light_has_portal(scene, light))
+        return true;
+    Portal portal = light_portal(scene, light);
+    return portal_lights(&portal, p) && portal_crossed(&portal, p, d);
+}
 
 /* Radiance of the light's image at uv (v = 0 is row 0), filtered as the image says and clamped to >= 0 in every
  * channel. Latitude-longitude images are not interpolated across the poles. */
@@ -43,52 +65,85 @@ SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, 
     return sphere_to_octahedral(w);
 }
 
-/* Radiance that arrives from direction d (unit, away from the scene) of one infinite light. */
-SHARED_FUNCTION Vec3 environment_light_radiance(const SceneView *scene, uint light, Vec3 d)
+/* Radiance of an infinite light from direction d (unit, away from the scene), where it is seen. */
+SHARED_FUNCTION Vec3 environment_beyond(const SceneView *scene, uint light, Vec3 d)
 {
-    if (scene->lights[light].kind != LIGHT_INFINITE_IMAGE)
+    uint kind = scene->lights[light].kind;
+    if (kind == LIGHT_INFINITE || (kind == LIGHT_PORTAL && scene->lights[light].image == NONE))
         return scene->lights[light].emission;
     float pdf_uniform;
     return environment_image(scene, light, environment_uv(scene, light, d, &pdf_uniform));
 }
 
+/* The same as it arrives at p. */
+SHARED_FUNCTION Vec3 environment_light_radiance(const SceneView *scene, uint light, Vec3 p, Vec3 d)
+{
+    return environment_reaches(scene, light, p, d) ? environment_beyond(scene, light, d) : vec3_splat(0.0f);
+}
+
 /* The sum of environment_light_radiance over all infinite lights. */
-SHARED_FUNCTION Vec3 environment_radiance(const SceneView *scene, Vec3 d)
+SHARED_FUNCTION Vec3 environment_radiance(const SceneView *scene, Vec3 p, Vec3 d)
 {
     Vec3 sum = vec3_splat(0.0f);
     if (!SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
         return sum;
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i)
-        sum = vec3_add(sum, environment_light_radiance(scene, scene->infinite_lights[i], d));
+        sum = vec3_add(sum, environment_light_radiance(scene, scene->infinite_lights[i], p, d));
     return sum;
 }
 
-/* Density per solid angle with which infinite_light_sample draws d, given the light. */
+/* Density per solid angle with which light subpaths come from d, given the light. Unless it has a portal,
+ * infinite_light_sample draws d with the same density. */
 SHARED_FUNCTION float environment_pdf_w(const SceneView *scene, uint light, Vec3 d)
 {
-    if (scene->lights[light].kind != LIGHT_INFINITE_IMAGE)
+    __global const Light *source = scene->lights + light;
+    if (source->kind == LIGHT_INFINITE)
         return INV_4PI;
-    float pdf_uniform;
-    Vec2 uv = environment_uv(scene, light, d, &pdf_uniform);
+    float pdf_uniform, stretch;
+    Vec2 uv;
+    if (light_has_portal(scene, light)) {
+        Portal portal = light_portal(scene, light);
+        if (!portal_uv(&portal, d, &uv, &stretch))
+            return 0.0f;
+        pdf_uniform = 1.0f / stretch;
+    } else {
+        uv = environment_uv(scene, light, d, &pdf_uniform);
+    }
     if (!float_finite(pdf_uniform))
         return 0.0f;
-    return distribution2d_pdf(scene->lookup, scene->distributions2d[scene->lights[light].distribution], uv) *
-           pdf_uniform;
+    return distribution2d_pdf(scene->lookup, scene->distributions2d[source->distribution], uv) * pdf_uniform;
 }
 
-SHARED_FUNCTION bool infinite_light_sample(const SceneView *scene, uint light, Vec2 u, LightSample *sample)
+/* Density per solid angle with which infinite_light_sample draws d at p, given the light. */
+SHARED_FUNCTION float environment_sample_pdf_w(const SceneView *scene, uint light, Vec3 p, Vec3 d)
+{
+    if (!light_has_portal(scene, light))
+        return environment_pdf_w(scene, light, d);
+    Portal portal = light_portal(scene, light);
+    float pdf = portal_pdf_w(scene, &portal, p, d);
+    return float_finite(pdf) ? pdf : 0.0f;
+}
+
+/* infinite_light_sample of a light with a portal: a direction in its window. */
+SHARED_FUNCTION void portal_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
+{
+    Portal portal = light_portal(scene, light);
+    PortalWindow window;
+    sample->pdf_w = 0.0f;
+    if (!portal_window(&portal, ref, &window))
+        return;
+    float pdf, stretch;
+    Vec2 uv = portal_sample(scene, &portal, &window, u, &pdf);
+    sample->wi = portal_direction(&portal, uv, &stretch);
+    sample->pdf_w = pdf / stretch;
+    sample->pdf_emit = environment_pdf_w(scene, light, sample->wi);
+    sample->radiance = environment_beyond(scene, light, sample->wi);
+}
+
+/* infinite_light_sample of an image that is seen from everywhere. */
+SHARED_FUNCTION void image_light_sample(const SceneView *scene, uint light, Vec2 u, LightSample *sample)
 {
     __global const Light *source = scene->lights + light;
-    sample->p = vec3_splat(0.0f);
-    sample->ng = vec3_splat(0.0f);
-    sample->delta = 0u;
-    sample->infinite = 1u;
-    if (source->kind != LIGHT_INFINITE_IMAGE) {
-        sample->wi = warp_sphere(u);
-        sample->pdf_w = INV_4PI;
-        sample->radiance = source->emission;
-        return !vec3_is_zero(sample->radiance);
-    }
     float pdf;
     Vec2 uv = distribution2d_sample(scene->lookup, scene->distributions2d[source->distribution], u, &pdf);
     bool equirectangular = (source->flags & LIGHT_EQUIRECTANGULAR) != 0u;
@@ -99,7 +154,29 @@ SHARED_FUNCTION bool infinite_light_sample(const SceneView *scene, uint light, V
     sample->wi = vec3_scale(d, 1.0f / length);
     /* |M wi| of environment_uv is 1 / length. */
     sample->pdf_w = pdf * (equirectangular ? equirectangular_pdf(w) : INV_4PI) * (length * length * length);
+    sample->pdf_emit = sample->pdf_w;
     sample->radiance = environment_image(scene, light, uv);
+}
+
+/* Draws a direction from which the light may reach ref. False: no light. */
+SHARED_FUNCTION bool infinite_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
+{
+    __global const Light *source = scene->lights + light;
+    sample->p = vec3_splat(0.0f);
+    sample->ng = vec3_splat(0.0f);
+    sample->delta = 0u;
+    sample->infinite = 1u;
+    if (source->kind == LIGHT_INFINITE) {
+        sample->wi = warp_sphere(u);
+        sample->pdf_w = INV_4PI;
+        sample->pdf_emit = INV_4PI;
+        sample->radiance = source->emission;
+        return !vec3_is_zero(sample->radiance);
+    }
+    if (light_has_portal(scene, light))
+        portal_light_sample(scene, light, ref, u, sample);
+    else
+        image_light_sample(scene, light, u, sample);
     return sample->pdf_w > 0.0f && float_finite(sample->pdf_w) && !vec3_is_zero(sample->radiance);
 }
 

@@ -66,7 +66,7 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
         return area_light_sample(scene, light, ref, u, sample);
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
-        return infinite_light_sample(scene, light, u, sample);
+        return infinite_light_sample(scene, light, ref, u, sample);
     if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
         return delta_light_sample(scene->lights + light, ref, sample);
     return false;
@@ -89,7 +89,7 @@ SHARED_FUNCTION float light_pdf_w(const SceneView *scene, uint light, Vec3 ref, 
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
         return area_light_pdf_w(scene, light, ref, wi, hit);
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
-        return environment_pdf_w(scene, light, wi);
+        return environment_sample_pdf_w(scene, light, ref, wi);
     return 0.0f;
 }
 

@@ -7,4 +7,5 @@ SHARED_FILES += \
 	shared/light/emission.h \
 	shared/light/emit.h \
 	shared/light/infinite.h \
-	shared/light/light.h
+	shared/light/light.h \
+	shared/light/portal.h

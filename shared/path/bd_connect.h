@@ -72,9 +72,11 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     ends->hittable = sample.delta == 0u;
     ends->connect = choice / select;
     if (sample.infinite != 0u) {
-        ends->own_y0 = select * sample.pdf_w;
+        ends->own_y0 = select * sample.pdf_emit;
         ends->camera_y1 = f.pdf_w;
-        ends->light_z1 = light_aimed_pdf_disc(scene, z->p, vec3_negate(sample.wi)) * at_z;
+        ends->light_z1 = light_aimed_pdf_disc(scene, light, z->p, vec3_negate(sample.wi)) * at_z;
+        if (light_has_portal(scene, light))
+            ends->connect *= sample.pdf_emit > 0.0f ? sample.pdf_w / sample.pdf_emit : 0.0f;
         return true;
     }
     float distance2 = vec3_length_squared(vec3_sub(sample.p, z->p));

@@ -130,12 +130,34 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
+/* Density with which the direction d (unit) to a light at infinity, given the light, is drawn at `from` (s = 1), over that
+ * of light subpaths that come from there. They differ for lights with a portal, of which `from` sees a window. */
+SHARED_FUNCTION float environment_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 d)
+{
+    if (!light_has_portal(scene, light))
+        return 1.0f;
+    float emitted = environment_pdf_w(scene, light, d);
+    return emitted > 0.0f ? environment_sample_pdf_w(scene, light, from, d) / emitted : 0.0f;
+}
+
+/* Whether the light of a light subpath reaches its first vertex p along the ray: if it has a portal, through that. */
+SHARED_FUNCTION bool emitter_reaches(const SceneView *scene, __global const uint *paths, uint item, const Ray *ray,
+                                     Vec3 p)
+{
+    uint light = state_load(paths, scene->frame->pass.stride, BD_EMITTER, item);
+    return !light_has_portal(scene, light) || environment_reaches(scene, light, p, vec3_negate(ray->d));
+}
+
 /* BD_CONNECT of y_0, stored at `base`, for y_1. */
 SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global const uint *paths,
                                             __global const uint *vertices, uint item, uint base, const Vertex *y)
 {
     uint stride = scene->frame->pass.stride, light = state_load(paths, stride, BD_EMITTER, item);
     float choice = light_choice_ratio(scene, light, y->p, y->ng);
+    if (light_has_portal(scene, light)) {
+        Vec3 travel = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
+        return choice * environment_connect_ratio(scene, light, y->p, vec3_negate(travel));
+    }
     if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return choice;

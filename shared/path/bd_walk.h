@@ -227,8 +227,11 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
         !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, item), u_mix,
                      vertex))
         return false;
+    bool first = side == SIDE_LIGHT && depth == 1u;
+    if (first && SCENE_HAS(scene, FEATURE_PORTAL) && !emitter_reaches(scene, paths, item, &walk_hit->ray, vertex->p))
+        return false;
     /* Before the vertex may overwrite y_0. */
-    if (side == SIDE_LIGHT && depth == 1u)
+    if (first)
         state_store_float(paths, stride, BD_CONNECT, item,
                           emitter_connect_ratio(scene, paths, vertices, item, walk_hit->before, vertex));
     vertex->back = walk_hit->back;
@@ -299,10 +302,11 @@ SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hi
 SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const Ray *ray, Vec3 ng, StrategyEnds *ends)
 {
     ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, ray->d);
-    ends->light_z2 = light_aimed_pdf_disc(scene, ray->o, vec3_negate(ray->d)) * float_abs(vec3_dot(ray->d, ng));
-    ends->connect = light_choice_ratio(scene, light, ray->o, ng);
+    ends->light_z2 = light_aimed_pdf_disc(scene, light, ray->o, vec3_negate(ray->d)) * float_abs(vec3_dot(ray->d, ng));
+    ends->connect =
+        light_choice_ratio(scene, light, ray->o, ng) * environment_connect_ratio(scene, light, ray->o, ray->d);
     ends->hittable = true;
-    return environment_light_radiance(scene, light, ray->d);
+    return environment_light_radiance(scene, light, ray->o, ray->d);
 }
 
 #endif

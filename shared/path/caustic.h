@@ -93,7 +93,7 @@ SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ra
     if (light != NONE)
         return caustic_delta_radiance(scene, light, ray, hit.primitive == NONE ? FLOAT_INFINITY : hit.t);
     if (hit.primitive == NONE)
-        return environment_radiance(scene, ray.d);
+        return environment_radiance(scene, ray.o, ray.d);
     __global const Shape *shape = scene->shapes + surface->shape;
     if (!SCENE_HAS(scene, FEATURE_AREA_LIGHT) || shape->first_light == NONE)
         return vec3_splat(0.0f);

@@ -185,7 +185,7 @@ START_TEST(test_densities)
             continue;
         Vec3 passed = vec3_mad(e.p, 410.0f, e.w); /* in the scene; the origin is outside */
         TEST_TRUE(vec3_length(vec3_sub(e.p, f.scene.frame.scene.world_center)) > 399.9f);
-        differs += fabs((double)light_aimed_pdf_disc(&f.view, passed, e.w) / (double)e.pdf_p - 1.0) > 1e-4;
+        differs += fabs((double)light_aimed_pdf_disc(&f.view, 0u, passed, e.w) / (double)e.pdf_p - 1.0) > 1e-4;
     }
     ck_assert_msg(differs <= SAMPLES / 200, "case %d: %d differ", _i, differs);
     fixture_destroy(&f);

@@ -9,6 +9,7 @@ int main(void)
     suite_add_tcase(suite, light_area_case());
     suite_add_tcase(suite, light_irradiance_case());
     suite_add_tcase(suite, light_environment_case());
+    suite_add_tcase(suite, light_portal_case());
     suite_add_tcase(suite, light_select_case());
     suite_add_tcase(suite, light_tree_case());
     suite_add_tcase(suite, camera_case());

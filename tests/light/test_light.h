@@ -7,6 +7,7 @@
 TCase *light_area_case(void);
 TCase *light_irradiance_case(void);
 TCase *light_environment_case(void);
+TCase *light_portal_case(void);
 TCase *light_select_case(void);
 TCase *light_tree_case(void);
 TCase *camera_case(void);

@@ -57,7 +57,7 @@ static void check_samples(const char *name, const LightFixture *f)
             continue;
         ck_assert(s.infinite == 1u && s.delta == 0u);
         double pdf = (double)light_pdf_w(&f->view, 0, vec3(0, 0, 0), s.wi, NULL) / (double)s.pdf_w;
-        double radiance = (double)environment_radiance(&f->view, s.wi).y / (double)s.radiance.y;
+        double radiance = (double)environment_radiance(&f->view, vec3_splat(0.0f), s.wi).y / (double)s.radiance.y;
         pdf_differs += fabs(pdf - 1.0) > 1e-4;
         radiance_differs += fabs(radiance - 1.0) > 1e-3;
     }
@@ -74,7 +74,7 @@ static double irradiance_by_quadrature(const LightFixture *f, Vec3 n)
         for (int x = 0; x < count; ++x) {
             Vec3 d = direction((y + 0.5) / count, (x + 0.5) / count);
             double cosine = (double)vec3_dot(d, n);
-            sum += cosine > 0.0 ? cosine * (double)environment_radiance(&f->view, d).x : 0.0;
+            sum += cosine > 0.0 ? cosine * (double)environment_radiance(&f->view, vec3_splat(0.0f), d).x : 0.0;
         }
     return sum * 4.0 * M_PI / ((double)count * count);
 }
@@ -140,7 +140,7 @@ START_TEST(test_hot_texel)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x) {
                 Vec3 d = direction((y + 0.5) / n, (x + 0.5) / n);
-                if (!(environment_radiance(&f.view, d).x > 1.0f))
+                if (!(environment_radiance(&f.view, vec3_splat(0.0f), d).x > 1.0f))
                     continue;
                 ++lit;
                 ck_assert_msg((environment_pdf_w(&f.view, 0, d) > 0.0f), "light without density");
@@ -184,7 +184,7 @@ START_TEST(test_orientation)
         ARRAY_AT(&f.scene.images, TextureImage, 0).filter = FILTER_POINT;
         fixture_finish(&f);
         Vec3 d = vec3_normalize(vec3(cases[i].d[0], cases[i].d[1], cases[i].d[2]));
-        ck_assert_msg((environment_radiance(&f.view, d).x == 1.0f), "case %zu", i);
+        ck_assert_msg((environment_radiance(&f.view, vec3_splat(0.0f), d).x == 1.0f), "case %zu", i);
         fixture_destroy(&f);
     }
 }
@@ -202,8 +202,10 @@ START_TEST(test_poles)
     fixture_add_environment(&f, texels, 8, 4, LIGHT_EQUIRECTANGULAR, IDENTITY);
     fixture_finish(&f);
     Vec3 down = vec3_normalize(vec3(0.1f, 0.0f, -1.0f)), up = vec3_negate(down);
-    ck_assert((environment_radiance(&f.view, down).x == 0.0f) && (environment_pdf_w(&f.view, 0, down) == 0.0f));
-    ck_assert((environment_radiance(&f.view, up).x == 1.0f) && (environment_pdf_w(&f.view, 0, up) > 0.0f));
+    ck_assert((environment_radiance(&f.view, vec3_splat(0.0f), down).x == 0.0f) &&
+              (environment_pdf_w(&f.view, 0, down) == 0.0f));
+    ck_assert((environment_radiance(&f.view, vec3_splat(0.0f), up).x == 1.0f) &&
+              (environment_pdf_w(&f.view, 0, up) > 0.0f));
     fixture_destroy(&f);
 }
 END_TEST
@@ -217,7 +219,7 @@ START_TEST(test_sum)
     fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0, 0, 0}});
     fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {4, 5, 6}});
     fixture_finish(&f);
-    Vec3 sum = environment_radiance(&f.view, vec3(0, 0, 1));
+    Vec3 sum = environment_radiance(&f.view, vec3_splat(0.0f), vec3(0, 0, 1));
     ck_assert(sum.x == 5.0f && sum.y == 7.0f && sum.z == 9.0f);
     ck_assert_uint_eq(f.scene.infinite_lights.count, 2);
     fixture_destroy(&f);

@@ -105,7 +105,7 @@ static float emitted(const Walks *walks, const RealPath *path)
     float distance2;
     Vec3 w = path_direction(path, path->k - 1, path->k, &distance2), ng = path->vertices[path->k - 1].ng;
     if (path->infinite)
-        return light_aimed_pdf_disc(&walks->view, path->vertices[path->k - 1].p, vec3_negate(w)) *
+        return light_aimed_pdf_disc(&walks->view, path->light, path->vertices[path->k - 1].p, vec3_negate(w)) *
                float_abs(vec3_dot(w, ng));
     return light_aimed_pdf_w(&walks->view, path->light, path->vertices[path->k].p, path->vertices[path->k].ng,
                              vec3_negate(w)) *
@@ -144,6 +144,9 @@ static void path_densities(const Walks *walks, RealPath *path)
         if (!d->delta[i + 1])
             d->light[i] = scattered(walks, path, i + 2, i + 1, i, TRANSPORT_IMPORTANCE);
     d->connect = light_choice_ratio(&walks->view, path->light, path->vertices[k - 1].p, path->vertices[k - 1].ng);
+    if (path->infinite && !path->delta_light)
+        d->connect *=
+            environment_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, vec3_negate(path->ways[k]));
     if (!path->infinite && !path->delta_light) {
         Vec3 w = path_direction(path, k - 1, k, &distance2);
         d->connect *= light_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, w, distance2, &path->end);

@@ -189,6 +189,63 @@ START_TEST(environment_maps)
 }
 END_TEST
 
+/* "mapping" says that a map is one of latitude and longitude, whatever its size, and measures it as one: of radiance 1/2,
+ * it lights a plane as a map in the other mapping does. */
+START_TEST(latitude_longitude_maps)
+{
+    Scene scene;
+    map_write(64, 32);
+    Light light = light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"string mapping\" \"latlong\" "
+                           "\"float illuminance\" 5",
+                           &scene);
+    ck_assert_uint_eq(light.kind, LIGHT_INFINITE_IMAGE);
+    ck_assert_uint_eq(light.flags, LIGHT_EQUIRECTANGULAR);
+    ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.image).wrap, WRAP_REPEAT);
+    ASSERT_NEAR(light.emission.x * 0.5f, 2.0f * 5.0f / PI, 0.01f);
+    scene_destroy(&scene);
+    map_write(8, 8);
+    light = light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"string mapping\" \"latlong\"", &scene);
+    ck_assert_uint_eq(light.flags, LIGHT_EQUIRECTANGULAR);
+    scene_destroy(&scene);
+    light =
+        light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"string mapping\" \"equalarea\"", &scene);
+    ck_assert_uint_eq(light.flags, 0);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* The points of a portal are in world space, whatever the current transform; the directions of the map are not. A world
+ * far from the origin is moved there, and its portals with it. */
+START_TEST(portals)
+{
+    static const char PORTAL[] = "\"point3 portal\" [ 2 -1 0.5  2 -1 2.5  2 2 2.5  2 2 0.5 ]";
+    char text[400];
+    Scene scene;
+    map_write(8, 8);
+    snprintf(text, sizeof text,
+             "Rotate 90 0 0 1 Translate 5 6 7 LightSource \"infinite\" \"string filename\" \"map.pfm\" %s", PORTAL);
+    Light light = light_of(text, &scene);
+    ck_assert_uint_eq(light.kind, LIGHT_PORTAL);
+    ck_assert_uint_lt(light.image, 1);
+    assert_vec3(affine_vector(light.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
+    Portal portal = ELEMENT(&scene, portals, Portal, light.portal);
+    assert_vec3(portal.corner, 2, -1, 0.5f, 0.0f);
+    assert_vec3(portal.axes.n, 1, 0, 0, 1e-6f);
+    scene_destroy(&scene);
+    snprintf(text, sizeof text, "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] %s", PORTAL);
+    light = light_of(text, &scene);
+    ck_assert_uint_eq(light.kind, LIGHT_PORTAL);
+    ck_assert_uint_eq(light.image, NONE);
+    assert_vec3(light.emission, 1, 2, 3, 0.0f);
+    scene_destroy(&scene);
+    light = light_of("LightSource \"infinite\" \"point3 portal\" [ 9002 0 0  9002 0 1  9002 1 1  9002 1 0 ] "
+                     "Translate 9000 0 0 Shape \"sphere\"",
+                     &scene);
+    assert_vec3(vec3_add(ELEMENT(&scene, portals, Portal, light.portal).corner, scene.origin), 9002, 0, 0, 0.0f);
+    scene_destroy(&scene);
+}
+END_TEST
+
 static void emission_not_negative(const char *text)
 {
     Scene scene;
@@ -241,6 +298,8 @@ TCase *import_lights_case(void)
     tcase_add_test(tcase, area_lights);
     tcase_add_test(tcase, light_attributes);
     tcase_add_test(tcase, environment_maps);
+    tcase_add_test(tcase, latitude_longitude_maps);
+    tcase_add_test(tcase, portals);
     tcase_add_test(tcase, no_light_is_negative);
     return tcase;
 }

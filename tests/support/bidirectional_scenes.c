@@ -66,6 +66,13 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      BD_ROOM "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\nLightSource \"infinite\" \"string filename\" "
              "\"$FILES/sky.pfm\"\n" BD_BALL,
      SUPPORT_ALL, 4, 3},
+    {"portals",
+     BD_BEGIN
+     "LightSource \"infinite\" \"string filename\" \"$FILES/sky.pfm\" \"point3 portal\" "
+     "[ -1.5 2 1  -1.5 2 -1  0.5 2 -1  0.5 2 1 ]\n"
+     "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] \"point3 portal\" [ 2 2 0  2 -0.5 0  2 -0.5 2  2 2 2 ]\n" BD_GREY
+         BD_FLOOR BD_BALL,
+     SUPPORT_ALL, 4, 3},
     {"sun in the sky",
      BD_BEGIN "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/sun.pfm\" "
               "AttributeEnd\n" BD_GREY BD_FLOOR BD_BALL,

@@ -50,6 +50,7 @@ static inline void fixture_finish(LightFixture *f)
                           .light_alias = s->light_alias.data,
                           .light_nodes = s->light_nodes.data,
                           .infinite_lights = s->infinite_lights.data,
+                          .portals = s->portals.data,
                           .aims = s->aims.data,
                           .distributions2d = s->distributions2d.data,
                           .lookup = s->lookup.data,
