@@ -95,7 +95,8 @@ START_TEST(test_density)
     for (int i = 0; i < POINT_COUNT; ++i) {
         double density, irradiance, error;
         quadrature(&f, POINTS[i], n, &density, &irradiance);
-        ck_assert_msg(fabs(density - 1.0) < (_i == HOT ? 0.015 : 2e-3), "sky %d, point %d: the density integrates to %g", _i, i, density);
+        ck_assert_msg(fabs(density - 1.0) < (_i == HOT ? 0.015 : 2e-3),
+                      "sky %d, point %d: the density integrates to %g", _i, i, density);
         double sampled = fixture_irradiance(&f, 0, POINTS[i], n, 7, 300, &error);
         ck_assert_msg(fabs(sampled - irradiance) <= 3.0 * error + 2e-3 * irradiance,
                       "sky %d, point %d: irradiance %g, not %g +- %g", _i, i, sampled, irradiance, error);
