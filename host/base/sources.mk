@@ -7,6 +7,7 @@ libtwinlight_host_la_SOURCES += \
 	host/base/error.c host/base/error.h \
 	host/base/exit_status.h \
 	host/base/file_read.c host/base/file_read.h \
+	host/base/gzip.c host/base/gzip.h \
 	host/base/frame_name.c host/base/frame_name.h \
 	host/base/hash.h \
 	host/base/input_files.c host/base/input_files.h \

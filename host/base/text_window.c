@@ -10,6 +10,12 @@ void text_window_from_memory(TextWindow *window, const char *text, size_t length
     *window = (TextWindow){.position = text, .start = text, .end = text + length, .limit = length, .descriptor = -1};
 }
 
+void text_window_from_owned(TextWindow *window, char *text, size_t length)
+{
+    text_window_from_memory(window, text, length);
+    window->buffer = text;
+}
+
 bool text_window_from_file(TextWindow *window, int descriptor, size_t limit)
 {
     *window = (TextWindow){.limit = limit, .descriptor = descriptor, .buffer = malloc(TEXT_WINDOW_BYTES)};

@@ -15,13 +15,16 @@ typedef struct TextWindow {
     const char *start; /* start of the text in memory */
     size_t before; /* bytes of the text before `start` */
     size_t limit; /* largest allowed length of the text, bytes */
-    char *buffer; /* owned; NULL for text in memory */
+    char *buffer; /* owned; NULL for text in memory that is not */
     int descriptor; /* owned; -1 for text in memory */
     int failure; /* errno of the error that ended reading; 0: none */
 } TextWindow;
 
 /* `text` is borrowed. */
 void text_window_from_memory(TextWindow *window, const char *text, size_t length);
+
+/* Takes ownership of `text`, which text_window_close frees. */
+void text_window_from_owned(TextWindow *window, char *text, size_t length);
 
 /* Takes ownership of the descriptor: text_window_close closes it even if this function fails. Fails when out of memory
  * or on a read error; text longer than `limit` bytes fails with EFBIG. */

@@ -65,6 +65,21 @@ typedef struct ImportTexture {
     uint program; /* index in the scene once used, else NONE */
 } ImportTexture;
 
+/* A material that is used before it is defined, and one whose definition names what is not defined yet (pbrt/late.h). */
+typedef struct LateUse {
+    const char *name;
+    SourcePlace place; /* of its first use */
+    uint material; /* index in the scene */
+    bool defined;
+} LateUse;
+
+typedef struct LateMaterial {
+    const char *kind, *owner;
+    SourcePlace place, kind_place;
+    const ParamSet *params, *attributes;
+    uint material; /* index in the scene */
+} LateMaterial;
+
 /* Radiance of an area light, or the power that determines it. */
 typedef struct AreaEmission {
     float radiance[3]; /* at unit power if by_power */
@@ -107,6 +122,7 @@ typedef struct ImportErrors {
     int count;
     bool definition_failed; /* a later error may be a consequence */
     bool missing; /* the current error is about something missing */
+    bool other_version; /* the scene is pbrt-v3's: reading ends */
     bool world_order; /* a directive was on the wrong side of WorldBegin; reported once */
 } ImportErrors;
 
@@ -144,6 +160,9 @@ typedef struct PbrtImport {
 
     /* named things */
     NameTable materials; /* index in the scene, or MATERIAL_INTERFACE */
+    NameTable late_names; /* index into late_uses */
+    Array late_uses; /* LateUse */
+    Array late_materials; /* LateMaterial */
     NameTable float_textures, spectrum_textures; /* index into textures */
     Array textures; /* ImportTexture */
     TextureCache images;

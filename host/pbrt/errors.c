@@ -20,15 +20,22 @@ bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, con
     return error_fix(im->error, "replace it by --lenient (%s)", substitute);
 }
 
+bool import_other_version(PbrtImport *im, SourcePlace place, const char *kind, const char *name)
+{
+    im->errors.other_version = true;
+    error_at(im->error, place, "this is a scene for pbrt-v3, as the %s \"%s\" shows", kind, name);
+    return error_fix(im->error, "convert it by pbrt --upgrade, of pbrt-v4");
+}
+
 bool import_unknown(PbrtImport *im, SourcePlace place, const char *kind, const char *name, const char *const *known,
                     size_t count)
 {
     const char *nearest = name_nearest(name, known, count);
     char list[400] = "";
     size_t used = 0;
-    error_at(im->error, place, "unknown %s \"%s\"", kind, name);
     if (scene_format_is_v3(kind, name))
-        return error_fix(im->error, "this is pbrt-v3's; convert the scene with pbrt --upgrade of pbrt-v4");
+        return import_other_version(im, place, kind, name);
+    error_at(im->error, place, "unknown %s \"%s\"", kind, name);
     if (nearest)
         return error_fix(im->error, "did you mean \"%s\"?", nearest);
     for (size_t i = 0; i < count && used + 32 < sizeof list; ++i)
@@ -55,7 +62,10 @@ bool errors_note(PbrtImport *im, bool defines)
     if (errors->count > 0)
         log_error(&errors->latest);
     errors->latest = *im->error;
-    if (++errors->count < IMPORT_ERRORS_MAX)
+    ++errors->count;
+    if (errors->other_version)
+        return false;
+    if (errors->count < IMPORT_ERRORS_MAX)
         return true;
     size_t used = strlen(errors->latest.fix);
     snprintf(errors->latest.fix + used, sizeof errors->latest.fix - used, "; there may be more errors than these %d",

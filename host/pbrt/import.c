@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "pbrt/directives.h"
 #include "pbrt/errors.h"
+#include "pbrt/late.h"
 #include "pbrt/parser.h"
 #include "pbrt/state.h"
 #include "scene/center.h"
@@ -31,6 +32,9 @@ static void import_init(PbrtImport *im, const ImportOptions *options, Scene *sce
     array_init(&im->object_definitions, sizeof(ImportObject));
     im->open_object = -1;
     name_table_init(&im->materials);
+    name_table_init(&im->late_names);
+    array_init(&im->late_uses, sizeof(LateUse));
+    array_init(&im->late_materials, sizeof(LateMaterial));
     name_table_init(&im->float_textures);
     name_table_init(&im->spectrum_textures);
     array_init(&im->textures, sizeof(ImportTexture));
@@ -54,6 +58,9 @@ static void import_destroy(PbrtImport *im)
     name_table_destroy(&im->objects);
     array_destroy(&im->object_definitions);
     name_table_destroy(&im->materials);
+    name_table_destroy(&im->late_names);
+    array_destroy(&im->late_uses);
+    array_destroy(&im->late_materials);
     name_table_destroy(&im->float_textures);
     name_table_destroy(&im->spectrum_textures);
     array_destroy(&im->textures);
@@ -98,7 +105,7 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.offset = scene->origin = *offset;
-    bool good = source_open(&im, source) && directives_read(&im);
+    bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im);
     good = errors_end(&im) && good;
     camera_move(&scene->camera_settings, im.offset);
     scene->movable = true;

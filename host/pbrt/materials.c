@@ -1,6 +1,7 @@
 /* Material, MakeNamedMaterial, and the current material of a shape. */
 #include "base/log.h"
 #include "pbrt/errors.h"
+#include "pbrt/late.h"
 #include "pbrt/readers.h"
 #include "pbrt/values.h"
 
@@ -195,12 +196,12 @@ static uint mix_part(MaterialReader *r, const Param *param, size_t i)
 {
     const char *name = param->strings[i];
     uint material = name_table_find(&r->im->materials, name);
-    if (material == NONE) {
+    if (material == NONE) { /* at the end of the scene: all that are defined are known */
         char known[400];
         name_table_list(&r->im->materials, known, sizeof known);
         errors_missing(r->im);
         param_error(r->list, "materials", "unknown material \"%s\"", name);
-        error_fix(r->list->error, "define it before this line; defined so far: %s", known);
+        error_fix(r->list->error, "defined: %s", known);
     } else if (material == MATERIAL_INTERFACE) {
         param_error(r->list, "materials", "the material \"%s\" is an \"interface\" and cannot be mixed", name);
     }
@@ -284,17 +285,29 @@ static bool material_read(MaterialReader *r, const char *kind, SourcePlace place
     return material_unknown(im, place, kind);
 }
 
-/* Adds the material described by `list` to the scene. */
-static bool material_add(PbrtImport *im, ParamList *list, const char *kind, SourcePlace place, uint *index)
+bool value_material_read(PbrtImport *im, ParamList *list, const char *kind, SourcePlace place, uint index)
 {
     MaterialReader reader = {.im = im, .list = list};
+    if (!material_read(&reader, kind, place))
+        return false;
+    ARRAY_AT(&im->scene->materials, Material, index) = reader.material;
+    return true;
+}
+
+/* Adds the material described by `list` to the scene, at *index if that is not NONE. */
+static bool material_add(PbrtImport *im, ParamList *list, const char *kind, SourcePlace place, uint *index)
+{
+    const Material blank = material_blank(MATERIAL_DIFFUSE);
     if (strcmp(kind, "interface") == 0 || strcmp(kind, "none") == 0 || !*kind) {
         if (kind[0] != 'i')
             log_message_at(LOG_WARNING, place, "the material \"%s\" is deprecated; use \"interface\"", kind);
         *index = MATERIAL_INTERFACE;
         return true;
     }
-    return material_read(&reader, kind, place) && scene_add_material(im->scene, &reader.material, index, im->error);
+    if (*index == NONE && !scene_add_material(im->scene, &blank, index, im->error))
+        return false;
+    return late_material_waits(im, list, kind) ? late_material_defer(im, list, kind, place, *index)
+                                               : value_material_read(im, list, kind, place, *index);
 }
 
 bool import_material(PbrtImport *im, const char *kind)
@@ -303,7 +316,7 @@ bool import_material(PbrtImport *im, const char *kind)
     char owner[96];
     snprintf(owner, sizeof owner, "the material %s", kind);
     import_list(im, &list, owner, ATTRIBUTE_MATERIAL);
-    uint index;
+    uint index = NONE;
     bool good = material_add(im, &list, kind, im->place, &index);
     if (good) {
         im->state.material = index;
@@ -315,7 +328,6 @@ bool import_material(PbrtImport *im, const char *kind)
 
 static bool named_read(PbrtImport *im, ParamList *list, const char *name, SourcePlace name_place)
 {
-    uint index;
     const char *kind = param_string(list, "type", NULL);
     if (name_table_find(&im->materials, name) != NONE) {
         error_at(im->error, name_place, "the material \"%s\" is defined twice", name);
@@ -325,8 +337,14 @@ static bool named_read(PbrtImport *im, ParamList *list, const char *name, Source
         param_error(list, "type", "%s lacks \"string type\"", list->owner);
         return error_fix(im->error, "add \"string type\" \"diffuse\" or another kind of material");
     }
+    const uint used = late_material_define(im, name);
+    uint index = used;
     if (!material_add(im, list, kind, param_place(list, "type"), &index))
         return false;
+    if (used != NONE && index == MATERIAL_INTERFACE) {
+        error_at(im->error, name_place, "the material \"%s\", an \"interface\", is used before it is defined", name);
+        return error_fix(im->error, "move this line up, before the first shape that uses the material");
+    }
     const char *kept = arena_text(&im->arena, name, strlen(name), im->error);
     return kept && name_table_add(&im->materials, kept, index, im->error);
 }
@@ -360,13 +378,5 @@ bool value_material(PbrtImport *im, uint *material)
     if (!state->material_name)
         return *material != NONE || default_material(im, material);
     *material = name_table_find(&im->materials, state->material_name);
-    if (*material != NONE)
-        return true;
-    const char *nearest = name_table_nearest(&im->materials, state->material_name);
-    char known[400];
-    name_table_list(&im->materials, known, sizeof known);
-    errors_missing(im);
-    error_at(im->error, state->material_place, "unknown material \"%s\"", state->material_name);
-    return error_fix(im->error, "%s%s%sdefined so far: %s", nearest ? "did you mean \"" : "", nearest ? nearest : "",
-                     nearest ? "\"? " : "", known);
+    return *material != NONE || late_material_use(im, state->material_name, state->material_place, material);
 }

@@ -1,8 +1,10 @@
 #include "pbrt/parser.h"
 
 #include "base/file_read.h"
+#include "base/gzip.h"
 #include "scene/format.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -12,6 +14,8 @@ static bool format_check(TextWindow *window, const char *name, Error *error)
     const char *fix, *other;
     text_window_reaches(window, 64);
     other = scene_format_other(window->position, (size_t)(window->end - window->position), &fix);
+    if (!other)
+        other = scene_format_named(name, &fix);
     if (!other)
         return true;
     error_at(error, (SourcePlace){.file = name}, "this is not a pbrt-v4 scene, but %s", other);
@@ -53,6 +57,47 @@ static bool include_counted(PbrtImport *im, SourcePlace place)
     return true;
 }
 
+/* Decompresses the file to the window, which is the whole file now. */
+static bool gzip_open(const FileOpened *opened, const char *path, SourcePlace place, TextWindow *window, Error *error)
+{
+    FileData packed;
+    Array text;
+    Error reason = {{0}, {0}};
+    if (!file_read_stream(opened->descriptor, path, IMPORT_FILE_BYTES_MAX, &packed, error))
+        return false;
+    array_init(&text, 1);
+    bool good = gzip_inflate(packed.data, packed.size, IMPORT_FILE_BYTES_MAX, &text, &reason);
+    free(packed.data);
+    if (good) {
+        text_window_close(window);
+        text_window_from_owned(window, text.data, text.count);
+        return true;
+    }
+    array_destroy(&text);
+    if (error_is_memory(&reason)) {
+        *error = reason;
+        return false;
+    }
+    error_at(error, place, "cannot read %s: %s", path, error_text(&reason));
+    return error_fix(error, "%s", reason.fix);
+}
+
+/* Opens the window on a file, decompressed if it is compressed by gzip. */
+static bool window_open(const FileOpened *opened, const char *path, SourcePlace place, TextWindow *window, Error *error)
+{
+    if (!text_window_from_file(window, opened->descriptor, IMPORT_FILE_BYTES_MAX)) {
+        file_read_error(path, window->failure, place, error);
+        text_window_close(window);
+        return false;
+    }
+    if (!gzip_is(window->position, (size_t)(window->end - window->position)))
+        return true;
+    if (lseek(opened->descriptor, 0, SEEK_SET) == 0 && gzip_open(opened, path, place, window, error))
+        return true;
+    text_window_close(window);
+    return false;
+}
+
 bool parser_open_file(PbrtImport *im, const char *name, SourcePlace place, bool is_import)
 {
     const char *path = place.file ? import_path(im, name) : name;
@@ -68,11 +113,8 @@ bool parser_open_file(PbrtImport *im, const char *name, SourcePlace place, bool 
         error_at(im->error, place, "%s includes itself", path);
         return error_fix(im->error, "delete this line");
     }
-    if (!text_window_from_file(&window, opened.descriptor, IMPORT_FILE_BYTES_MAX)) {
-        file_read_error(path, window.failure, place, im->error);
-        text_window_close(&window);
+    if (!window_open(&opened, path, place, &window, im->error))
         return false;
-    }
     if (!parser_open_text(im, &window, shown))
         return false;
     SourceFile *file = &im->files[im->file_count - 1];

@@ -2,13 +2,13 @@
 
 #include "base/array.h"
 #include "base/file_read.h"
+#include "base/gzip.h"
 #include "base/text_number.h"
 #include "pbrt/ply_header.h"
 #include "pbrt/polygon.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 /* State of reading the body. */
 typedef struct Cursor {
@@ -383,40 +383,6 @@ void ply_destroy(PlyMesh *mesh)
  * vertex per two triangles. Deflate expands up to 1032-fold, so without a limit a small file could take all memory. */
 #define PLY_BYTES_MAX ((size_t)12 << 30)
 
-/* Decompresses all members of a gzip file. */
-static bool gzip_inflate(const PlySource *source, const FileData *file, Array *out)
-{
-    z_stream stream = {.next_in = (Bytef *)file->data};
-    size_t left = file->size;
-    if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK)
-        return error_memory(source->error, 65536, "zlib");
-    int status = Z_OK;
-    while (status == Z_OK || (status == Z_STREAM_END && stream.avail_in + left > 0)) {
-        if (status == Z_STREAM_END && inflateReset(&stream) != Z_OK)
-            break;
-        if (stream.avail_in == 0) {
-            stream.avail_in = (uInt)(left < (1u << 30) ? left : 1u << 30);
-            left -= stream.avail_in;
-        }
-        size_t used = out->count, room = file->size < (1u << 20) ? 1u << 16 : 1u << 24;
-        if (used > PLY_BYTES_MAX) {
-            inflateEnd(&stream);
-            return ply_error(source, "the gzip'd data are more than 12 GiB");
-        }
-        char *target = array_grow(out, room, source->error);
-        if (!target) {
-            inflateEnd(&stream);
-            return false;
-        }
-        stream.next_out = (Bytef *)target;
-        stream.avail_out = (uInt)room;
-        status = inflate(&stream, Z_NO_FLUSH);
-        out->count = used + room - stream.avail_out;
-    }
-    inflateEnd(&stream);
-    return status == Z_STREAM_END || ply_error(source, "the gzip'd data are damaged or incomplete");
-}
-
 bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error)
 {
     PlySource source = {path, place, error};
@@ -424,10 +390,15 @@ bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error)
     *mesh = (PlyMesh){0};
     if (!file_read(path, PLY_BYTES_MAX, place, &file, error))
         return false;
-    bool gzip = file.size >= 2 && (unsigned char)file.data[0] == 0x1f && (unsigned char)file.data[1] == 0x8b;
+    bool gzip = gzip_is(file.data, file.size);
     Array inflated;
+    Error reason = {{0}, {0}};
     array_init(&inflated, 1);
-    bool good = !gzip || gzip_inflate(&source, &file, &inflated);
+    bool good = !gzip || gzip_inflate(file.data, file.size, PLY_BYTES_MAX, &inflated, &reason);
+    if (!good && error_is_memory(&reason))
+        *error = reason;
+    else if (!good)
+        ply_error(&source, "%s", error_text(&reason));
     if (good)
         good = gzip ? ply_read_memory(path, place, inflated.data, inflated.count, mesh, error)
                     : ply_read_memory(path, place, file.data, file.size, mesh, error);

@@ -5,6 +5,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/film_camera.c \
 	host/pbrt/import.c host/pbrt/import.h \
 	host/pbrt/import_options.h \
+	host/pbrt/late.c host/pbrt/late.h \
 	host/pbrt/lexer.c host/pbrt/lexer.h \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \

@@ -32,6 +32,9 @@ bool value_image(PbrtImport *im, SourcePlace place, const char *path, const Text
 /* The current material of a shape: an index or MATERIAL_INTERFACE. */
 bool value_material(PbrtImport *im, uint *material);
 
+/* Reads the material that `list` describes into the scene, at an index that it has. place: of `kind`. */
+bool value_material_read(PbrtImport *im, ParamList *list, const char *kind, SourcePlace place, uint index);
+
 /* Emission of the current area light; *present is false if there is none. */
 bool value_area_emission(PbrtImport *im, AreaEmission *emission, bool *present);
 

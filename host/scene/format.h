@@ -9,7 +9,10 @@
  * be a scene. */
 const char *scene_format_other(const char *head, size_t size, const char **fix);
 
-/* Whether this material, film or shape of pbrt-v3 was renamed or removed in pbrt-v4. */
+/* The same by the end of the file's name. */
+const char *scene_format_named(const char *name, const char **fix);
+
+/* Whether this material, film, shape or type of texture of pbrt-v3 was renamed or removed in pbrt-v4. */
 bool scene_format_is_v3(const char *kind, const char *name);
 
 #endif

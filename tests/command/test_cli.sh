@@ -143,13 +143,33 @@ not_a_scene '\n{ "asset": { "version": "2.0" } }' 'a JSON file'
 not_a_scene 'glTF\0002' 'a binary glTF file'
 not_a_scene '<?xml version="1.0"?>' 'an XML file'
 not_a_scene 'ply\nformat ascii 1.0' 'a PLY mesh'
-not_a_scene '\0037\0213\0010' 'compressed by gzip'
+printf '\037\213\010' | "$program" info - >out 2>err
+grep -qF 'but compressed by gzip' err
+result 'compressed data on standard input' $?
+not_a_scene 'Kaydara FBX Binary  ' 'an FBX file'
 printf 'Film "image"\nWorldBegin\nMaterial "matte"\n' >v3.pbrt
-expect 1 "convert the scene with pbrt --upgrade" info v3.pbrt
+expect 1 "this is a scene for pbrt-v3, as the film \"image\" shows" info v3.pbrt
+[ "$(grep -c 'error: ' err)" -eq 1 ]
+result 'a scene for pbrt-v3 is more than one error' $?
+for line in 'MakeNamedMaterial "a" "string type" "plastic"' 'Texture "t" "color" "constant"' 'Material "uber"'; do
+    printf 'WorldBegin\n%s\nShape "sphere" "float radius" -1\n' "$line" >v3.pbrt
+    expect 1 'convert it by pbrt --upgrade' info v3.pbrt
+    [ "$(grep -c 'error: ' err)" -eq 1 ]
+    result "not one error: $line" $?
+done
+
+# Formats without a mark at their beginning are known by their names.
+named_other() {
+    printf '# by some program\nv 1 2 3\n' >"$1"
+    expect 1 "but $2" info "$1"
+}
+named_other mesh.obj 'a Wavefront OBJ mesh'
+named_other scene.lxs 'a LuxRender scene'
+named_other scene.usdc 'a USD file'
 
 # Every error is reported once, in order, but not what follows from another, such as the material that line 5 fails to
 # make.
-printf '%s\n' 'Film "rgb" "integer xresolution" [ -3 ]' 'Camera "perspectiv"' 'WorldBegin' 'Material "matte"' \
+printf '%s\n' 'Film "rgb" "integer xresolution" [ -3 ]' 'Camera "perspectiv"' 'WorldBegin' 'Material "matted"' \
     'MakeNamedMaterial "a" "string type" "diffus"' 'NamedMaterial "a"' 'Shape "sphere" "float radius" [ x ]' \
     'Shape "sphere"' 'AttributeBegin' 'LightSource "pointy"' 'WorldBegin' >wrong.pbrt
 expect 1 '' info wrong.pbrt
@@ -158,6 +178,15 @@ grep -o '^wrong.pbrt:[0-9]*' err | cut -d: -f2 | tr '\n' ' ' >lines
 result "errors of lines $(cat lines), not of 1 2 4 5 7 10 11 9" $?
 [ "$(grep -c '  fix: ' err)" -eq 8 ]
 result 'not every error says what to do' $?
+# So are the errors of what a scene includes, and of its meshes.
+printf '%s\n' 'WorldBegin' 'Shape "sphere" "float radius" -1' 'Include "part.inc"' \
+    'Shape "plymesh" "string filename" "bad.ply"' 'LightSource "pointy"' >wrong.pbrt
+printf '%s\n' 'Shape "disk" "float radius" -1' 'Shape "sphere" "float radius" -2' >part.inc
+printf 'ply\nformat ascii 1.0\nelement vertex 3\n' >bad.ply
+expect 1 '' info wrong.pbrt
+grep -o '^[a-z.]*:[0-9]*' err | tr '\n' ' ' >lines
+[ "$(cat lines)" = 'wrong.pbrt:2 part.inc:1 part.inc:2 wrong.pbrt:4 wrong.pbrt:5 ' ]
+result "errors at $(cat lines)" $?
 for directive in Shape Shape Shape; do
     printf "WorldBegin\n%s\n" "$directive"
 done | "$program" info - >out 2>err

@@ -1,8 +1,11 @@
 /* Include and Import, limits against hostile files, public scenes, and the folders of bad and of fuzzed files. */
 #include "pbrt/test_import.h"
+#include "base/file_read.h"
+#include "base/gzip.h"
 #include "support/test_files.h"
 
 #include <string.h>
+#include <zlib.h>
 
 static void file_write(const char *name, const char *text)
 {
@@ -91,6 +94,64 @@ START_TEST(devices_are_refused)
 }
 END_TEST
 
+static void gzip_write(const char *name, const char *text)
+{
+    gzFile file = gzopen(test_path(name), "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_int_eq(gzwrite(file, text, (unsigned)strlen(text)), (int)strlen(text));
+    ck_assert_int_eq(gzclose(file), Z_OK);
+}
+
+/* Scenes and what they include may be compressed; places in messages are those of the text. */
+START_TEST(compressed_files)
+{
+    Error error;
+    Scene scene;
+    ImportOptions options = {.lenient = false};
+    gzip_write("main.pbrt.gz", "WorldBegin\nInclude \"part.pbrt.gz\" Shape \"sphere\"");
+    gzip_write("part.pbrt.gz", "Translate 1 0 0\nShape \"sphere\"\n");
+    scene_init(&scene);
+    ck_assert_msg(pbrt_import(test_path("main.pbrt.gz"), &options, &scene, &error), "%s", error.message);
+    assert_vec3(ELEMENT(&scene, quadrics, Quadric, 1).center, 1, 0, 0, 0.0f);
+    scene_destroy(&scene);
+    gzip_write("part.pbrt.gz", "\nShape \"sphere\" \"float radius\" -1");
+    scene_init(&scene);
+    ck_assert(!pbrt_import(test_path("main.pbrt.gz"), &options, &scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "part.pbrt.gz:2:16: error: "));
+    scene_destroy(&scene);
+    file_write("part.pbrt.gz", "\x1f\x8b\x08nothing that can be decompressed");
+    scene_init(&scene);
+    ck_assert(!pbrt_import(test_path("main.pbrt.gz"), &options, &scene, &error));
+    ck_assert_ptr_nonnull(strstr(error.message, "main.pbrt.gz:2:9: error: cannot read "));
+    ck_assert_ptr_nonnull(strstr(error.message, "the gzip'd data are damaged or incomplete"));
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* What does not fit is refused before it is in memory. */
+START_TEST(compressed_files_are_bounded)
+{
+    Array out;
+    Error error;
+    FileData file;
+    char *zeros = calloc(1, (size_t)1 << 20);
+    memset(zeros, ' ', ((size_t)1 << 20) - 1);
+    gzip_write("zeros.gz", zeros);
+    free(zeros);
+    ck_assert(file_read(test_path("zeros.gz"), 65536, (SourcePlace){0}, &file, &error));
+    array_init(&out, 1);
+    ck_assert(gzip_is(file.data, file.size));
+    ck_assert(gzip_inflate(file.data, file.size, ((size_t)1 << 20) - 1, &out, &error));
+    ck_assert_uint_eq(out.count, ((size_t)1 << 20) - 1);
+    out.count = 0;
+    ck_assert(!gzip_inflate(file.data, file.size, (size_t)1 << 19, &out, &error));
+    ck_assert_uint_le(out.count, ((size_t)1 << 19) + 65536);
+    ck_assert_str_eq(error_text(&error), "the gzip'd data are more than 1 GiB");
+    array_destroy(&out);
+    free(file.data);
+}
+END_TEST
+
 static const struct {
     const char *name;
     size_t primitives, lights, materials, shapes;
@@ -139,6 +200,8 @@ TCase *import_files_case(void)
     tcase_add_test(tcase, nesting_is_bounded);
     tcase_add_test(tcase, includes_are_bounded);
     tcase_add_test(tcase, devices_are_refused);
+    tcase_add_test(tcase, compressed_files);
+    tcase_add_test(tcase, compressed_files_are_bounded);
     tcase_add_loop_test(tcase, public_scenes, 0, (int)(sizeof PUBLIC / sizeof *PUBLIC));
     return tcase;
 }

@@ -214,6 +214,55 @@ START_TEST(substitutes)
 }
 END_TEST
 
+/* A shape's material may be defined behind it, a mix before what it mixes, and a material before its textures. */
+START_TEST(names_are_known_at_the_end)
+{
+    Scene scene;
+    Material m, part;
+    import_world("NamedMaterial \"late\" Shape \"sphere\" Shape \"sphere\"\n"
+                 "MakeNamedMaterial \"late\" \"string type\" \"mix\" \"string materials\" [ \"glass\" \"red\" ]\n"
+                 "MakeNamedMaterial \"red\" \"string type\" \"diffuse\" \"texture reflectance\" \"t\"\n"
+                 "MakeNamedMaterial \"glass\" \"string type\" \"dielectric\" \"float eta\" 1.7\n"
+                 "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ 1 0 0 ]",
+                 &scene);
+    uint used = ELEMENT(&scene, shapes, Shape, 0).material;
+    ck_assert_uint_eq(ELEMENT(&scene, shapes, Shape, 1).material, used);
+    ck_assert_uint_eq(scene.materials.count, 3);
+    m = ELEMENT(&scene, materials, Material, used);
+    ck_assert_uint_eq(m.kind, MATERIAL_MIX);
+    part = ELEMENT(&scene, materials, Material, m.mix_a);
+    ck_assert_uint_eq(part.kind, MATERIAL_DIELECTRIC);
+    ASSERT_FLOAT(part.eta, 1.7f);
+    part = ELEMENT(&scene, materials, Material, m.mix_b);
+    ck_assert_uint_eq(part.kind, MATERIAL_DIFFUSE);
+    ck_assert_uint_ne(part.color0.program, NONE);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(late_names_that_are_wrong)
+{
+    ck_assert_str_eq(import_error("WorldBegin\nNamedMaterial \"a\" Shape \"sphere\"\n"
+                                  "MakeNamedMaterial \"b\" \"string type\" \"diffuse\""),
+                     "test.pbrt:2:15: error: unknown material \"a\"");
+    ck_assert_str_eq(
+        import_error("WorldBegin\n"
+                     "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"b\" \"c\" ]\n"
+                     "MakeNamedMaterial \"b\" \"string type\" \"mix\" \"string materials\" [ \"c\" \"a\" ]\n"
+                     "MakeNamedMaterial \"c\" \"string type\" \"diffuse\""),
+        "test.pbrt:2:1: error: the material \"a\" is a mix of itself");
+    ck_assert_str_eq(import_error("WorldBegin\nNamedMaterial \"a\" Shape \"sphere\"\n"
+                                  "MakeNamedMaterial \"a\" \"string type\" \"interface\""),
+                     "test.pbrt:3:19: error: the material \"a\", an \"interface\", is used before it is defined");
+    ck_assert_str_eq(import_error("WorldBegin\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n"
+                                  "Shape \"sphere\" Texture \"u\" \"spectrum\" \"constant\""),
+                     "test.pbrt:2:20: error: unknown spectrum texture \"t\" for parameter \"reflectance\"");
+    ck_assert_str_eq(import_error("WorldBegin\nMaterial \"diffuse\" \"texture reflectance\" \"t\" \"float nosuch\" 1\n"
+                                  "Texture \"t\" \"spectrum\" \"constant\""),
+                     "test.pbrt:2:46: error: unknown parameter \"nosuch\" of the material diffuse");
+}
+END_TEST
+
 TCase *import_materials_case(void)
 {
     TCase *tcase = tcase_create("materials");
@@ -226,5 +275,7 @@ TCase *import_materials_case(void)
     tcase_add_test(tcase, named_and_mixed);
     tcase_add_test(tcase, scopes);
     tcase_add_test(tcase, substitutes);
+    tcase_add_test(tcase, names_are_known_at_the_end);
+    tcase_add_test(tcase, late_names_that_are_wrong);
     return tcase;
 }
