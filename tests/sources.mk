@@ -96,6 +96,7 @@ EXTRA_DIST += \
 	tests/geometry/geometry_suites.h \
 	tests/instances.pbrt \
 	tests/support/light_fixture.h \
+	tests/coverage.md tests/coverage.sh \
 	tests/mutants/mutants.md \
 	tests/mutants/mutants.sh \
 	tests/mutants/mutants.txt \

@@ -229,7 +229,7 @@ static bool directive_texture(PbrtImport *im)
     return parser_string(im, "the name of a texture", &name, &place) &&
            parser_string(im, "\"float\" or \"spectrum\"", &type, NULL) &&
            parser_string(im, "the kind of texture", &kind, NULL) && parser_params(im) &&
-           import_texture(im, name, place, type, kind);
+           import_use(im, "Texture", kind) && import_texture(im, name, place, type, kind);
 }
 
 static bool directive_object_begin(PbrtImport *im)
@@ -356,7 +356,8 @@ static bool directive_run(PbrtImport *im, const Directive *directive)
     if (directive->plain)
         return directive->plain(im);
     const char *kind;
-    return parser_string(im, "a quoted name", &kind, NULL) && parser_params(im) && directive->named(im, kind);
+    return parser_string(im, "a quoted name", &kind, NULL) && parser_params(im) &&
+           import_use(im, directive->name, kind) && directive->named(im, kind);
 }
 
 static const Directive *directive_find(const Token *token)
@@ -399,7 +400,12 @@ static bool directive_read(PbrtImport *im, const Token *token)
     const Directive *directive = directive_find(token);
     param_buffer_clear(&im->params);
     im->place = token->place;
-    if (directive ? directive_run(im, directive) : directive_unknown(im, token))
+    if (im->options.needs)
+        needs_directive(im->options.needs);
+    bool good = directive ? directive_run(im, directive) : directive_unknown(im, token);
+    if (im->options.needs)
+        needs_warned(im->options.needs, im->place);
+    if (good)
         return true;
     return errors_note(im, !directive || directive_defines(directive) || im->errors.world_order) && directive_skip(im);
 }

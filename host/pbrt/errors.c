@@ -9,6 +9,8 @@
 
 bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix)
 {
+    if (im->options.needs)
+        return needs_unsupported(im->options.needs, what, substitute, place, im->error);
     if (im->options.lenient) {
         ++im->scene->counts.substitutions;
         log_message_at(LOG_WARNING, place, "%s is not supported; instead: %s", what, substitute);
@@ -18,6 +20,11 @@ bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, con
     if (fix)
         return error_fix(im->error, "%s; or replace it by --lenient (%s)", fix, substitute);
     return error_fix(im->error, "replace it by --lenient (%s)", substitute);
+}
+
+bool import_use(PbrtImport *im, const char *kind, const char *name)
+{
+    return !im->options.needs || needs_use(im->options.needs, kind, name, im->place, im->error);
 }
 
 bool import_other_version(PbrtImport *im, SourcePlace place, const char *kind, const char *name)
@@ -57,6 +64,8 @@ bool errors_note(PbrtImport *im, bool defines)
     errors->definition_failed = errors->definition_failed || defines;
     if (!im->options.all_errors || error_is_memory(im->error))
         return false;
+    if (im->options.needs)
+        return consequence || (needs_error(im->options.needs, im->error, im->error) && !errors->other_version);
     if (consequence || again)
         return true;
     if (errors->count > 0)

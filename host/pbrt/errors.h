@@ -8,6 +8,9 @@
  * substitute. Returns whether to continue. `fix` may be NULL. */
 bool import_unsupported(PbrtImport *im, SourcePlace place, const char *what, const char *substitute, const char *fix);
 
+/* For `info --needs`: the directive uses the `name` of its kind. False when out of memory. */
+bool import_use(PbrtImport *im, const char *kind, const char *name);
+
 /* Reports that the scene is one for pbrt-v3, in which this kind of thing has this name; reading ends. Returns false. */
 bool import_other_version(PbrtImport *im, SourcePlace place, const char *kind, const char *name);
 

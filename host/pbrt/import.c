@@ -147,6 +147,32 @@ bool pbrt_import_text(const char *text, size_t length, const char *name, const c
     return source_import(&source, options, scene, error);
 }
 
+static void line_drop(const char *line, void *context)
+{
+    (void)line;
+    (void)context;
+}
+
+bool pbrt_needs(const char *path, SceneNeeds *needs, Error *error)
+{
+    const ImportOptions options = {.all_errors = true, .needs = needs};
+    FileData text = {0};
+    Vec3 offset = vec3_splat(0.0f);
+    Scene scene;
+    bool piped = strcmp(path, "-") == 0;
+    if (piped && !file_read_stream(STDIN_FILENO, "standard input", IMPORT_FILE_BYTES_MAX, &text, error))
+        return false;
+    const ImportSource source = {
+        .path = piped ? NULL : path, .text = text.data, .length = text.size, .name = "stdin", .directory = ""};
+    scene_init(&scene);
+    log_sink_set(line_drop, NULL); /* `needs` has what they say */
+    bool good = source_read(&source, &options, &offset, &scene, error);
+    log_sink_set(NULL, NULL);
+    scene_destroy(&scene);
+    free(text.data);
+    return good;
+}
+
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)
 {
     const ImportOptions options = {.lenient = lenient, .all_errors = true};

@@ -14,6 +14,9 @@ bool pbrt_import(const char *path, const ImportOptions *options, Scene *scene, E
  * relative to the current folder. */
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error);
 
+/* Records what the scene needs (needs_init); the path "-" is standard input. Fails only if it cannot be read at all. */
+bool pbrt_needs(const char *path, SceneNeeds *needs, Error *error);
+
 /* Like pbrt_import, from memory. `name` is the file name in messages; file names in the text are relative to
  * `directory`. */
 bool pbrt_import_text(const char *text, size_t length, const char *name, const char *directory,

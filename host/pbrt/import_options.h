@@ -3,6 +3,7 @@
 #define TWINLIGHT_PBRT_IMPORT_OPTIONS_H
 
 #include "image/image.h"
+#include "pbrt/needs.h"
 #include "pbrt/ply.h"
 
 /* Meshes and images that a text refers to by name and that are in memory. A function fills its last argument but one, which
@@ -17,6 +18,7 @@ typedef struct ImportOptions {
     bool lenient; /* replace unsupported features, with a warning that names the substitute, instead of failing */
     bool all_errors; /* continue after errors, up to IMPORT_ERRORS_MAX, and print all but the last */
     const ImportMemory *memory; /* in place of the files of plymesh and of textures; NULL: none */
+    SceneNeeds *needs; /* records what the scene needs, instead of failing; NULL: an ordinary reading */
 } ImportOptions;
 
 #endif

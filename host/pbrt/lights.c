@@ -218,6 +218,8 @@ static void map_read(LightReader *r, const char *file, float illuminance, double
 {
     Image image;
     Error error = {{0}, {0}};
+    if (r->im->options.needs)
+        return;
     const char *path = r->list->failed ? NULL : import_path(r->im, file);
     if (!path) {
         r->list->failed = true;

@@ -87,6 +87,8 @@ static void relief_read(MaterialReader *r)
         r->list->failed = true;
         return;
     }
+    if (m->normal_map == NONE) /* images are not read for what a scene needs */
+        return;
     uint channels = ARRAY_AT(&r->im->scene->images, TextureImage, m->normal_map).channels;
     if (channels < 3)
         param_error(r->list, "normalmap", "the normal map %s has %u channel instead of 3", path, channels);
@@ -337,6 +339,8 @@ static bool named_read(PbrtImport *im, ParamList *list, const char *name, Source
         param_error(list, "type", "%s lacks \"string type\"", list->owner);
         return error_fix(im->error, "add \"string type\" \"diffuse\" or another kind of material");
     }
+    if (!import_use(im, "Material", kind))
+        return false;
     const uint used = late_material_define(im, name);
     uint index = used;
     if (!material_add(im, list, kind, param_place(list, "type"), &index))

@@ -222,6 +222,8 @@ static bool plymesh_read(PbrtImport *im, ParamList *list, const ShapeContext *co
     if (displacement && !import_unsupported(im, displacement->place, "displacement of a mesh", "the mesh as it is",
                                             "use the material's displacement, a bump map"))
         return false;
+    if (im->options.needs)
+        return true;
     SourcePlace place = param_place(list, "filename");
     PlyMesh ply = {0};
     bool good = ply_find(im, name, place, &ply) && small_faces_report(im, place, &ply) && ply_add(im, context, &ply);

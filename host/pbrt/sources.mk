@@ -10,6 +10,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \
 	host/pbrt/mesh.c host/pbrt/mesh.h \
+	host/pbrt/needs.c host/pbrt/needs.h \
 	host/pbrt/objects.c \
 	host/pbrt/options.c \
 	host/pbrt/param_list.c \

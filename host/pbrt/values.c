@@ -216,7 +216,8 @@ bool value_image(PbrtImport *im, SourcePlace place, const char *path, const Text
                  const char *what, uint *index)
 {
     Error error = {{0}, {0}};
-    if (texture_image_load(im->scene, &im->images, path, options, index, &error))
+    *index = NONE;
+    if (im->options.needs || texture_image_load(im->scene, &im->images, path, options, index, &error))
         return true;
     error_at(im->error, place, "%s: %s", what, error_text(&error));
     if (error.fix[0])

@@ -25,7 +25,8 @@ float value_eta(PbrtImport *im, ParamList *list, const char *name, float fallbac
 /* Index of a texture program for a constant. NONE when out of memory. */
 uint value_constant_program(PbrtImport *im, float value);
 
-/* Index of an image file of the scene. `what` ("texture", "normal map") is for messages, which name the path. */
+/* Index of an image file of the scene. `what` ("texture", "normal map") is for messages, which name the path. NONE if
+ * only the scene's needs are wanted. */
 bool value_image(PbrtImport *im, SourcePlace place, const char *path, const TextureImageOptions *options,
                  const char *what, uint *index);
 
