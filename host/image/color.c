@@ -110,6 +110,23 @@ void color_blackbody(float kelvin, float rgb[3])
         rgb[c] = (float)color[c];
 }
 
+void color_daylight(float kelvin, float rgb[3])
+{
+    double t = (double)kelvin, x, y;
+    if (t < 4000.0) {
+        color_blackbody(kelvin, rgb);
+        return;
+    }
+    if (t <= 7000.0)
+        x = ((-4.6070e9 / t + 2.9678e6) / t + 0.09911e3) / t + 0.244063;
+    else
+        x = ((-2.0064e9 / t + 1.9018e6) / t + 0.24748e3) / t + 0.237040;
+    y = (-3.0 * x + 2.870) * x - 0.275;
+    const double xyz[3] = {x / y, 1.0, (1.0 - x - y) / y};
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = (float)(RGB_FROM_XYZ[c][0] * xyz[0] + RGB_FROM_XYZ[c][1] * xyz[1] + RGB_FROM_XYZ[c][2] * xyz[2]);
+}
+
 static bool samples_check(const float *pairs, size_t n, Error *error)
 {
     if (n == 0) {

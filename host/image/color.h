@@ -20,6 +20,10 @@ typedef enum ColorRole { COLOR_REFLECTANCE, COLOR_ILLUMINANT, COLOR_INDEX } Colo
  * temperatures below 400 K, which are invisible, have the colour of 400 K. */
 void color_blackbody(float kelvin, float rgb[3]);
 
+/* Colour of daylight of that correlated colour temperature, from 4000 to 25000 K, at luminance 1 (CIE 15, daylight
+ * locus); below 4000 K that of a black body. */
+void color_daylight(float kelvin, float rgb[3]);
+
 /* pbrt's named spectra: metal-{Ag,Al,Au,Cu,CuZn,MgO,TiO2}-{eta,k}, glass-{BK7,BAF10,FK51A,LASF9,SF5,SF10,SF11} (also as
  * F5, F10, F11), stdillum-{A,D50,D65,F1 ... F12}, illum-acesD60. Metals are chosen such that the RGB Fresnel
  * reflectance at normal incidence equals the colour of the spectral reflectance. Fails for unknown names, camera

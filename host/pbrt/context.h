@@ -170,6 +170,7 @@ typedef struct PbrtImport {
 
     /* film and camera, until WorldBegin */
     float iso;
+    Vec3 balance; /* white balance: factors of red, green and blue */
     float exposure_time; /* of the film; 0: the camera's shutter time */
     float shutter_open, shutter_close;
 } PbrtImport;

@@ -1,6 +1,7 @@
 /* Film, PixelFilter and Camera. */
 #include "base/log.h"
 #include "film/film.h"
+#include "image/color.h"
 #include "pbrt/errors.h"
 #include "pbrt/readers.h"
 #include "pbrt/state.h"
@@ -76,21 +77,57 @@ static void crop_window_read(ParamList *list, const SceneSettings *film, int cro
     crop_check(list, "cropwindow", crop);
 }
 
+/* The sensors that pbrt knows beside cie1931. */
+static const char *const SENSORS[] = {
+    "cie1931",       "canon_eos_100d",     "canon_eos_1dx_mkii", "canon_eos_200d",    "canon_eos_200d_mkii",
+    "canon_eos_5d",  "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv", "canon_eos_5ds",
+    "canon_eos_m",   "hasselblad_l1d_20c", "nikon_d810",         "nikon_d850",        "sony_ilce_6400",
+    "sony_ilce_7m3", "sony_ilce_7rm3",     "sony_ilce_9"};
+#define SENSOR_COUNT (sizeof SENSORS / sizeof *SENSORS)
+
+/* Without spectra, all sensors see what the CIE 1931 observer does. */
+static void sensor_name_read(PbrtImport *im, ParamList *list)
+{
+    const char *sensor = param_string(list, "sensor", SENSORS[0]);
+    size_t i = 0;
+    while (i < SENSOR_COUNT && strcmp(sensor, SENSORS[i]) != 0)
+        ++i;
+    if (i == SENSOR_COUNT && !list->failed)
+        list->failed = !import_unknown(im, param_place(list, "sensor"), "sensor", sensor, SENSORS, SENSOR_COUNT);
+    else if (i > 0)
+        log_message_at(LOG_WARNING, param_place(list, "sensor"),
+                       "the sensor \"%s\" counts as cie1931: its spectral response needs spectra, and is left out",
+                       sensor);
+}
+
+/* Temperatures of white balance: below, black bodies have no blue in sRGB; above, daylight is not defined. */
+#define BALANCE_KELVIN_MIN 2000.0f
+#define BALANCE_KELVIN_MAX 25000.0f
+
+/* Sets the factors of red, green and blue that make daylight of the temperature white, at the same luminance. */
+static void white_balance_read(PbrtImport *im, ParamList *list)
+{
+    float kelvin = param_float(list, "whitebalance", 0.0f), white[3];
+    if (kelvin == 0.0f)
+        return;
+    if (!(kelvin >= BALANCE_KELVIN_MIN && kelvin <= BALANCE_KELVIN_MAX)) {
+        param_error(list, "whitebalance", "\"whitebalance\" must be 0 or from 2000 to 25000 kelvin");
+        return;
+    }
+    color_daylight(kelvin, white);
+    im->balance = vec3(1.0f / white[0], 1.0f / white[1], 1.0f / white[2]);
+}
+
 static void sensor_read(PbrtImport *im, ParamList *list)
 {
-    const char *sensor = param_string(list, "sensor", "cie1931");
-    float balance = param_float(list, "whitebalance", 0.0f);
+    sensor_name_read(im, list);
+    white_balance_read(im, list);
     im->iso = param_float(list, "iso", 100.0f);
     im->exposure_time = param_float(list, "exposuretime", 0.0f);
     if (!(im->iso > 0.0f))
         param_error(list, "iso", "\"iso\" must be above 0");
     if (im->exposure_time < 0.0f)
         param_error(list, "exposuretime", "\"exposuretime\" is negative");
-    if (strcmp(sensor, "cie1931") != 0 && !list->failed)
-        list->failed =
-            !import_unsupported(im, param_place(list, "sensor"), "a sensor other than cie1931", "cie1931", NULL);
-    if (balance != 0.0f && !list->failed)
-        list->failed = !import_unsupported(im, param_place(list, "whitebalance"), "white balance", "none", NULL);
     if (param_float(list, "maxcomponentvalue", 0.0f) != 0.0f)
         log_message_at(LOG_WARNING, param_place(list, "maxcomponentvalue"),
                        "\"maxcomponentvalue\" is ignored: samples are not clamped");

@@ -45,6 +45,7 @@ static void import_init(PbrtImport *im, const ImportOptions *options, Scene *sce
     }
     im->default_material = NONE;
     im->iso = 100.0f;
+    im->balance = vec3_splat(1.0f);
     im->shutter_close = 1.0f;
 }
 
@@ -98,6 +99,19 @@ static bool source_open(PbrtImport *im, const ImportSource *source)
     return im->directory && parser_open_file(im, source->path, (SourcePlace){0}, false);
 }
 
+/* White balance multiplies the channels of the image. They are independent of each other, so it may as well multiply
+ * those of all lights; chains then see the brightness that the image has. */
+static void balance_apply(const PbrtImport *im)
+{
+    Vec3 b = im->balance;
+    if (b.x == 1.0f && b.y == 1.0f && b.z == 1.0f)
+        return;
+    for (size_t i = 0; i < im->scene->lights.count; ++i) {
+        Light *light = &ARRAY_AT(&im->scene->lights, Light, i);
+        light->emission = vec3_mul(light->emission, b);
+    }
+}
+
 /* Reads the scene with *offset subtracted. *offset becomes the offset that should be subtracted; 0: none. */
 static bool source_read(const ImportSource *source, const ImportOptions *options, Vec3 *offset, Scene *scene,
                         Error *error)
@@ -107,6 +121,7 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     im.offset = scene->origin = *offset;
     bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im);
     good = errors_end(&im) && good;
+    balance_apply(&im);
     camera_move(&scene->camera_settings, im.offset);
     scene->movable = true;
     *offset = good && !box_is_empty(&im.world) ? scene_center_offset(&im.world) : vec3_splat(0.0f);

@@ -46,6 +46,45 @@ START_TEST(film)
 }
 END_TEST
 
+/* White balance makes light of its temperature white at the same luminance, whatever the kind of light, and leaves that of
+ * D65 as it is. Sensors by name count as the default. */
+START_TEST(white_balance)
+{
+    static const char *const LIGHTS[] = {"LightSource \"infinite\" \"spectrum L\" \"stdillum-D50\"",
+                                         "LightSource \"point\" \"spectrum I\" \"stdillum-D50\"",
+                                         "AreaLightSource \"diffuse\" \"spectrum L\" \"stdillum-D50\" Shape \"disk\""};
+    char text[300];
+    Scene scene;
+    for (size_t i = 0; i < sizeof LIGHTS / sizeof *LIGHTS; ++i) {
+        snprintf(text, sizeof text, "Film \"rgb\" \"float whitebalance\" 5003 WorldBegin %s", LIGHTS[i]);
+        import_text(text, &scene);
+        assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1, 1, 1, 0.01f);
+        scene_destroy(&scene);
+    }
+    import_text("Film \"rgb\" \"float whitebalance\" 3000 WorldBegin LightSource \"point\" \"blackbody I\" 3000",
+                &scene);
+    assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1, 1, 1, 1e-5f);
+    scene_destroy(&scene);
+    import_text("Film \"rgb\" \"float whitebalance\" 6504 WorldBegin LightSource \"point\" \"rgb I\" [ 1 2 3 ]",
+                &scene);
+    assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1, 2, 3, 0.01f);
+    scene_destroy(&scene);
+    import_text("Film \"rgb\" \"float whitebalance\" 9000 WorldBegin LightSource \"point\" \"rgb I\" [ 1 1 1 ]",
+                &scene);
+    Vec3 warm = ELEMENT(&scene, lights, Light, 0).emission;
+    ck_assert(warm.x > 1.05f && warm.z < 0.9f);
+    scene_destroy(&scene);
+    import_text("Film \"rgb\" \"float whitebalance\" 20000 WorldBegin LightSource \"point\" \"rgb I\" [ 1 1 1 ]",
+                &scene);
+    assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1.4422930f, 0.9919337f, 0.5485340f, 1e-5f);
+    scene_destroy(&scene);
+    import_text("Film \"rgb\" \"string sensor\" \"nikon_d850\" WorldBegin LightSource \"point\"", &scene);
+    assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1, 1, 1, 0.0f);
+    ck_assert_ptr_nonnull(strstr(import_log(), "warning: the sensor \"nikon_d850\" counts as cie1931"));
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(pixel_bounds)
 {
     Scene scene;
@@ -155,6 +194,7 @@ TCase *import_settings_case(void)
     TCase *tcase = tcase_create("settings");
     tcase_add_test(tcase, defaults_of_an_empty_scene);
     tcase_add_test(tcase, film);
+    tcase_add_test(tcase, white_balance);
     tcase_add_test(tcase, pixel_bounds);
     tcase_add_test(tcase, filters);
     tcase_add_test(tcase, cameras);
