@@ -253,6 +253,32 @@ START_TEST(test_rectangles)
 }
 END_TEST
 
+/* A scene far from the origin is moved there, and its portals with it. */
+START_TEST(test_moved)
+{
+    static const float square[9] = {8999, -1, 0, 9001, -1, 0, 8999, 1, 0};
+    static const uint indices[3] = {0, 1, 2};
+    const MeshData mesh = {.positions = square, .vertex_count = 3, .indices = indices, .triangle_count = 1};
+    const double corners[4][3] = {{9002, -1, 0.5}, {9002, -1, 2.5}, {9002, 2, 2.5}, {9002, 2, 0.5}};
+    const Material material = {.kind = MATERIAL_DIFFUSE, .normal_map = NONE, .displacement.program = NONE};
+    Light light = {.kind = LIGHT_PORTAL, .image = NONE, .emission = {1, 1, 1}};
+    Portal portal;
+    Scene scene;
+    Error error = {0};
+    uint index;
+    scene_init(&scene);
+    ck_assert(scene_add_material(&scene, &material, &index, &error));
+    ck_assert(scene_add_mesh(&scene, &mesh, fixture_shape(0), NULL, 0, &error));
+    ck_assert(portal_make(corners, &portal, &error) && scene_add_portal(&scene, &portal, &light.portal, &error));
+    ck_assert(scene_add_light(&scene, &light, &error));
+    scene.movable = true;
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    TEST_NEAR(ARRAY_AT(&scene.portals, Portal, 0).corner.x, 2.0, 1e-3);
+    TEST_NEAR(ARRAY_AT(&scene.portals, Portal, 0).corner.y, -1.0, 1e-3);
+    scene_destroy(&scene);
+}
+END_TEST
+
 TCase *light_portal_case(void)
 {
     TCase *tcase = tcase_create("portals");
@@ -263,5 +289,6 @@ TCase *light_portal_case(void)
     tcase_add_loop_test(tcase, test_emission, 0, 2 * SKIES);
     tcase_add_test(tcase, test_power);
     tcase_add_test(tcase, test_rectangles);
+    tcase_add_test(tcase, test_moved);
     return tcase;
 }

@@ -66,14 +66,14 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      BD_ROOM "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\nLightSource \"infinite\" \"string filename\" "
              "\"$FILES/sky.pfm\"\n" BD_BALL,
      SUPPORT_ALL, 4, 3},
-    /* A card in front of the first portal hides part of its sky, and is not lit by it itself. */
+    /* A card in front of the second portal hides part of its light, and is not lit by it itself. */
     {"portals",
      BD_BEGIN
      "LightSource \"infinite\" \"string filename\" \"$FILES/sky.pfm\" \"point3 portal\" "
      "[ -1.5 2 1  -1.5 2 -1  0.5 2 -1  0.5 2 1 ]\n"
      "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] \"point3 portal\" [ 2 2 0  2 -0.5 0  2 -0.5 2  2 2 2 ]\n" BD_GREY
          BD_FLOOR BD_BALL
-     "Shape \"bilinearmesh\" \"point3 P\" [ -1.2 2.3 -0.5  -0.4 2.3 -0.5  -1.2 2.5 0.3  -0.4 2.5 0.3 ]\n",
+     "Shape \"bilinearmesh\" \"point3 P\" [ 2.02 -0.4 1.5  2.4 -0.4 1.5  2.02 1.2 1.5  2.4 1.2 1.5 ]\n",
      SUPPORT_ALL, 4, 3},
     {"sun in the sky",
      BD_BEGIN "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"$FILES/sun.pfm\" "
