@@ -15,7 +15,7 @@
 
 /* The light is evaluated at this many points of a cell per side: closer together than the texels that it is interpolated
  * between, so that none is missed. */
-#define CELL_POINTS 2
+#define CELL_POINTS 2u
 
 /* Part of light subpaths that comes from all directions alike, however dark the points seem that were evaluated. */
 #define EVEN_PART 1e-6
@@ -84,14 +84,14 @@ typedef struct Rectified {
 static void row_fill(void *context, size_t y)
 {
     const Rectified *r = context;
-    const double points = CELL_POINTS * CELL_POINTS, step = 1.0 / (r->side * CELL_POINTS);
+    const double points = CELL_POINTS * CELL_POINTS, step = 1.0 / (double)(r->side * CELL_POINTS);
     bool finite = true;
     for (uint x = 0; x < r->side; ++x) {
         double radiant = 0.0, flux = 0.0;
-        for (int k = 0; k < CELL_POINTS * CELL_POINTS; ++k) {
+        for (uint k = 0; k < CELL_POINTS * CELL_POINTS; ++k) {
             float stretch;
-            double u = (x * CELL_POINTS + (uint)(k % CELL_POINTS) + 0.5) * step;
-            double v = ((double)y * CELL_POINTS + k / CELL_POINTS + 0.5) * step;
+            size_t column = (size_t)x * CELL_POINTS + k % CELL_POINTS, row = y * CELL_POINTS + k / CELL_POINTS;
+            double u = ((double)column + 0.5) * step, v = ((double)row + 0.5) * step;
             Vec3 d = portal_direction(&r->portal, vec2((float)u, (float)v), &stretch);
             double light = (double)rgb_luminance(environment_beyond(&r->view, r->light, d)) * (double)stretch / points;
             radiant += light;

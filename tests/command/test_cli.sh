@@ -187,6 +187,9 @@ for row in '1  approximated   Film                rgb  (needs.pbrt:1:' '1  not s
 done
 [ "$(grep -c 'error: ' err)" -eq 1 ]
 result 'a list of needs with other messages' $?
+printf 'Camera "realistic"\nWorldBegin\nShape "sphere"\n' | "$program" info --needs - >out 2>err
+[ $? -eq 1 ]
+result 'a scene that is not supported, without errors, is' $?
 "$program" info --needs --json needs.pbrt >out 2>err
 tr -d ' \n' <out | grep -qF '"kind":"Material","name":"hair","count":2,"status":"notsupported"'
 result 'needs as JSON' $?

@@ -115,7 +115,7 @@ START_TEST(test_samples)
     for (int i = 0; i < POINT_COUNT; ++i) {
         int differ = 0, drawn = 0;
         for (uint k = 0; k < (uint)count; ++k) {
-            LightSample s;
+            LightSample s = {0};
             if (!light_sample(&f.view, 0, POINTS[i], fixture_random(4, k), &s))
                 continue;
             ++drawn;
@@ -140,7 +140,7 @@ END_TEST
 START_TEST(test_masked)
 {
     LightFixture f;
-    LightSample s;
+    LightSample s = {0};
     setup(&f, CONSTANT);
     const Vec3 p = POINTS[0], outside = vec3(3.0f, 0.5f, 1.5f), ahead = vec3(1.0f, 0.0f, 0.0f);
     TEST_TRUE(environment_radiance(&f.view, p, ahead).x == 2.0f);
@@ -195,7 +195,7 @@ START_TEST(test_emission)
         f.scene.frame.scene.aim_count = 2;
     }
     for (uint i = 0; i < SAMPLES; ++i) {
-        LightEmission e;
+        LightEmission e = {0};
         if (!light_emit_aimed(&f.view, 0, fixture_random(11, i).x, fixture_random(2, i), fixture_random(9, i), &e))
             continue;
         Vec3 d = vec3_negate(e.w), p = vec3_mad(e.p, (0.0f - e.p.x) / e.w.x, e.w);
