@@ -187,6 +187,7 @@ for row in '1  approximated   Film                rgb  (needs.pbrt:1:' '1  not s
 done
 [ "$(grep -c 'error: ' err)" -eq 1 ]
 result 'a list of needs with other messages' $?
+expect 1 '--needs lists what pbrt scenes use' info --needs none.gltf
 printf 'Camera "realistic"\nWorldBegin\nShape "sphere"\n' | "$program" info --needs - >out 2>err
 [ $? -eq 1 ]
 result 'a scene that is not supported, without errors, is' $?
