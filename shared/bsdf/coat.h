@@ -1,4 +1,5 @@
-/* The dielectric coat of coateddiffuse and coatedconductor: its transmission and its reflection. Transmission: closed form where it is smooth, a table where it is rough.
+/* The dielectric coat of coateddiffuse and coatedconductor: what it transmits and reflects. Transmission: in closed form
+ * where it is smooth, a table where it is rough.
  *
  * T(w) is the fraction of the light arriving from direction w outside that the interface sends inside. Averaged over a
  * diffuse field, T_mean = integral of T(c) 2 c dc over 0..1. By reciprocity of the interface the fraction of a diffuse

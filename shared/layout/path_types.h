@@ -44,9 +44,8 @@ typedef struct Bsdf {
     uint flags; /* BSDF_*; from BSDF_BASE_SHIFT on the alphas of a coated conductor (bsdf/coated_conductor.h) */
     Vec3 color0; /* diffuse, coated diffuse, transmission: reflectance. conductor: eta or reflectance. coated conductor:
                     eta, relative to the coat */
-    Vec3
-        color1; /* conductor: k. diffuse transmission: transmittance. coated diffuse: thickness, round trip (bsdf/coat.h).
-                    coated conductor: k, relative to the coat */
+    Vec3 color1; /* conductor: k. diffuse transmission: transmittance. coated diffuse: thickness, round trip
+                    (bsdf/coat.h). coated conductor: k, relative to the coat */
     float alpha_x, alpha_y; /* GGX; below ALPHA_DELTA the lobe is a delta */
     float eta; /* inside over outside of the surface */
     uint coat_table; /* first float in `lookup`, NONE without; that of bsdf/coated_conductor.h has more */
