@@ -5,6 +5,7 @@
 #include "backend/bvh.h"
 #include "backend/instance_bounds.h"
 #include "backend/ray_reach.h"
+#include "geometry/media_walk.h"
 #include "geometry/primitive.h"
 #include "layout/state.h"
 #include "triangle_cluster.h"
@@ -473,29 +474,59 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
     return asked.tfar < 0.0f;
 }
 
-uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, const uint *items,
-                               uint count, uint stride)
+/* rays_embree_closest through media (geometry/media_walk.h). */
+static Hit media_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint *diagnostics, uint stride,
+                         uint item, Ray ray)
 {
+    MediaWalk walk = media_walk_load(ray_words, stride, item);
+    Hit hit;
+    do
+        hit = rays_embree_closest(rays, &ray);
+    while (media_walk_on(&rays->view, &ray, &hit, &walk));
+    media_walk_end(hit_words, diagnostics, stride, item, ray, &walk, &hit);
+    return hit;
+}
+
+static void media_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics, uint stride, uint item, Ray ray)
+{
+    MediaWalk walk = media_walk_begin(state_load(shadow_words, stride, SHADOW_MEDIUM, item));
+    Hit hit;
+    do
+        hit = rays_embree_closest(rays, &ray);
+    while (media_walk_on(&rays->view, &ray, &hit, &walk));
+    shadow_walk_end(shadow_words, diagnostics, stride, item, &walk, &hit);
+}
+
+uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint *diagnostics,
+                               const uint *items, uint count, uint stride)
+{
+    bool media = SCENE_HAS(&rays->view, FEATURE_MEDIUM);
     uint traced = 0;
     for (uint i = 0; i < count; ++i) {
         uint item = items ? items[i] : i;
         Ray ray = ray_load(ray_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        hit_store(hit_words, stride, item, rays_embree_closest(rays, &ray));
+        hit_store(hit_words, stride, item,
+                  media ? media_closest(rays, ray_words, hit_words, diagnostics, stride, item, ray)
+                        : rays_embree_closest(rays, &ray));
         ++traced;
     }
     return traced;
 }
 
-uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint count, uint stride)
+uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics, uint count, uint stride)
 {
+    bool media = SCENE_HAS(&rays->view, FEATURE_MEDIUM);
     uint traced = 0;
     for (uint item = 0; item < count; ++item) {
         Ray ray = ray_load(shadow_words, stride, item);
         if (!(ray.t_max > 0.0f))
             continue;
-        state_store(shadow_words, stride, SHADOW_OCCLUDED, item, rays_embree_occluded(rays, &ray) ? 1u : 0u);
+        if (media)
+            media_shadow(rays, shadow_words, diagnostics, stride, item, ray);
+        else
+            state_store(shadow_words, stride, SHADOW_OCCLUDED, item, rays_embree_occluded(rays, &ray) ? 1u : 0u);
         ++traced;
     }
     return traced;

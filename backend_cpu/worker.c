@@ -96,11 +96,12 @@ static void worker_trace(Worker *worker, StepKind kind, uint count)
     const RaysEmbree *rays = worker->rays;
     uint64_t begin = nanoseconds_now();
     if (kind == STEP_TRACE_CLOSEST)
-        worker->closest_rays +=
-            rays_embree_trace_closest(rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], worker->live,
-                                      worker->live_count, CHUNK_STRIDE);
+        worker->closest_rays += rays_embree_trace_closest(
+            rays, worker->buffers[BUFFER_RAYS], worker->buffers[BUFFER_HITS], worker->buffers[BUFFER_DIAGNOSTICS],
+            worker->live, worker->live_count, CHUNK_STRIDE);
     else
-        worker->shadow_rays += rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS], count, CHUNK_STRIDE);
+        worker->shadow_rays += rays_embree_trace_shadow(rays, worker->buffers[BUFFER_SHADOWS],
+                                                        worker->buffers[BUFFER_DIAGNOSTICS], count, CHUNK_STRIDE);
     worker->ray_nanoseconds += nanoseconds_now() - begin;
 }
 

@@ -120,7 +120,7 @@ static double trace_device(Bench *bench, bool shadow)
 {
     OpenclBuffer *arguments[8];
     const BufferId *ids = shadow ? SHADOW_BUFFERS : CLOSEST_BUFFERS;
-    size_t count = shadow ? 6 : 7;
+    size_t count = shadow ? 7 : 8;
     BufferId in = shadow ? BUFFER_SHADOWS : BUFFER_RAYS, out = shadow ? BUFFER_SHADOWS : BUFFER_HITS;
     double wall;
     for (size_t i = 0; i < count; ++i)
@@ -145,10 +145,10 @@ static double trace(Bench *bench, RayPath path, bool shadow, uint *traced)
     if (path == PATH_C)
         kernel_run(shadow ? KERNEL_trace_shadow : KERNEL_trace_closest, bench->buffers, NULL, ITEMS);
     else if (shadow)
-        *traced = rays_embree_trace_shadow(bench->rays, bench->buffers[BUFFER_SHADOWS], ITEMS, STRIDE);
+        *traced = rays_embree_trace_shadow(bench->rays, bench->buffers[BUFFER_SHADOWS], NULL, ITEMS, STRIDE);
     else
         *traced = rays_embree_trace_closest(bench->rays, bench->buffers[BUFFER_RAYS], bench->buffers[BUFFER_HITS], NULL,
-                                            ITEMS, STRIDE);
+                                            NULL, ITEMS, STRIDE);
     return bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - begin;
 }
 

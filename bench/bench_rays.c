@@ -295,9 +295,9 @@ static double set_trace(const RaySet *set, const RaysEmbree *rays, RTCScene scen
         uint *shadows = set->shadow + (size_t)block * SHADOW_WORDS * STRIDE;
         uint *hits = set->hits + (size_t)block * HIT_WORDS * STRIDE;
         if (rays && shadow)
-            rays_embree_trace_shadow(rays, shadows, STRIDE, STRIDE);
+            rays_embree_trace_shadow(rays, shadows, NULL, STRIDE, STRIDE);
         else if (rays)
-            rays_embree_trace_closest(rays, closest, hits, NULL, STRIDE, STRIDE);
+            rays_embree_trace_closest(rays, closest, hits, NULL, NULL, STRIDE, STRIDE);
         else if (shadow)
             trace_shadow_bare(scene, shadows);
         else

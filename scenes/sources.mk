@@ -4,6 +4,7 @@ dist_scenes_DATA = \
 	scenes/cornell.pbrt \
 	scenes/cube.pbrt \
 	scenes/door.pbrt \
+	scenes/fog.pbrt \
 	scenes/glass.pbrt \
 	scenes/glossy.pbrt \
 	scenes/lamp.pbrt \

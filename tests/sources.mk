@@ -175,6 +175,7 @@ tests_test_analytic_SOURCES = tests/render/test_analytic.c \
 	tests/render/test_analytic_glass.c \
 	tests/render/test_analytic_instances.c \
 	tests/render/test_analytic_lights.c \
+	tests/render/test_analytic_media.c \
 	tests/render/test_analytic_opaque.c \
 	tests/render/test_analytic_textures.c
 
@@ -197,6 +198,7 @@ tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \
 	tests/bsdf/test_bsdf_formulas.c \
 	tests/bsdf/test_bsdf_identities.c \
 	tests/bsdf/test_bsdf_inverse.c \
+	tests/bsdf/test_bsdf_phase.c \
 	tests/bsdf/test_bsdf_sampling.c
 
 tests_test_bvh_SOURCES = tests/geometry/test_bvh.c \
@@ -243,6 +245,7 @@ tests_test_import_SOURCES = tests/pbrt/test_import.c \
 	tests/pbrt/test_import_lights.c \
 	tests/pbrt/test_import_limits.c \
 	tests/pbrt/test_import_materials.c \
+	tests/pbrt/test_import_media.c \
 	tests/pbrt/test_import_params.c \
 	tests/pbrt/test_import_ply.c \
 	tests/pbrt/test_import_settings.c \

@@ -1,7 +1,6 @@
 #include "backend/step_recorder.h"
 
 #include "layout/kernel_list.h"
-
 #include "layout/state.h"
 
 #include <assert.h>
@@ -56,13 +55,15 @@ void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned e
     assert(recorder->count == end);
 }
 
-StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count)
+StepList recorder_list(const Recorder *recorder, const FrameParams *frame, uint path_words, const StateField *fields,
+                       size_t field_count)
 {
+    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
     StepList list = {.steps = recorder->steps, .count = recorder->count, .fields = fields, .field_count = field_count};
     list.words_per_item[BUFFER_PATHS] = path_words;
-    list.words_per_item[BUFFER_RAYS] = RAY_WORDS;
-    list.words_per_item[BUFFER_HITS] = HIT_WORDS;
-    list.words_per_item[BUFFER_SHADOWS] = SHADOW_WORDS;
+    list.words_per_item[BUFFER_RAYS] = media ? RAY_MEDIA_WORDS : RAY_WORDS;
+    list.words_per_item[BUFFER_HITS] = media ? HIT_MEDIA_WORDS : HIT_WORDS;
+    list.words_per_item[BUFFER_SHADOWS] = media ? SHADOW_MEDIA_WORDS : SHADOW_WORDS;
     list.words_per_item[BUFFER_SPLATS] = SPLAT_WORDS;
     return list;
 }

@@ -27,7 +27,8 @@ void recorder_skips_end(Recorder *recorder);
 
 /* The recorded list, which takes ownership of the steps: `path_words` words per path, rays, hits, shadow rays and
  * splats. An integrator adds further buffers to words_per_item. */
-StepList recorder_list(const Recorder *recorder, uint path_words, const StateField *fields, size_t field_count);
+StepList recorder_list(const Recorder *recorder, const FrameParams *frame, uint path_words, const StateField *fields,
+                       size_t field_count);
 
 /* Frees the steps. Safe on {0} and twice. */
 void step_list_destroy(StepList *list);

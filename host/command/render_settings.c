@@ -152,7 +152,17 @@ static bool depth_check(const RenderCommand *command, const Integrator *integrat
     return error_fix(error, "add --max-depth=%u", segments);
 }
 
+/* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. */
+static bool media_check(const Integrator *integrator, const Scene *scene, Error *error)
+{
+    if (!(scene->features & FEATURE_GLOW) || integrator != integrator_mmlt())
+        return true;
+    error_set(error, "the scene has a medium that emits light (Le), which mmlt does not support");
+    return error_fix(error, "use --integrator=pt, ibpt or bdpt, or set Le of the medium to 0");
+}
+
 bool render_settings_apply(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error)
 {
-    return settings_override(command, scene, error) && depth_check(command, integrator, scene, error);
+    return media_check(integrator, scene, error) && settings_override(command, scene, error) &&
+           depth_check(command, integrator, scene, error);
 }

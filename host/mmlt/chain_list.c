@@ -40,14 +40,17 @@ uint chain_pass_fields(const FrameParams *frame)
 
 /* Records one proposal. The light subpath has up to max_depth - 1 segments (s = d), the camera subpath up to max_depth
  * (s = 0). */
-static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
+static void record_proposal(Recorder *recorder, const FrameParams *frame, bool splat)
 {
+    uint max_depth = frame->path.max_depth;
     recorder_kernel(recorder, KERNEL_mlt_propose, false);
     recorder_walk(recorder, max_depth - 1, KERNEL_mlt_walk, KERNEL_COUNT);
     recorder_kernel(recorder, KERNEL_mlt_start_camera, false);
     recorder_walk(recorder, max_depth, KERNEL_mlt_walk, KERNEL_COUNT);
     recorder_kernel(recorder, KERNEL_mlt_connect, false);
     recorder_step(recorder, STEP_TRACE_SHADOW);
+    if (frame->scene.features & FEATURE_MEDIUM)
+        recorder_kernel(recorder, KERNEL_mlt_connect, false); /* connection_traced in path/bd_connect.h */
     recorder_kernel(recorder, KERNEL_mlt_accept, false);
     if (splat)
         recorder_step(recorder, STEP_SPLAT);
@@ -56,10 +59,11 @@ static void record_proposal(Recorder *recorder, uint max_depth, bool splat)
 ChainWords chain_words(const FrameParams *frame)
 {
     uint paths = CHAIN_NUMBERS + number_count(frame), densities = 2 * frame->path.max_depth;
+    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    uint rays = media ? RAY_MEDIA_WORDS + HIT_MEDIA_WORDS + SHADOW_MEDIA_WORDS : RAY_WORDS + HIT_WORDS + SHADOW_WORDS;
     return (ChainWords){.state = paths - BD_HEADER_WORDS,
                         .densities = densities,
-                        .all = paths + densities + CHAIN_VERTEX_WORDS + RAY_WORDS + HIT_WORDS + SHADOW_WORDS +
-                               SPLAT_WORDS};
+                        .all = paths + densities + CHAIN_VERTEX_WORDS + rays + SPLAT_WORDS};
 }
 
 void chain_memory_print(const FrameParams *frame, unsigned chains)
@@ -80,15 +84,15 @@ void chain_memory_print(const FrameParams *frame, unsigned chains)
 
 bool chain_list(const FrameParams *frame, uint steps, StepList *list, Error *error)
 {
-    size_t per_step = 5 + 3 * (2 * (size_t)frame->path.max_depth - 1), capacity = (steps + 1) * per_step + 2;
+    size_t per_step = 6 + 3 * (2 * (size_t)frame->path.max_depth - 1), capacity = (steps + 1) * per_step + 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;
     recorder_kernel(&recorder, KERNEL_mlt_begin, false);
     for (uint i = 0; i <= steps; ++i)
-        record_proposal(&recorder, frame->path.max_depth, i > 0);
+        record_proposal(&recorder, frame, i > 0);
     recorder_kernel(&recorder, KERNEL_mlt_end, false);
-    *list = recorder_list(&recorder, CHAIN_NUMBERS + number_count(frame), CHAIN_FIELDS,
+    *list = recorder_list(&recorder, frame, CHAIN_NUMBERS + number_count(frame), CHAIN_FIELDS,
                           sizeof CHAIN_FIELDS / sizeof CHAIN_FIELDS[0]);
     list->pass_fields = chain_pass_fields(frame);
     list->words_per_item[BUFFER_VERTICES] = CHAIN_VERTEX_WORDS;

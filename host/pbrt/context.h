@@ -27,7 +27,7 @@
 #define IMPORT_FILM_MAX 65535 /* width and height of the film, pixels */
 
 /* Used instead of a material index. */
-#define MATERIAL_INTERFACE 0xfffffffeu /* no material: the shape is invisible */
+#define MATERIAL_INTERFACE 0xfffffffeu /* no material: the shape is invisible, but may separate media */
 
 /* Targets of the Attribute directive. */
 enum { ATTRIBUTE_SHAPE, ATTRIBUTE_LIGHT, ATTRIBUTE_MATERIAL, ATTRIBUTE_MEDIUM, ATTRIBUTE_TEXTURE, ATTRIBUTE_COUNT };
@@ -49,6 +49,7 @@ typedef struct GraphicsState {
     const char *material_name; /* of NamedMaterial, resolved when a shape uses it; NULL: `material` is valid */
     SourcePlace material_place;
     const AreaLightSource *area_light;
+    uint inside, outside; /* media of MediumInterface: index in the scene */
     const ParamSet *attributes[ATTRIBUTE_COUNT];
 } GraphicsState;
 
@@ -57,6 +58,13 @@ typedef struct StateSave {
     SourcePlace place;
     const char *opened_by; /* "AttributeBegin", ... */
 } StateSave;
+
+/* A medium's name in a scene file. MediumInterface may mention a medium that is defined later. */
+typedef struct MediumSeen {
+    const char *name;
+    SourcePlace place; /* of the first mention */
+    bool defined;
+} MediumSeen;
 
 /* A named texture: a postfix program without its TEXTURE_END. */
 typedef struct ImportTexture {
@@ -165,6 +173,8 @@ typedef struct PbrtImport {
     Array late_materials; /* LateMaterial */
     NameTable float_textures, spectrum_textures; /* index into textures */
     Array textures; /* ImportTexture */
+    NameTable media; /* index into the scene's media, also of those that are only mentioned so far */
+    Array media_seen; /* MediumSeen of each, beginning with number 1 */
     TextureCache images;
     uint default_material; /* NONE until first used */
 

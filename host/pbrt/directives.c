@@ -187,22 +187,21 @@ static bool directive_world_begin(PbrtImport *im)
 
 static bool directive_medium_interface(PbrtImport *im)
 {
-    const char *inside, *outside = "";
+    const char *name;
+    SourcePlace place;
     Token token;
-    if (!parser_string(im, "the name of a medium", &inside, NULL) || !parser_next(im, &token))
+    uint inside, outside;
+    if (!parser_string(im, "the name of a medium", &name, &place) || !medium_number(im, name, place, &inside) ||
+        !parser_next(im, &token))
         return false;
     parser_put_back(im, &token);
-    if (token.kind == TOKEN_STRING && !parser_string(im, "the name of a medium", &outside, NULL))
+    outside = inside; /* as in pbrt, a single name is for both sides */
+    if (token.kind == TOKEN_STRING &&
+        (!parser_string(im, "the name of a medium", &name, &place) || !medium_number(im, name, place, &outside)))
         return false;
-    if (!*inside && !*outside)
-        return true;
-    return import_unsupported(im, im->place, "a participating medium (MediumInterface)", "empty space", NULL);
-}
-
-static bool directive_make_named_medium(PbrtImport *im, const char *name)
-{
-    (void)name;
-    return import_unsupported(im, im->place, "a participating medium (MakeNamedMedium)", "empty space", NULL);
+    im->state.inside = inside;
+    im->state.outside = outside;
+    return true;
 }
 
 static bool directive_named_material(PbrtImport *im)
@@ -294,7 +293,7 @@ static const Directive DIRECTIVES[] = {
     {"LightSource", IN_WORLD, NULL, import_light},
     {"LookAt", ANYWHERE, directive_look_at, NULL},
     {"MakeNamedMaterial", IN_WORLD, directive_make_named_material, NULL},
-    {"MakeNamedMedium", ANYWHERE, NULL, directive_make_named_medium},
+    {"MakeNamedMedium", ANYWHERE, NULL, import_named_medium},
     {"Material", IN_WORLD, NULL, import_material},
     {"MediumInterface", ANYWHERE, directive_medium_interface, NULL},
     {"NamedMaterial", IN_WORLD, directive_named_material, NULL},

@@ -331,6 +331,7 @@ bool import_camera(PbrtImport *im, const char *kind)
     bool known = strcmp(kind, "perspective") == 0 || strcmp(kind, "orthographic") == 0, substitute = false;
     if (!camera_transform_set(im, camera) || (!known && !camera_other(im, kind, &substitute)))
         return false;
+    camera->medium = im->state.outside;
     if (substitute)
         return true;
     snprintf(owner, sizeof owner, "the %s camera", kind);

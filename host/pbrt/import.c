@@ -6,6 +6,7 @@
 #include "pbrt/errors.h"
 #include "pbrt/late.h"
 #include "pbrt/parser.h"
+#include "pbrt/readers.h"
 #include "pbrt/state.h"
 #include "scene/center.h"
 #include "scene/format.h"
@@ -38,6 +39,8 @@ static void import_init(PbrtImport *im, const ImportOptions *options, Scene *sce
     name_table_init(&im->float_textures);
     name_table_init(&im->spectrum_textures);
     array_init(&im->textures, sizeof(ImportTexture));
+    name_table_init(&im->media);
+    array_init(&im->media_seen, sizeof(MediumSeen));
     texture_cache_init(&im->images);
     if (options->memory) {
         im->images.read = options->memory->image;
@@ -65,6 +68,8 @@ static void import_destroy(PbrtImport *im)
     name_table_destroy(&im->float_textures);
     name_table_destroy(&im->spectrum_textures);
     array_destroy(&im->textures);
+    name_table_destroy(&im->media);
+    array_destroy(&im->media_seen);
     texture_cache_destroy(&im->images);
     arena_destroy(&im->arena);
 }
@@ -119,7 +124,8 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.offset = scene->origin = *offset;
-    bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im);
+    bool good =
+        source_open(&im, source) && directives_read(&im) && late_materials_finish(&im) && media_check(&im);
     good = errors_end(&im) && good;
     balance_apply(&im);
     camera_move(&scene->camera_settings, im.offset);

@@ -346,7 +346,8 @@ bool import_light(PbrtImport *im, const char *kind)
     ParamList list;
     char owner[96];
     LightReader reader = {.im = im, .list = &list};
-    reader.light = (Light){.primitive = NONE, .image = NONE, .distribution = NONE};
+    reader.light = (Light){
+        .flags = im->state.outside << LIGHT_MEDIUM_SHIFT, .primitive = NONE, .image = NONE, .distribution = NONE};
     size_t i = 0;
     while (i < KIND_COUNT && strcmp(kind, KINDS[i].name) != 0)
         ++i;

@@ -18,6 +18,14 @@ bool import_sampler(PbrtImport *im, const char *kind);
 bool import_accelerator(PbrtImport *im, const char *kind);
 bool import_option(PbrtImport *im, const char *name, const Token *value);
 
+bool import_named_medium(PbrtImport *im, const char *name);
+
+/* The number of a medium that MediumInterface names; "" is empty space. */
+bool medium_number(PbrtImport *im, const char *name, SourcePlace place, uint *number);
+
+/* To be called at the end of the scene: every medium that is mentioned must be defined. */
+bool media_check(PbrtImport *im);
+
 /* Objects and instances. */
 bool import_object_begin(PbrtImport *im, const char *name, SourcePlace name_place);
 bool import_object_end(PbrtImport *im);

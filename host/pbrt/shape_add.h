@@ -12,7 +12,8 @@ typedef struct ShapeContext {
     Shape shape; /* material, alpha, flags */
     AreaEmission emission;
     bool emits;
-    bool invisible; /* interface material: parameters are checked, but nothing is added */
+    bool interface; /* the shape has no material */
+    bool invisible; /* and it separates no media: parameters are checked, but nothing is added */
     SourcePlace place;
 } ShapeContext;
 

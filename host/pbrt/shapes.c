@@ -1,5 +1,6 @@
 /* Shape directives: context of a shape, and quadrics (meshes: mesh.c). */
 #include "base/log.h"
+#include "geometry/medium.h"
 #include "pbrt/errors.h"
 #include "pbrt/mesh.h"
 #include "pbrt/readers.h"
@@ -86,12 +87,12 @@ static bool alpha_read(PbrtImport *im, ParamList *list, uint *alpha)
     return !list->failed && (param.value >= 1.0f || *alpha != NONE);
 }
 
-/* Reads the emission of a shape; an invisible one has none, with a warning as in pbrt. */
+/* Reads the emission of a shape; one without material has none, with a warning as in pbrt. */
 static bool emission_read(PbrtImport *im, ShapeContext *context)
 {
     if (!value_area_emission(im, &context->emission, &context->emits))
         return false;
-    if (context->emits && context->invisible) {
+    if (context->emits && context->interface) {
         log_message_at(LOG_WARNING, im->place, "the area light is ignored: the shape's material is \"interface\"");
         context->emits = false;
     }
@@ -117,11 +118,16 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
         return false;
     if (im->open_object < 0)
         import_matrix_move(im, &context->ctm);
-    context->invisible = context->shape.material == MATERIAL_INTERFACE;
+    bool interface = context->shape.material == MATERIAL_INTERFACE;
+    context->invisible = interface && im->state.inside == im->state.outside;
+    context->interface = interface;
     context->has_inverse = matrix_inverse(&context->ctm, &context->inverse);
     bool reverse = im->state.reverse_orientation;
     context->shape.flags =
         (reverse ? SHAPE_REVERSE : 0u) | (reverse != matrix_swaps_handedness(&context->ctm) ? SHAPE_FLIP_NORMAL : 0u);
+    context->shape.flags |= media_bits(im->state.inside, im->state.outside) | (interface ? (uint)SHAPE_INTERFACE : 0u);
+    if (interface)
+        context->shape.material = NONE;
     context->shape.first_light = NONE;
     return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context) &&
            alpha_emission_check(im, list, context);

@@ -9,6 +9,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/lexer.c host/pbrt/lexer.h \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \
+	host/pbrt/media.c host/pbrt/media_presets.h \
 	host/pbrt/mesh.c host/pbrt/mesh.h \
 	host/pbrt/needs.c host/pbrt/needs.h \
 	host/pbrt/objects.c \

@@ -27,33 +27,44 @@ static void record_split_walk(Recorder *recorder, uint segments)
     }
 }
 
-static void record_connection(Recorder *recorder, uint t, bool split)
+/* What of a frame the list depends on. */
+typedef struct BidirectionalSteps {
+    uint max_depth;
+    bool split; /* depths */
+    bool media;
+} BidirectionalSteps;
+
+static void record_connection(Recorder *recorder, const BidirectionalSteps *steps, uint t)
 {
     recorder_kernel(recorder, KERNEL_bd_connect, false);
     recorder_step(recorder, STEP_TRACE_SHADOW);
+    if (steps->media)
+        recorder_kernel(recorder, KERNEL_bd_connect, false); /* connection_traced in path/bd_connect.h */
     recorder_kernel(recorder, KERNEL_bd_add_connections, false);
     if (t == 1)
         recorder_step(recorder, STEP_SPLAT);
-    else if (split)
+    else if (steps->split)
         record_gathered(recorder);
 }
 
 /* Connections (s, t) in the order of connection_advance (kernels/bd_connect.cl). */
-static void record_connections(Recorder *recorder, uint max_depth, bool split)
+static void record_connections(Recorder *recorder, const BidirectionalSteps *steps)
 {
-    for (uint s = 2; s <= max_depth; ++s)
-        record_connection(recorder, 1, split);
-    for (uint t = 2; t <= max_depth; ++t)
-        for (uint s = 1; s + t <= max_depth + 1; ++s)
-            record_connection(recorder, t, split);
+    for (uint s = 2; s <= steps->max_depth; ++s)
+        record_connection(recorder, steps, 1);
+    for (uint t = 2; t <= steps->max_depth; ++t)
+        for (uint s = 1; s + t <= steps->max_depth + 1; ++s)
+            record_connection(recorder, steps, t);
 }
 
 bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->path.max_depth;
-    bool split = frame->film.split_depths != 0;
-    /* Two walks, their starts, the last splat, and up to five steps per connection. */
-    size_t capacity = 9 * (size_t)max_depth + 9 + 5 * (size_t)max_depth * (max_depth + 1) / 2;
+    const BidirectionalSteps steps = {.max_depth = max_depth,
+                                      .split = frame->film.split_depths != 0,
+                                      .media = (frame->scene.features & FEATURE_MEDIUM) != 0};
+    /* Two walks, their starts, the last splat, and up to six steps per connection. */
+    size_t capacity = 9 * (size_t)max_depth + 9 + 6 * (size_t)max_depth * (max_depth + 1) / 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;
@@ -61,15 +72,15 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     if (max_depth > 1)
         recorder_walk(&recorder, max_depth - 1, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
     recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
-    if (split)
+    if (steps.split)
         record_split_walk(&recorder, max_depth);
     else
         recorder_walk(&recorder, max_depth, KERNEL_bd_shade_hits, KERNEL_bd_extend_walks);
-    record_connections(&recorder, max_depth, split);
+    record_connections(&recorder, &steps);
     if (frame->pool.enabled)
         recorder_kernel(&recorder, KERNEL_pool_end, false);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
-    *list = recorder_list(&recorder, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);
+    *list = recorder_list(&recorder, frame, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);
     list->words_per_item[BUFFER_VERTICES] = 2 * max_depth * VERTEX_WORDS;
     list->words_per_item[BUFFER_DENSITIES] = 2 * max_depth * DENSITY_WORDS;
     return true;

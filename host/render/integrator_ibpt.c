@@ -13,18 +13,26 @@
 #define IBPT_DEPTH_LIMIT 63
 
 /* Steps per segment: rays, vertex, connection, shadow rays, contribution, [splats,] next direction, skip. */
-#define SEGMENT_STEPS_MAX 8
+#define SEGMENT_STEPS_MAX 9
+
+/* The connection of a vertex, its visibility and contribution. */
+static void record_connection(Recorder *recorder, bool media)
+{
+    recorder_kernel(recorder, KERNEL_ib_connect, true);
+    recorder_step(recorder, STEP_TRACE_SHADOW);
+    if (media)
+        recorder_kernel(recorder, KERNEL_ib_connect, true); /* connection_traced in path/bd_connect.h */
+    recorder_kernel(recorder, KERNEL_ib_add_connections, true);
+}
 
 /* The light subpath: every vertex but y_0 is connected to the lens. */
-static void record_light(Recorder *recorder, uint segments)
+static void record_light(Recorder *recorder, uint segments, bool media)
 {
-    size_t end = recorder->count + (size_t)segments * 8 - 2;
+    size_t each = media ? 9 : 8, end = recorder->count + (size_t)segments * each - 2;
     for (uint i = 1; i <= segments; ++i) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
         recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
-        recorder_kernel(recorder, KERNEL_ib_connect, true);
-        recorder_step(recorder, STEP_TRACE_SHADOW);
-        recorder_kernel(recorder, KERNEL_ib_add_connections, true);
+        record_connection(recorder, media);
         recorder_step(recorder, STEP_SPLAT);
         if (i == segments)
             break;
@@ -34,17 +42,15 @@ static void record_light(Recorder *recorder, uint segments)
     assert(recorder->count == end);
 }
 
-static void record_camera(Recorder *recorder, uint segments)
+static void record_camera(Recorder *recorder, uint segments, bool media)
 {
-    size_t end = recorder->count + (size_t)(segments - 1) * 7 + 2;
+    size_t each = media ? 8 : 7, end = recorder->count + (size_t)(segments - 1) * each + 2;
     for (uint i = 1; i <= segments; ++i) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
         recorder_kernel(recorder, KERNEL_ib_shade_hits, true);
         if (i == segments)
             break;
-        recorder_kernel(recorder, KERNEL_ib_connect, true);
-        recorder_step(recorder, STEP_TRACE_SHADOW);
-        recorder_kernel(recorder, KERNEL_ib_add_connections, true);
+        record_connection(recorder, media);
         recorder_kernel(recorder, KERNEL_ib_extend_walks, true);
         recorder_skip(recorder, end);
     }
@@ -54,17 +60,18 @@ static void record_camera(Recorder *recorder, uint segments)
 static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->path.max_depth;
+    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
     size_t capacity = 4 + 2 * (size_t)max_depth * SEGMENT_STEPS_MAX;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;
     recorder_kernel(&recorder, KERNEL_ib_start_light, false);
     if (max_depth > 1)
-        record_light(&recorder, max_depth - 1);
+        record_light(&recorder, max_depth - 1, media);
     recorder_kernel(&recorder, KERNEL_bd_start_camera, false);
-    record_camera(&recorder, max_depth);
+    record_camera(&recorder, max_depth, media);
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
-    *list = recorder_list(&recorder, IB_HEADER_WORDS, BD_FIELDS, IB_FIELD_COUNT);
+    *list = recorder_list(&recorder, frame, IB_HEADER_WORDS, BD_FIELDS, IB_FIELD_COUNT);
     list->words_per_item[BUFFER_VERTICES] = VERTEX_WORDS;
     return true;
 }

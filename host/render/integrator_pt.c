@@ -136,7 +136,10 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_RARE, 3, true, "rare radiance"),
     PATH_FIELD(PATH_LIGHT_SHOWN, 1, true, "shown part of the light sample"),
     PATH_FIELD(PATH_OFFSET, 1, false, "place in the pixel's filter"),
+    PATH_FIELD(PATH_LIGHT_PDF, 1, true, "density of the light sample"),
+    PATH_FIELD(PATH_LIGHT_OTHER, 1, true, "density of its direction by the BSDF"),
 };
+#define PATH_FIELDS_OF_MEDIA 2 /* the last ones */
 #undef PATH_FIELD
 
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
@@ -150,7 +153,10 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
     steps_record(&recorder, &steps);
-    *list = recorder_list(&recorder, PATH_WORDS, PATH_FIELDS, sizeof PATH_FIELDS / sizeof PATH_FIELDS[0]);
+    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    size_t fields = sizeof PATH_FIELDS / sizeof PATH_FIELDS[0];
+    *list = recorder_list(&recorder, frame, media ? PATH_MEDIA_WORDS : PATH_WORDS, PATH_FIELDS,
+                          media ? fields : fields - PATH_FIELDS_OF_MEDIA);
     return true;
 }
 

@@ -230,7 +230,7 @@ void render_layers_variance(const RenderLayers *layers, float scale, size_t firs
 /* ---- variables --------------------------------------------------------------------------------------------------- */
 
 /* A pass for `count` variables. */
-static bool aov_list(uint count, StepList *list, Error *error)
+static bool aov_list(const FrameParams *frame, uint count, StepList *list, Error *error)
 {
     Recorder recorder;
     if (!recorder_init(&recorder, 2 + 2 * (size_t)count, error))
@@ -243,7 +243,7 @@ static bool aov_list(uint count, StepList *list, Error *error)
             recorder_step(&recorder, STEP_SPLAT);
         recorder_kernel(&recorder, KERNEL_aov_splat, false);
     }
-    *list = recorder_list(&recorder, PATH_WORDS, NULL, 0);
+    *list = recorder_list(&recorder, frame, PATH_WORDS, NULL, 0);
     return true;
 }
 
@@ -295,7 +295,7 @@ bool render_layers_sample(RenderRun *run, uint64_t samples, Error *error)
             aovs |= 1u << aov;
             ++count;
         }
-    if (!aov_list(count, &list, error))
+    if (!aov_list(&run->frame, count, &list, error))
         return false;
     bool done = true;
     for (; done && layers->aov_samples < wanted; ++layers->aov_samples)

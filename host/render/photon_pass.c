@@ -19,7 +19,7 @@ bool photon_pass_init(PhotonPass *pass, const RenderRun *run, Error *error)
     recorder_kernel(&recorder, KERNEL_photon_start, false);
     recorder_walk(&recorder, CAUSTIC_VERTICES + 1, KERNEL_photon_walk, KERNEL_COUNT);
     recorder_kernel(&recorder, KERNEL_photon_end, false);
-    pass->list = recorder_list(&recorder, PHOTON_PATH_WORDS, NULL, 0);
+    pass->list = recorder_list(&recorder, &run->frame, PHOTON_PATH_WORDS, NULL, 0);
     pass->list.words_per_item[BUFFER_SHADOWS] = 0;
     pass->list.words_per_item[BUFFER_SPLATS] = 0;
     pass->list.pass_words = pass->words;

@@ -110,8 +110,10 @@ bool camera_setup(const CameraSettings *given, int width, int height, Camera *ou
     double scale = ldexp(1.0, exponent);
     if (settings.kind == CAMERA_PERSPECTIVE)
         scale = tan((double)settings.fov * (M_PI / 360.0));
-    *out =
-        (Camera){.kind = settings.kind, .lens_radius = settings.lens_radius, .focal_distance = settings.focal_distance};
+    *out = (Camera){.kind = settings.kind,
+                    .lens_radius = settings.lens_radius,
+                    .focal_distance = settings.focal_distance,
+                    .medium = settings.medium};
     for (int i = 0; i < 4; ++i)
         out->screen[i] = (float)(scale * window[i]);
     return affine_set(settings.world_from_camera, &out->world_from_camera, error) &&

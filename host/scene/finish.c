@@ -12,6 +12,7 @@
 #include "scene/filter_setup.h"
 #include "scene/light_guide_setup.h"
 #include "scene/light_setup.h"
+#include "scene/media_setup.h"
 #include "scene/pack.h"
 #include "scene/portal_setup.h"
 
@@ -303,7 +304,7 @@ static uint scene_features(const Scene *scene)
         features |= ARRAY_AT(&scene->texture_ops, TextureOp, i).code >= TEXTURE_FBM ? FEATURE_PROCEDURAL : 0u;
     if (scene->camera_settings.lens_radius > 0.0f)
         features |= FEATURE_LENS;
-    return features;
+    return features | media_features(scene);
 }
 
 /* ---- tables of coats --------------------------------------------------------------------------------------------- */
@@ -425,11 +426,14 @@ bool scene_finish(Scene *scene, Error *error)
     scene->features = scene->frame.scene.features = scene_features(scene);
     scene->primitive_count = scene->primitives.count;
     if (!scene_coat_tables(scene, error) ||
-        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error) ||
-        !light_setup(scene, error))
+        !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error))
+        return false;
+    media_lights_setup(scene);
+    if (!light_setup(scene, error))
         return false;
     for (size_t i = 0; i < scene->lights.count; ++i)
         scene->ray_reach = fmaxf(scene->ray_reach, light_reach(scene, &ARRAY_AT(&scene->lights, Light, i)));
+    scene->ray_reach += media_reach(scene);
     light_guide_setup(scene);
     SceneView view = geometry_view(scene);
     if (!aim_setup(scene, &view, error))

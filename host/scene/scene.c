@@ -25,6 +25,7 @@
     X(infinite_lights, uint)                                                                                           \
     X(portals, Portal)                                                                                                 \
     X(aims, Aim)                                                                                                       \
+    X(media, Medium)                                                                                                   \
     X(distributions2d, Distribution2D)                                                                                 \
     X(lookup, float)                                                                                                   \
     X(texels, uint)                                                                                                    \
@@ -400,6 +401,22 @@ bool scene_add_material(Scene *scene, const Material *material, uint *index, Err
     if (!stored)
         return false;
     *stored = *material;
+    return true;
+}
+
+bool scene_add_medium(Scene *scene, const Medium *medium, uint *number, Error *error)
+{
+    size_t added = scene->media.count == 0 ? 2 : 1; /* with empty space */
+    if (scene->media.count >= MEDIA_MAX) {
+        error_set(error, "the scene has more than %u media", MEDIA_MAX - 1);
+        return error_fix(error, "use one medium for several shapes");
+    }
+    Medium *stored = SCENE_GROW(scene, media, Medium, added, error);
+    if (!stored)
+        return false;
+    stored[0] = (Medium){.g = 0.0f};
+    stored[added - 1] = *medium;
+    *number = (uint)scene->media.count - 1;
     return true;
 }
 

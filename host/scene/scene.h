@@ -37,6 +37,7 @@ typedef struct CameraSettings {
     float focal_distance;
     double world_from_camera[16]; /* row-major */
     double camera_from_world[16];
+    uint medium; /* around the camera: index into `media` */
 } CameraSettings;
 
 typedef struct FilterSettings {
@@ -73,6 +74,7 @@ typedef struct Scene {
     Array infinite_lights; /* uint */
     Array portals; /* Portal; scene_finish sets its sums */
     Array aims; /* Aim, set by scene_finish */
+    Array media; /* Medium; [0] is empty space; none in scenes that name no medium */
     double light_power; /* luminance of the flux of all lights, set by scene_finish */
     Array distributions2d; /* Distribution2D */
     Array lookup; /* float */
@@ -138,6 +140,9 @@ bool scene_add_light(Scene *scene, const Light *light, Error *error);
 
 /* Appends the portal of an infinite light (scene/portal_setup.h makes it); *index: Light.portal. */
 bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *error);
+
+/* Appends a medium; *number: its index, at least 1. */
+bool scene_add_medium(Scene *scene, const Medium *medium, uint *number, Error *error);
 
 /* Surface area of a primitive in world space, computed in double. Only before scene_finish has ended. */
 double scene_primitive_area(const Scene *scene, uint primitive);

@@ -11,6 +11,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/format.c host/scene/format.h \
 	host/scene/light_setup.c host/scene/light_setup.h \
 	host/scene/light_tree.c host/scene/light_tree.h \
+	host/scene/media_setup.c host/scene/media_setup.h \
 	host/scene/pack.c host/scene/pack.h \
 	host/scene/portal_setup.c host/scene/portal_setup.h \
 	host/scene/aim_setup.c host/scene/aim_setup.h \

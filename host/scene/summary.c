@@ -28,6 +28,7 @@ void scene_summary(const Scene *scene, SceneSummary *summary)
     for (size_t i = 0; i < scene->texture_ops.count; ++i)
         summary->textures += ARRAY_AT(&scene->texture_ops, TextureOp, i).code == TEXTURE_END;
     summary->images = scene->images.count;
+    summary->media = scene->media.count > 0 ? scene->media.count - 1 : 0;
     summary->objects = scene->objects.count > 0 ? scene->objects.count - 1 : 0;
     summary->instances = scene->instances.count;
 }
@@ -62,6 +63,7 @@ void scene_summary_text(const Scene *scene, const SceneSummary *summary, const c
     counts_text(stream, "materials", summary->materials, MATERIAL_NAMES, MATERIAL_KINDS);
     counts_text(stream, "lights", summary->lights, LIGHT_NAMES, LIGHT_KINDS);
     fprintf(stream, "%-14s%zu, %zu images\n", "textures", summary->textures, summary->images);
+    fprintf(stream, "%-14s%zu\n", "media", summary->media);
     fprintf(stream, "%-14s(%g, %g, %g) to (%g, %g, %g)\n", "bounds", (double)low[0], (double)low[1], (double)low[2],
             (double)high[0], (double)high[1], (double)high[2]);
     fprintf(stream, "%-14s0x%06x ", "features", scene->features);
@@ -106,6 +108,7 @@ void scene_summary_json(const Scene *scene, const SceneSummary *summary, const c
     counts_json(&json, "lights", summary->lights, LIGHT_NAMES, LIGHT_KINDS);
     json_unsigned(&json, "textures", summary->textures);
     json_unsigned(&json, "images", summary->images);
+    json_unsigned(&json, "media", summary->media);
     vector_json(&json, "bounds_min", scene->bounds_min);
     vector_json(&json, "bounds_max", scene->bounds_max);
     json_unsigned(&json, "feature_mask", scene->features);

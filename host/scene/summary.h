@@ -12,6 +12,7 @@ typedef struct SceneSummary {
     size_t lights[LIGHT_KINDS]; /* by LIGHT_* */
     size_t textures; /* texture programs */
     size_t images;
+    size_t media; /* that MakeNamedMedium has defined */
     size_t objects; /* object definitions, without the world */
     size_t instances;
 } SceneSummary;

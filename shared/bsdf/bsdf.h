@@ -9,6 +9,7 @@
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/diffuse_transmission.h"
+#include "bsdf/phase.h"
 #include "bsdf/thin_dielectric.h"
 #include "layout/scene_view.h"
 
@@ -44,10 +45,18 @@ SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 /* Whether to dispatch to the functions of kind NAME, whose directions have |z| > BSDF_COSINE_MIN. */
 #define OF_KIND(scene, bsdf, NAME) (SCENE_HAS(scene, FEATURE_##NAME) && (bsdf)->kind == MATERIAL_##NAME)
 
-/* f(wo, wi) |cos wi| and both densities; delta lobes count as zero. wo and wi: unit, in the shading frame, pointing
- * away from the surface. */
+/* Whether it is the phase function of a vertex in a medium. */
+SHARED_FUNCTION bool bsdf_is_phase(const SceneView *scene, const Bsdf *bsdf)
+{
+    return SCENE_HAS(scene, FEATURE_SCATTERING) && bsdf->kind == MATERIAL_PHASE;
+}
+
+/* f(wo, wi) |cos wi|, or the phase function, and both densities; delta lobes count as zero. wo and wi: unit, in the
+ * shading frame, pointing away from the surface. */
 SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
+    if (bsdf_is_phase(scene, bsdf))
+        return phase_eval(bsdf, wi);
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
         return bsdf_value_zero();
 #define EVAL(NAME, name, text, traits)                                                                                 \
@@ -69,6 +78,8 @@ SHARED_FUNCTION bool bsdf_has_base(const Bsdf *bsdf)
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
                                       BsdfSample *sample)
 {
+    if (bsdf_is_phase(scene, bsdf))
+        return phase_sample(bsdf, draw.u, sample);
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
         return false;
 #define SAMPLE(NAME, name, text, traits)                                                                               \
@@ -92,7 +103,7 @@ SHARED_FUNCTION bool bsdf_sample(const SceneView *scene, const Bsdf *bsdf, Vec3 
 SHARED_FUNCTION bool bsdf_invert(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, float u_lobe,
                                  BsdfInverse *inverse)
 {
-    if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
+    if (bsdf_is_phase(scene, bsdf) || !(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
         return false;
 #define INVERT(NAME, name, text, traits)                                                                               \
     if (OF_KIND(scene, bsdf, NAME))                                                                                    \

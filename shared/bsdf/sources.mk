@@ -12,4 +12,5 @@ SHARED_FILES += \
 	shared/bsdf/lobe.h \
 	shared/bsdf/material.h \
 	shared/bsdf/microfacet.h \
+	shared/bsdf/phase.h \
 	shared/bsdf/thin_dielectric.h

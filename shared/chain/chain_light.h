@@ -28,8 +28,7 @@ SHARED_FUNCTION Vec3 chain_environment(const SceneView *scene, Vec3 beta, Densit
     float all = 0.0f, luminance = 1.0f, scale = 1.0f;
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 color =
-            vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], &miss->ray, miss->from_ng, &ends));
+        Vec3 color = vec3_mul(beta, environment_met(scene, scene->infinite_lights[i], miss, &ends));
         if (vec3_is_zero(color))
             continue;
         StrategyWeights weights = bd_weights(scene->frame, 0u, depth + 1u, &view, &ends);
@@ -64,7 +63,7 @@ SHARED_FUNCTION void chain_hit_light(const SceneView *scene, __global uint *rest
     state_store(paths, stride, chain_subpath(SIDE_CAMERA, bank) + CHAIN_SUBPATH_DELTA, item,
                 state_load(paths, stride, BD_CAMERA_DELTA, item));
     DensityView view = chain_density_view(frame, paths, densities, item, 0u, d + 1u);
-    Vec3 color = vec3_splat(0.0f), beta = state_load_vec3(paths, stride, BD_BETA, item);
+    Vec3 color = vec3_splat(0.0f), beta = walk_hit->beta;
     float path_tracing = 0.0f, alpha = 1.0f;
     if (walk_hit->missed && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
         float u = random_float(chain_select(frame, paths, item).x[0]);

@@ -17,13 +17,16 @@
 
 #define NUMBER_CAMERA 0u /* film, lens: 4 */
 #define NUMBER_EMIT 4u /* point and direction on the light: 4 */
-#define NUMBER_SELECT 8u /* of light_select_point, not used, aim: 3 */
+#define NUMBER_SELECT 8u /* of light_select_point, NUMBER_DISTANCE, aim: 3 */
+#define NUMBER_DISTANCE 9u /* of the last segment, if the camera walk hits a light (s = 0); otherwise not used */
 #define NUMBER_VERTICES 11u /* then those of every vertex between the ends of the path */
 
-/* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them. */
+/* Coordinates per vertex: lobe and direction; in scenes that mix materials, also the choice among them; in scenes with
+ * scattering media, last, the distance of the segment that leads to the vertex, as its own subpath makes it. */
 SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
 {
-    return (frame->scene.features & FEATURE_MIX) != 0u ? 4u : 3u;
+    uint features = frame->scene.features;
+    return 3u + ((features & FEATURE_MIX) != 0u ? 1u : 0u) + ((features & FEATURE_SCATTERING) != 0u ? 1u : 0u);
 }
 
 /* The slot of a vertex's coordinates. A path has d - 1 vertices between its ends, in this order: y_1, y_2 ..., from the
@@ -233,6 +236,24 @@ SHARED_FUNCTION Random4 chain_vertex(__global const FrameParams *frame, __global
     return chain_numbers(frame, paths, item, NUMBER_VERTICES + chain_slot(side, d, i) * count, count);
 }
 
+/* The coordinate of the distance of the segment to vertex i: that vertex's last or, if the camera walk hits a light
+ * there (s = 0, i = d), one that no other path uses. */
+SHARED_FUNCTION uint chain_distance_number(__global const FrameParams *frame, uint side, uint d, uint i)
+{
+    uint count = chain_vertex_numbers(frame);
+    return i == d ? NUMBER_DISTANCE : NUMBER_VERTICES + chain_slot(side, d, i) * count + count - 1u;
+}
+
+/* The medium and the distance of the walk's stored ray, which leads to vertex i of `side` in a path of d segments. */
+SHARED_FUNCTION void chain_ray_media(const SceneView *scene, Walk walk, uint side, uint d, uint i, uint medium)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint bits = 0u;
+    if (SCENE_HAS(scene, FEATURE_SCATTERING))
+        bits = state_load(walk.paths, walk.stride, CHAIN_NUMBERS + chain_distance_number(frame, side, d, i), walk.item);
+    walk_ray_media(scene, walk.rays, walk.stride, walk.item, medium, bits);
+}
+
 SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint item, uint first, uint count,
                                          Random4 numbers)
 {
@@ -240,7 +261,19 @@ SHARED_FUNCTION void chain_store_numbers(__global uint *paths, uint stride, uint
         state_store(paths, stride, CHAIN_NUMBERS + first + i, item, numbers.x[i]);
 }
 
+SHARED_FUNCTION void chain_store_number(__global uint *paths, uint stride, uint item, uint which, uint number)
+{
+    state_store(paths, stride, CHAIN_NUMBERS + which, item, number);
+}
+
 /* ---- how a chain starts ------------------------------------------------------------------------------------------ */
+
+/* The number that draws the distance of segment i of a side of the pool's sample. */
+SHARED_FUNCTION uint pool_distance(__global const FrameParams *frame, __global const uint *paths, uint item, uint side,
+                                   uint i)
+{
+    return pool_random(frame, paths, item, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[1];
+}
 
 /* Sets the coordinates of the path that the pool kept of one of its samples. */
 SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint *paths, uint item, uint key,
@@ -262,13 +295,18 @@ SHARED_FUNCTION void chain_numbers_of_pool(const SceneView *scene, __global uint
     chain_store_numbers(paths, stride, item, NUMBER_CAMERA, 4u, camera);
     chain_store_numbers(paths, stride, item, NUMBER_EMIT, 4u, pool_random(frame, paths, item, BD_RANDOM_EMIT));
     chain_store_numbers(paths, stride, item, NUMBER_SELECT, 3u, pool_random(frame, paths, item, BD_RANDOM_LIGHT));
+    if (SCENE_HAS(scene, FEATURE_SCATTERING) && s == 0u)
+        chain_store_number(paths, stride, item, NUMBER_DISTANCE, pool_distance(frame, paths, item, SIDE_CAMERA, d));
     for (uint slot = 0u; slot + 1u < d; ++slot) {
         uint side = slot + 1u < s ? SIDE_LIGHT : SIDE_CAMERA;
         uint i = side == SIDE_LIGHT ? slot + 1u : d - 1u - slot;
         Random4 numbers = pool_random(frame, paths, item, bd_random_vertex(side, i, BD_RANDOM_SCATTER));
-        if (count > 3u)
+        uint first = NUMBER_VERTICES + slot * count;
+        if (SCENE_HAS(scene, FEATURE_MIX))
             numbers.x[3] = pool_random(frame, paths, item, bd_random_vertex(side, i, BD_RANDOM_MIX)).x[0];
-        chain_store_numbers(paths, stride, item, NUMBER_VERTICES + slot * count, count, numbers);
+        chain_store_numbers(paths, stride, item, first, count < 4u ? count : 4u, numbers);
+        if (SCENE_HAS(scene, FEATURE_SCATTERING))
+            chain_store_number(paths, stride, item, first + count - 1u, pool_distance(frame, paths, item, side, i));
     }
 }
 

@@ -127,15 +127,16 @@ SHARED_FUNCTION bool shift_found(__global const uint *vertices, uint stride, uin
 
 /* The camera walk has hit z_depth, depth > 1, which a shift keeps: stores it and its density. False if it is not the
  * vertex that it should be. */
-SHARED_FUNCTION bool shift_hit(__global const FrameParams *frame, __global const uint *restrict paths,
+SHARED_FUNCTION bool shift_hit(const SceneView *scene, __global const uint *restrict paths,
                                __global uint *restrict vertices, uint item, uint depth, const WalkHit *walk_hit)
 {
-    uint stride = frame->pass.stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA),
+    uint stride = scene->frame->pass.stride, bank = chain_bank(paths, stride, item, SIDE_CAMERA),
          point = shift_point(bank, depth);
     float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, item), density = 0.0f;
     float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, item);
-    if (!walk_hit->missed) {
-        density = before * pdf_w * solid_angle_to_area(walk_hit->ray.d, walk_hit->surface.ng, walk_hit->distance2);
+    if (!walk_hit->missed && !walk_hit->scattered) {
+        density =
+            before * pdf_w * solid_angle_to_area(scene, walk_hit->ray.d, walk_hit->surface.ng, walk_hit->distance2);
         state_store_vec3(vertices, stride, point, item, walk_hit->surface.p);
         state_store(vertices, stride, point + SHIFT_INSTANCE, item, walk_hit->instance);
         state_store(vertices, stride, point + SHIFT_PRIMITIVE, item, walk_hit->primitive);

@@ -96,6 +96,17 @@ SHARED_FUNCTION Ray ray_between(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
     return ray;
 }
 
+/* The same, from p to q in this order: media are counted from p on. */
+SHARED_FUNCTION Ray ray_from_to(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
+{
+    Vec3 w = vec3_sub(q, p);
+    Ray ray;
+    ray.o = ray_offset(p, ray_side(ngp, w));
+    ray.d = vec3_sub(ray_offset(q, ray_side(ngq, vec3_negate(w))), ray.o);
+    ray.t_max = vec3_is_zero(w) || vec3_is_zero(ray.d) ? 0.0f : 1.0f;
+    return ray;
+}
+
 /* ---- the ray in tests of primitives ---------------------------------------------------------------------------- */
 
 /* A ray with what every primitive's test needs. kz is the axis along which d is largest, kx and ky the two others; the

@@ -4,6 +4,8 @@ SHARED_FILES += \
 	shared/geometry/bvh_traverse.h \
 	shared/geometry/cylinder.h \
 	shared/geometry/disk.h \
+	shared/geometry/media_walk.h \
+	shared/geometry/medium.h \
 	shared/geometry/primitive.h \
 	shared/geometry/ray.h \
 	shared/geometry/sphere.h \

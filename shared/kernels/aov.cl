@@ -5,6 +5,7 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/material.h"
+#include "geometry/media_walk.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
 #include "layout/aov_list.h"
@@ -23,11 +24,13 @@ typedef struct AovHit {
     Random4 random; /* that a path of light would draw its next direction from */
 } AovHit;
 
-SHARED_FUNCTION void aov_hit(const SceneView *scene, uint pixel, uint sample, Ray ray, Hit met, AovHit *hit)
+/* ray: from `origin`; its last part (media_walk.h). */
+SHARED_FUNCTION void aov_hit(const SceneView *scene, uint pixel, uint sample, Ray ray, Vec3 origin, Hit met,
+                             AovHit *hit)
 {
     hit->surface = surface_from_hit(scene, &ray, met);
     hit->back = vec3_negate(ray.d);
-    hit->distance = vec3_length(vec3_sub(hit->surface.p, ray.o));
+    hit->distance = vec3_length(vec3_sub(hit->surface.p, origin));
     hit->primitive = met.primitive;
     Surface surface = hit->surface;
     Random4 mix = path_random(scene->frame, pixel, sample, path_random_block(1u, RANDOM_MIX));
@@ -130,8 +133,9 @@ __kernel void aov_shade_hits(__global const FrameParams *restrict frame, __globa
         return;
     }
     AovHit hit;
+    Ray ray = ray_load(rays, stride, item);
     aov_hit(scene, state_load(paths, stride, PATH_PIXEL, item), state_load(paths, stride, PATH_SAMPLE, item),
-            ray_load(rays, stride, item), met, &hit);
+            ray_last_part(scene, hits, stride, item, ray), ray.o, met, &hit);
     for (uint aov = 0; aov < AOV_COUNT; ++aov)
         if ((frame->pass.aovs >> aov & 1u) != 0u)
             aov_store(paths, stride, item, aov, aov_value(scene, aov, &hit));

@@ -36,6 +36,7 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
         (t > 1u && vertex_smooth(vertices, stride, base_z, item)))
         return;
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
+    bool traced = connection_traced(scene, shadows, item);
     Connection connection = {0};
     Vertex y = {0}, z = {0};
     if (s > 1u)
@@ -47,6 +48,12 @@ __kernel void bd_connect(__global const FrameParams *restrict frame, __global co
     if (possible && t == 1u)
         possible = connection_target(scene, random, &connection);
     if (!possible || !connection_traceable(&connection))
+        return;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM) && !traced) {
+        connection_ray_store(scene, shadows, item, &connection);
+        return;
+    }
+    if (traced && !connection_pass(scene, shadows, item, s > 1u ? &y : 0, t > 1u ? &z : 0, &connection))
         return;
     if (s >= 2u)
         connection_light_end(paths, stride, item, &connection.ends);

@@ -40,6 +40,7 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
         pool_roulette_weigh(frame, paths, item, 1.0f);
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, item, own);
     state_store(paths, stride, BD_LENGTHS, item, 1u);
+    bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
 }
 
 /* From: the pixel. To: the camera's first ray. */
@@ -57,6 +58,7 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
         pool_start_camera(scene, walk);
     else
         walk_start_camera(scene, walk);
+    bd_ray_media(scene, paths, rays, item, SIDE_CAMERA, 1u, frame->camera.medium);
 }
 
 /* reservoir_update for a path with s = 0. */
@@ -109,12 +111,14 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     WalkHit walk_hit = {0};
     walk_hit.before = vertex_base(frame, side, depth - 1u);
     walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
-    Vec3 beta = state_load_vec3(paths, stride, BD_BETA, item);
+    Vec3 beta = walk_hit.beta;
+    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_GLOW))
+        walk_add_glow(scene, paths, hits, item, depth);
     DensityView view = bd_density_view(frame, paths, densities, item);
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT)) {
-            Vec3 sum = walk_environment(scene, view, &walk_hit.ray, walk_hit.from_ng, depth);
+            Vec3 sum = walk_environment(scene, view, &walk_hit, depth);
             bd_add_met(scene, paths, item, depth, vec3_mul(beta, sum));
         }
         walk_end(paths, rays, stride, item);
@@ -161,6 +165,7 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     if (side == SIDE_LIGHT || depth > 1u)
         state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, item, step.reverse);
     walk_step_store(paths, rays, stride, item, depth, &step);
+    bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
 }
 
 #endif

@@ -32,21 +32,28 @@ __kernel void pt_walk_caustics(__global const FrameParams *restrict frame, __glo
     if (item >= frame->pass.item_count || !(state_load_float(rays, stride, RAY_T_MAX, item) > 0.0f))
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Ray ray = ray_load(rays, stride, item);
+    Ray whole = ray_load(rays, stride, item), ray = ray_last_part(scene, hits, stride, item, whole);
     Hit hit = hit_load(hits, stride, item);
+    Passage passage = passage_load(scene, hits, stride, item, false);
+    Vec3 beta = state_load_vec3(paths, stride, PATH_CAUSTIC_BETA, item);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM)) { /* its directions are drawn for paths that pass unscattered */
+        beta = vec3_mul(beta, transmittance(passage.depth.all));
+        state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, beta);
+    }
     Surface surface = {0};
     if (hit.primitive != NONE)
         surface = surface_from_hit(scene, &ray, hit);
     uint segments = state_load(paths, stride, PATH_CAUSTIC_SEGMENTS, item);
     if (segments > state_load(paths, stride, PATH_DEPTH, item) + 1u) {
-        Vec3 light = caustic_radiance(scene, state_load(paths, stride, PATH_CAUSTIC_LIGHT, item), ray, hit, &surface);
-        light = vec3_mul(light, state_load_vec3(paths, stride, PATH_CAUSTIC_BETA, item));
+        Vec3 light = caustic_radiance(scene, state_load(paths, stride, PATH_CAUSTIC_LIGHT, item),
+                                      hit.primitive == NONE ? whole : ray, hit, &surface);
+        light = vec3_mul(light, beta);
         state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item,
                          vec3_add(light, state_load_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item)));
     }
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
     if (hit.primitive != NONE)
-        caustic_continue(scene, paths, rays, item, &surface, ray.d);
+        caustic_continue(scene, paths, rays, item, &surface, ray.d, passage.medium);
 }
 
 #endif

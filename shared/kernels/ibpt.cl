@@ -29,27 +29,27 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
         walk_start_light(scene, walk, vertices, 0u, bd_random(frame, paths, item, BD_RANDOM_LIGHT),
                          bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, item, own);
+    bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
 }
 
-/* s = 0: adds what a light sends that was hit. */
+/* s = 0: adds what a light sends that was hit. beta: throughput of the walk. */
 SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint *restrict paths, uint item, uint depth,
-                                Vec3 radiance, const StrategyEnds *ends)
+                                Vec3 beta, Vec3 radiance, const StrategyEnds *ends)
 {
     bool delta = (state_load(paths, frame->pass.stride, BD_WALK_FLAGS, item) & WALK_DELTA) != 0u;
     if (vec3_is_zero(radiance) || !strategy_wanted(frame, 0u, depth + 1u))
         return;
     float weight = frame->path.unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, item, depth, delta, ends);
-    Vec3 beta = state_load_vec3(paths, frame->pass.stride, BD_BETA, item);
     bd_add_radiance(paths, frame->pass.stride, item, vec3_scale(vec3_mul(beta, radiance), weight));
 }
 
 SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
-                                        const Ray *ray, Vec3 ng)
+                                        const WalkHit *miss)
 {
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], ray, ng, &ends);
-        ib_add_met(scene->frame, paths, item, depth, radiance, &ends);
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], miss, &ends);
+        ib_add_met(scene->frame, paths, item, depth, miss->beta, radiance, &ends);
     }
 }
 
@@ -72,16 +72,18 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     WalkHit walk_hit = {0};
     walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
+    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_GLOW))
+        walk_add_glow(scene, paths, hits, item, depth);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            ib_add_environment(scene, paths, item, depth, &walk_hit.ray, walk_hit.from_ng);
+            ib_add_environment(scene, paths, item, depth, &walk_hit);
         walk_end(paths, rays, stride, item);
         return;
     }
     if (side == SIDE_CAMERA && walk_hit.light != NONE) {
         StrategyEnds ends = {0};
         Vec3 radiance = emission_met(scene, &walk_hit, &ends);
-        ib_add_met(frame, paths, item, depth, radiance, &ends);
+        ib_add_met(frame, paths, item, depth, walk_hit.beta, radiance, &ends);
     }
     if (!walk_vertex(scene, paths, vertices, item, 0u, bd_random_mix(scene, paths, item, side, depth), &walk_hit))
         walk_end(paths, rays, stride, item);
@@ -102,6 +104,7 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
     if (depth == 0u || !strategy_wanted(frame, s, t))
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
+    bool traced = connection_traced(scene, shadows, item);
     Vertex vertex = vertex_load(scene, vertices, stride, 0u, item);
     Random4 random = bd_random_connection(frame, paths, item, s, t);
     Connection connection = {0};
@@ -110,6 +113,12 @@ __kernel void ib_connect(__global const FrameParams *restrict frame, __global co
                                              connection_target(scene, random, &connection)
                                        : connect_light(scene, &vertex, random, &connection);
     if (!possible || !connection_traceable(&connection))
+        return;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM) && !traced) {
+        connection_ray_store(scene, shadows, item, &connection);
+        return;
+    }
+    if (traced && !connection_pass(scene, shadows, item, s > 1u ? &vertex : 0, t > 1u ? &vertex : 0, &connection))
         return;
     if (side == SIDE_LIGHT)
         connection_light_end(paths, stride, item, &connection.ends);
@@ -157,6 +166,7 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
         return;
     ib_leave(paths, stride, item, side, depth, step.reverse, step.delta != 0u);
     walk_step_store(paths, rays, stride, item, depth, &step);
+    bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
 }
 
 #endif

@@ -109,8 +109,10 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     float own;
     Walk walk = {paths, rays, diagnostics, stride, item};
     if (walk_start_light(scene, walk, vertices, chain_vertex_base(SIDE_LIGHT, bank), chain_select(frame, paths, item),
-                         chain_emit(frame, paths, item), &own))
+                         chain_emit(frame, paths, item), &own)) {
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), item, own);
+        chain_ray_media(scene, walk, SIDE_LIGHT, chain_key_depth(key), 1u, emitter_medium(scene, walk));
+    }
 }
 
 /* From: the finished light walk. To: the camera's first ray, if the camera subpath is new and the light subpath is
@@ -137,6 +139,7 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Walk walk = {paths, rays, diagnostics, stride, item};
     walk_start_film(scene, walk, chain_camera(frame, paths, item));
+    chain_ray_media(scene, walk, SIDE_CAMERA, chain_key_depth(key), 1u, frame->camera.medium);
 }
 
 /* The walk has made the last vertex of its side: stores what the connection needs to know of it. */
@@ -188,6 +191,7 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, Walk walk, __global u
                           step.reverse / state_load_float(densities, stride, before, item));
     }
     walk_step_store(paths, walk.rays, stride, item, depth, &step);
+    chain_ray_media(scene, walk, side, at.d, depth + 1u, step.medium);
 }
 
 /* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s
@@ -215,7 +219,7 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(densities, stride, chain_density(frame, side, bank, s, depth), item, walk_hit.own);
     if (frame->chains.shifts > 0.0f && side == SIDE_CAMERA && depth > 1u && shift_draws(depth - 1u, d, s) &&
-        !shift_hit(frame, paths, vertices, item, depth, &walk_hit)) {
+        !shift_hit(scene, paths, vertices, item, depth, &walk_hit)) {
         walk_end(paths, rays, stride, item);
         return;
     }
@@ -245,13 +249,14 @@ __kernel void mlt_walk(__global const FrameParams *restrict frame, __global cons
     walk_end(paths, rays, stride, item);
 }
 
-/* Connects the two last vertices of the proposal `key`. film: chain_camera. */
+/* Connects the two last vertices of the proposal. film: chain_camera. */
 SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *restrict paths,
-                                   __global const uint *restrict vertices, uint item, uint key, Random4 film,
-                                   Connection *connection)
+                                   __global uint *restrict shadows, __global const uint *restrict vertices, uint item,
+                                   Random4 film, Connection *connection)
 {
     __global const FrameParams *frame = scene->frame;
-    uint stride = frame->pass.stride, s = chain_key_s(key), camera = chain_key_depth(key) + 1u - s;
+    uint stride = frame->pass.stride, key = state_load(paths, stride, CHAIN_PROPOSED_KEY, item);
+    uint s = chain_key_s(key), camera = chain_key_depth(key) + 1u - s;
     uint light_bank = chain_bank(paths, stride, item, SIDE_LIGHT),
          camera_bank = chain_bank(paths, stride, item, SIDE_CAMERA);
     uint light_half = chain_subpath(SIDE_LIGHT, light_bank);
@@ -271,7 +276,10 @@ SHARED_FUNCTION bool chain_connect(const SceneView *scene, __global const uint *
         connection->ends.hittable = (flags & EMITTER_DELTA) == 0u;
         connection->ends.connect = state_load_float(paths, stride, light_half + CHAIN_SUBPATH_CONNECT, item);
     }
-    return possible && connection_traceable(connection);
+    if (!possible || !connection_traceable(connection))
+        return false;
+    return !connection_traced(scene, shadows, item) ||
+           connection_pass(scene, shadows, item, s > 1u ? &y : 0, camera > 1u ? &z : 0, connection);
 }
 
 /* From: both subpaths. To: their connection, weighted, and its shadow ray. */
@@ -291,8 +299,13 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     Random4 film = chain_camera(frame, paths, item);
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Connection connection = {0};
-    if (!chain_connect(scene, paths, vertices, item, key, film, &connection))
+    bool traced = connection_traced(scene, shadows, item);
+    if (!chain_connect(scene, paths, shadows, vertices, item, film, &connection))
         return;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM) && !traced) {
+        connection_ray_store(scene, shadows, item, &connection);
+        return;
+    }
     DensityView view = chain_density_view(frame, paths, densities, item, s, camera);
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weights.own);

@@ -33,6 +33,9 @@ SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed
     Random4 choice = photon_random(scene->frame, number, 0u), random = photon_random(scene->frame, number, 1u);
     LightEmission emission = {0};
     *light = light_select(scene, choice.x[0], choice.x[1]);
+    /* A light without extent may lie before the end of a ray, for which alone the optical depth is known. */
+    if (SCENE_HAS(scene, FEATURE_MEDIUM) && light_has_position(scene->lights[*light].kind))
+        return false;
     if (!light_emit_aimed(scene, *light, random_float(choice.x[2]),
                           vec2(random_float(random.x[0]), random_float(random.x[1])),
                           vec2(random_float(random.x[2]), random_float(random.x[3])), &emission) ||
@@ -71,6 +74,7 @@ __kernel void photon_start(__global const FrameParams *restrict frame, __global 
     state_store_vec3(paths, stride, PHOTON_PATH_ORIGIN, item, ray.o);
     state_store_vec3(paths, stride, PHOTON_PATH_FIRST, item, ray.d);
     ray_store(rays, stride, item, ray);
+    ray_medium_store(scene, rays, stride, item, 0u);
 }
 
 /* From: closest hits. To: the next ray, or where the subpath has arrived. */
@@ -83,7 +87,7 @@ __kernel void photon_walk(__global const FrameParams *restrict frame, __global c
     if (item >= frame->pass.item_count || !(state_load_float(rays, stride, RAY_T_MAX, item) > 0.0f))
         return;
     KERNEL_SCENE(frame, geometry, tables, texels);
-    Ray ray = ray_load(rays, stride, item);
+    Ray ray = ray_last_part(scene, hits, stride, item, ray_load(rays, stride, item));
     Hit hit = hit_load(hits, stride, item);
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
     if (hit.primitive == NONE)
@@ -93,9 +97,11 @@ __kernel void photon_walk(__global const FrameParams *restrict frame, __global c
     uint lobes = state_load(paths, stride, PHOTON_PATH_LOBES, item);
     Random4 random = photon_random(frame, state_load(paths, stride, PHOTON_PATH_NUMBER, item), 2u + vertices);
     DeltaScatter scatter;
-    if (delta_scatter(scene, &surface, ray.d, TRANSPORT_IMPORTANCE, random, &scatter)) {
-        if (vertices < CAUSTIC_VERTICES)
+    if (delta_scatter(scene, &surface, ray.d, 0u, TRANSPORT_IMPORTANCE, random, &scatter)) {
+        if (vertices < CAUSTIC_VERTICES) {
             ray_store(rays, stride, item, scatter.ray);
+            ray_medium_store(scene, rays, stride, item, 0u);
+        }
         state_store(paths, stride, PHOTON_PATH_VERTICES, item, vertices + 1u);
         state_store(paths, stride, PHOTON_PATH_LOBES, item, lobes | (scatter.transmitted ? 1u << vertices : 0u));
     } else if (!scatter.smooth && vertices > 0u) {

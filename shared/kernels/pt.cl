@@ -17,6 +17,7 @@
 #include "path/caustic_rest.h"
 #include "path/mis.h"
 #include "path/partition.h"
+#include "path/passage.h"
 #include "path/path_random.h"
 #include "path/path_state.h"
 
@@ -33,6 +34,20 @@ SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *rest
 {
     state_store(paths, stride, PATH_DEPTH, item, 0u);
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
+}
+
+/* The stored ray, which ends segment `depth` of the path, begins in `medium`. */
+SHARED_FUNCTION void path_ray_media(const SceneView *scene, __global const uint *restrict paths,
+                                    __global uint *restrict rays, uint item, uint medium, uint depth)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->pass.stride;
+    ray_medium_store(scene, rays, stride, item, medium);
+    if (!SCENE_HAS(scene, FEATURE_SCATTERING) || frame->pass.aovs != 0u)
+        return;
+    Random4 random = path_random(frame, state_load(paths, stride, PATH_PIXEL, item),
+                                 state_load(paths, stride, PATH_SAMPLE, item), path_random_block(depth, RANDOM_MIX));
+    ray_distance_draw(rays, stride, item, random.x[1]);
 }
 
 /* From: nothing. To: the path's first ray, throughput 1. */
@@ -83,6 +98,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item, vec3_splat(0.0f));
     }
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
+    path_ray_media(scene, paths, rays, item, camera.medium, 1u);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         path_end(paths, rays, stride, item);
@@ -180,6 +196,31 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
     path_add_met(scene, paths, item, radiance, pdf_light, light_hit_alpha(scene, light, surface));
 }
 
+/* Stores the path's vertex, except for its Bsdf. */
+SHARED_FUNCTION void path_vertex_store(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 p,
+                                       Vec3 ng, Vec3 wo, const Frame *frame)
+{
+    uint stride = scene->frame->pass.stride;
+    state_store_vec3(paths, stride, PATH_POINT, item, p);
+    state_store_vec3(paths, stride, PATH_NG, item, ng);
+    state_store_vec3(paths, stride, PATH_WO, item, wo);
+    frame_store(paths, stride, PATH_FRAME, item, *frame);
+}
+
+/* Takes the path through the media before its hit: throughput, density, and the light that they emit. */
+SHARED_FUNCTION void path_pass_media(const SceneView *scene, __global uint *restrict paths,
+                                     __global const uint *restrict hits, uint item, bool scattered)
+{
+    uint stride = scene->frame->pass.stride;
+    Passage passage = passage_load(scene, hits, stride, item, scattered);
+    Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
+    if (SCENE_HAS(scene, FEATURE_GLOW))
+        path_add_radiance(scene->frame, paths, item, state_load(paths, stride, PATH_DEPTH, item),
+                          vec3_mul(beta, state_load_vec3(hits, stride, HIT_GLOW, item)), 1.0f);
+    state_store_vec3(paths, stride, PATH_BETA, item, vec3_mul(beta, passage.weight));
+    state_store_float(paths, stride, PATH_PDF_W, item, state_load_float(paths, stride, PATH_PDF_W, item) * passage.pdf);
+}
+
 /* From: closest hits. To: emission gathered; the vertex, its frame and Bsdf. Paths that miss or have max_depth segments
  * end. */
 __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global const uint *restrict photons,
@@ -194,11 +235,28 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     if (depth == 0u)
         return;
     KERNEL_SCENE_PHOTONS(frame, 0, photons, geometry, tables, texels);
-    Ray ray = ray_load(rays, stride, item);
+    Ray whole = ray_load(rays, stride, item), ray = ray_last_part(scene, hits, stride, item, whole);
     Hit hit = hit_load(hits, stride, item);
+    bool scattered = SCENE_HAS(scene, FEATURE_SCATTERING) && hit.primitive == HIT_SCATTERED;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        path_pass_media(scene, paths, hits, item, scattered);
     if (hit.primitive == NONE) {
         if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
-            path_add_environment(scene, paths, item, &ray);
+            path_add_environment(scene, paths, item, &whole);
+        path_end(paths, rays, stride, item);
+        return;
+    }
+    uint medium = hit_medium(scene, hits, stride, item);
+    if (scattered && depth < frame->path.max_depth) {
+        Vec3 wo = vec3_negate(ray.d);
+        Frame along = frame_from_normal(wo);
+        Bsdf phase = medium_bsdf(scene, medium);
+        path_vertex_store(scene, paths, item, scatter_position(&ray, hit), vec3_splat(0.0f), vec3(0.0f, 0.0f, 1.0f),
+                          &along);
+        bsdf_store(scene, paths, stride, PATH_BSDF, item, &phase);
+        return;
+    }
+    if (scattered) {
         path_end(paths, rays, stride, item);
         return;
     }
@@ -226,11 +284,23 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
         path_end(paths, rays, stride, item);
         return;
     }
-    state_store_vec3(paths, stride, PATH_POINT, item, surface.p);
-    state_store_vec3(paths, stride, PATH_NG, item, surface.ng);
-    state_store_vec3(paths, stride, PATH_WO, item, frame_to_local(shading, vec3_negate(ray.d)));
-    frame_store(paths, stride, PATH_FRAME, item, shading);
+    bsdf.flags |= media_at(scene, surface.shape, medium);
+    path_vertex_store(scene, paths, item, surface.p, surface.ng, frame_to_local(shading, vec3_negate(ray.d)), &shading);
     bsdf_store(scene, paths, stride, PATH_BSDF, item, &bsdf);
+}
+
+/* Stores what a light sample brings if it is visible. light: f times the radiance; pdf: its density; pdf_other: that of
+ * hitting the light by the Bsdf. */
+SHARED_FUNCTION void path_light_weigh(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                      Vec3 light, float pdf, float pdf_other)
+{
+    uint stride = frame->pass.stride;
+    float path_tracing = rgb_luminance(light) / (pdf + pdf_other);
+    state_store_vec3(paths, stride, PATH_LIGHT, item, vec3_scale(light, mis_power(pdf, pdf_other) / pdf));
+    if (frame->partition.split_direct != 0u)
+        state_store_float(
+            paths, stride, PATH_LIGHT_SHOWN, item,
+            path_shown(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item) + 1u, path_tracing));
 }
 
 /* From: the vertex. To: one light sample, its shadow ray, and its contribution if visible. */
@@ -264,21 +334,36 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     float pdf_other = sample.delta != 0u ? 0.0f : value.pdf_w;
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     Vec3 light_term = vec3_mul(vec3_mul(beta, value.f_cos), sample.radiance);
-    float path_tracing = rgb_luminance(light_term) / (pdf + pdf_other);
-    light_term = vec3_scale(light_term, mis_power(pdf, pdf_other) / pdf);
-    Ray shadow = light_shadow_ray(p, ng, &sample);
+    Ray shadow = light_shadow_ray(scene, p, ng, &sample);
     if (!ray_traceable(shadow.o, shadow.d))
         return;
-    state_store_vec3(paths, stride, PATH_LIGHT, item, light_term);
-    if (frame->partition.split_direct != 0u)
-        state_store_float(paths, stride, PATH_LIGHT_SHOWN, item,
-                          path_shown(frame, paths, item, depth + 1u, path_tracing));
     ray_store(shadows, stride, item, shadow);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM)) {
+        state_store_vec3(paths, stride, PATH_LIGHT, item, light_term);
+        state_store_float(paths, stride, PATH_LIGHT_PDF, item, pdf);
+        state_store_float(paths, stride, PATH_LIGHT_OTHER, item, pdf_other);
+        shadow_medium_store(scene, shadows, stride, item, medium_towards(bsdf.flags, ng, shadow.d));
+    } else {
+        path_light_weigh(frame, paths, item, light_term, pdf, pdf_other);
+    }
+}
+
+/* In scenes with media: weights the light sample after its shadow ray has been traced through them. */
+SHARED_FUNCTION void path_light_pass(const SceneView *scene, __global uint *restrict paths,
+                                     __global const uint *restrict shadows, uint item)
+{
+    uint stride = scene->frame->pass.stride;
+    Passage passage = passage_shadow(scene, shadows, stride, item);
+    path_light_weigh(scene->frame, paths, item,
+                     vec3_mul(state_load_vec3(paths, stride, PATH_LIGHT, item), passage.weight),
+                     state_load_float(paths, stride, PATH_LIGHT_PDF, item),
+                     state_load_float(paths, stride, PATH_LIGHT_OTHER, item) * passage.pdf);
 }
 
 /* From: traced shadow rays. To: visible light samples gathered, shadow rays cleared. */
-__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                            __global uint *restrict shadows)
+__kernel void pt_add_lights(__global const FrameParams *restrict frame, __global const uint *restrict geometry,
+                            __global const uint *restrict tables, __global const uint *restrict texels,
+                            __global uint *restrict paths, __global uint *restrict shadows)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
@@ -286,11 +371,15 @@ __kernel void pt_add_lights(__global const FrameParams *restrict frame, __global
     if (!(state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f))
         return;
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
-    if (state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
-        path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item) + 1u,
-                          state_load_vec3(paths, stride, PATH_LIGHT, item),
-                          frame->partition.split_direct != 0u ? state_load_float(paths, stride, PATH_LIGHT_SHOWN, item)
-                                                              : 1.0f);
+    if (state_load(shadows, stride, SHADOW_OCCLUDED, item) != 0u)
+        return;
+    KERNEL_SCENE(frame, geometry, tables, texels);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        path_light_pass(scene, paths, shadows, item);
+    path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item) + 1u,
+                      state_load_vec3(paths, stride, PATH_LIGHT, item),
+                      frame->partition.split_direct != 0u ? state_load_float(paths, stride, PATH_LIGHT_SHOWN, item)
+                                                          : 1.0f);
 }
 
 /* The probability with which Russian roulette lets the path live: its throughput; 1 or more: certainly. */
@@ -349,7 +438,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     }
     ray_store(rays, stride, item, ray);
     if (frame->photons.count > 0u) {
-        receiver_leave(paths, stride, PATH_RECEIVER, item, p, wi, sample.delta != 0u ? 0.0f : sample.pdf_w);
+        receiver_leave(paths, stride, PATH_RECEIVER, item, p, wi,
+                       receiver_pdf(scene, &bsdf, sample.pdf_w, sample.delta));
         if (sample.delta != 0u && depth <= RECEIVER_LAST)
             state_store(paths, stride, PATH_DELTA, item, state_load(paths, stride, PATH_DELTA, item) | 1u << depth);
     }
@@ -358,6 +448,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store_float(paths, stride, PATH_ETA_SCALE, item, eta_scale);
     state_store(paths, stride, PATH_FLAGS, item, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
     state_store(paths, stride, PATH_DEPTH, item, depth + 1u);
+    path_ray_media(scene, paths, rays, item, medium_towards(bsdf.flags, ng, wi), depth + 1u);
 }
 
 /* Splats what the path has gathered in `field` to its pixel, and clears it. A sum that is not finite is counted, and

@@ -11,6 +11,7 @@
     X(DIAGNOSTIC_ZERO_DIRECTION, "zero_direction") /* rays without direction, which were not traced */                 \
     X(DIAGNOSTIC_RAY_RANGE, "ray_range") /* rays that were not finite or out of range, whose paths were ended */       \
     X(DIAGNOSTIC_LOST_CHAIN, "lost_chain") /* chains whose first path contributes nothing when it is replayed */       \
+    X(DIAGNOSTIC_CROSSINGS, "crossings") /* rays through more interfaces than they may cross, which were blocked */    \
     X(DIAGNOSTIC_REPLAY, "replay") /* chains of an earlier pass whose replayed path has another luminance */
 
 #define DIAGNOSTIC_ENUMERATE(constant, name) constant,

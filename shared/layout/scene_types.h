@@ -35,7 +35,10 @@
     X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
     X(LIGHT_TREE, light_tree, "several lights", 0u) /* in different places or directions */                            \
     X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
-    X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */
+    X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */         \
+    X(MEDIUM, medium, "medium", 0u) /* participating media */                                                          \
+    X(SCATTERING, scattering, "scattering medium", 0u)                                                                 \
+    X(GLOW, glow, "emissive medium", 0u)
 #define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
 
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
@@ -76,11 +79,14 @@ typedef struct Primitive {
 #define SHAPE_REVERSE 0x2u /* ReverseOrientation alone */
 #define SHAPE_HAS_NORMALS 0x4u
 #define SHAPE_HAS_UV 0x8u
+#define SHAPE_INTERFACE 0x10u /* no material: rays pass, and only their medium changes */
+/* The other bits: the media inside and outside, as media_bits (geometry/medium.h) has them; the same number twice: the
+ * surface does not separate media. */
 
 /* What all primitives of one Shape directive share. Vertices index `positions`; the vertex normal of vertex v is
  * normals[v - first_vertex + first_normal], its texture coordinate uvs[v - first_vertex + first_uv]. */
 typedef struct Shape {
-    uint material; /* index into `materials` */
+    uint material; /* index into `materials`; NONE with SHAPE_INTERFACE */
     uint alpha; /* texture program of the alpha texture, NONE when opaque */
     uint first_light; /* the light of primitive i is first_light + i - first_primitive; NONE when it emits nothing */
     uint first_primitive;
@@ -226,6 +232,20 @@ typedef struct Material {
                         conductor: of its record (bsdf/coated_conductor.h) */
 } Material;
 
+/* ---- media ----------------------------------------------------------------------------------------------------- */
+
+/* A homogeneous participating medium; coefficients per unit of length of the world. Number 0 is empty space. Scenes
+ * without media have no such table. */
+typedef struct Medium {
+    Vec3 extinction; /* sigma_t: absorption and scattering */
+    Vec3 scattering; /* sigma_s */
+    Vec3 glow; /* emitted radiance per length: sigma_a Le */
+    float g; /* of the phase function of Henyey and Greenstein: mean cosine between old and new direction */
+} Medium;
+
+/* Numbers of media are below this. */
+#define MEDIA_MAX 4096u
+
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
 /* X(NAME, name, text, feature, position): LIGHT_NAME; its name in `twinlight info`; the group of lights that it is
@@ -252,6 +272,7 @@ enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
 
 #define LIGHT_TWO_SIDED 0x1u
 #define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
+#define LIGHT_MEDIUM_SHIFT 8 /* from here on: the medium around it; of area lights that of their shape counts */
 
 typedef struct Light {
     uint kind;
@@ -339,6 +360,7 @@ typedef struct Camera {
     float screen[4]; /* x_min x_max y_min y_max on the plane z = 1 (perspective) or in world units (orthographic) */
     Affine world_from_camera;
     Affine camera_from_world;
+    uint medium; /* around the camera */
 } Camera;
 
 #define PIXEL_FILTER_BOX 0u
@@ -369,7 +391,7 @@ typedef struct SceneLayout {
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
     /* tables */
     uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, portals, aims,
-        distributions2d, lookup;
+        distributions2d, lookup, media;
 } SceneLayout;
 
 #endif

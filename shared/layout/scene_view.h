@@ -32,6 +32,7 @@ typedef struct SceneView {
     __global const Aim *aims;
     __global const Distribution2D *distributions2d;
     __global const float *lookup;
+    __global const Medium *media;
     __global const uint *texels;
 } SceneView;
 
@@ -77,6 +78,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.aims = (__global const Aim *)(tables + layout->aims);
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
     view.lookup = scene_lookup(frame, tables);
+    view.media = (__global const Medium *)(tables + layout->media);
     view.texels = texels;
     return view;
 }

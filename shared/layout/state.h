@@ -52,10 +52,19 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define RAY_DIRECTION 3u
 #define RAY_T_MAX 6u
 #define RAY_WORDS 7u
+/* In scenes with media (geometry/media_walk.h): of BUFFER_RAYS */
+#define RAY_MEDIUM 7u /* where it begins */
+#define RAY_CHANNEL 8u /* colour channel in which ... */
+#define RAY_TARGET 9u /* ... it is scattered at this optical depth */
+#define RAY_MEDIA_WORDS 10u
 
 /* BUFFER_SHADOWS: after the ray, 1 if it is occluded. */
 #define SHADOW_OCCLUDED 7u
 #define SHADOW_WORDS 8u
+/* In scenes with media */
+#define SHADOW_MEDIUM 8u /* where it begins */
+#define SHADOW_DEPTH 9u /* what it has gone through: OpticalDepth, 6 */
+#define SHADOW_MEDIA_WORDS 15u
 
 /* BUFFER_HITS */
 #define HIT_T 0u
@@ -64,6 +73,16 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_U 3u
 #define HIT_V 4u
 #define HIT_WORDS 5u
+/* In scenes with media: what the ray has gone through */
+#define HIT_ORIGIN 5u /* where the last part of the ray begins, to which `t` refers, 3 */
+#define HIT_MEDIUM 8u /* of the last part */
+#define HIT_DISTANCE 9u /* from the ray's origin; infinite for a miss */
+#define HIT_DEPTH 10u /* OpticalDepth, 6 */
+#define HIT_GLOW 16u /* emitted on the way towards the origin, 3 */
+#define HIT_MEDIA_WORDS 19u
+
+/* `primitive` of a ray that has been scattered in a medium. */
+#define HIT_SCATTERED 0xfffffffeu
 
 /* BUFFER_SPLATS: layers and pixel index y * width + x (NONE: no splat), linear RGB, and where in that pixel's filter it
  * is (camera/splat_offset.h; read only by a film that spreads splats). A splat is in one of three

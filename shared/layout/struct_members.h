@@ -142,6 +142,12 @@
     MEMBER(Camera, screen)                                                                                             \
     MEMBER(Camera, world_from_camera)                                                                                  \
     MEMBER(Camera, camera_from_world)                                                                                  \
+    MEMBER(Camera, medium)                                                                                             \
+    STRUCT(Medium)                                                                                                     \
+    MEMBER(Medium, extinction)                                                                                         \
+    MEMBER(Medium, scattering)                                                                                         \
+    MEMBER(Medium, glow)                                                                                               \
+    MEMBER(Medium, g)                                                                                                  \
     STRUCT(PixelFilter)                                                                                                \
     MEMBER(PixelFilter, kind)                                                                                          \
     MEMBER(PixelFilter, radius_x)                                                                                      \
@@ -170,6 +176,7 @@
     MEMBER(SceneLayout, aims)                                                                                          \
     MEMBER(SceneLayout, distributions2d)                                                                               \
     MEMBER(SceneLayout, lookup)                                                                                        \
+    MEMBER(SceneLayout, media)                                                                                         \
     STRUCT(SceneParams)                                                                                                \
     MEMBER(SceneParams, layout)                                                                                        \
     MEMBER(SceneParams, features)                                                                                      \

@@ -91,6 +91,7 @@ SHARED_FUNCTION bool aim_from_point(__global const Light *source, Aim aim, Vec2 
     float cosine = vec3_dot(emission->ng, emission->w);
     if (cosine < 0.0f && (source->flags & LIGHT_TWO_SIDED) != 0u) {
         emission->ng = vec3_negate(emission->ng);
+        emission->back ^= 1u;
         cosine = -cosine;
     }
     emission->cosine = cosine;

@@ -18,6 +18,7 @@ typedef struct LightEmission {
     uint delta_position; /* 1: point, spot */
     uint delta_direction; /* 1: distant */
     uint infinite; /* 1: infinite, distant: p is not on the light */
+    uint back; /* 1: w leaves the side of a two-sided area light that its shape's normal does not point to */
 } LightEmission;
 
 /* Radius of the disc: that of the scene's bounding sphere, plus what rounding of the centre and of points on the disc

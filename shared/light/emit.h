@@ -76,6 +76,7 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
         bool back = u_direction.x >= 0.5f;
         u_direction.x = back ? 2.0f * u_direction.x - 1.0f : 2.0f * u_direction.x;
         emission->ng = back ? vec3_negate(point.ng) : point.ng;
+        emission->back = back ? 1u : 0u;
     }
     Vec3 w = frame_to_world(frame_from_normal(emission->ng), warp_cosine_hemisphere(u_direction));
     emission->w = vec3_normalize(w);
@@ -101,6 +102,7 @@ SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point
     emission->delta_position = 0u;
     emission->delta_direction = 0u;
     emission->infinite = 0u;
+    emission->back = 0u;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
         done = light_emit_area(scene, light, u_point, u_direction, emission);
     else if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)

@@ -72,12 +72,18 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     return false;
 }
 
-/* The shadow ray from the point p of a surface with geometric normal ng to its light sample. */
-SHARED_FUNCTION Ray light_shadow_ray(Vec3 p, Vec3 ng, const LightSample *sample)
+/* The open segment between two points; in scenes with media, from p to q. Arguments as of ray_between. */
+SHARED_FUNCTION Ray connecting_ray(const SceneView *scene, Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
+{
+    return SCENE_HAS(scene, FEATURE_MEDIUM) ? ray_from_to(p, ngp, q, ngq) : ray_between(p, ngp, q, ngq);
+}
+
+/* The shadow ray from a point p with geometric normal ng (0 in a medium) to its light sample. */
+SHARED_FUNCTION Ray light_shadow_ray(const SceneView *scene, Vec3 p, Vec3 ng, const LightSample *sample)
 {
     if (sample->infinite != 0u)
         return ray_spawn(p, ng, sample->wi);
-    return ray_between(p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
+    return connecting_ray(scene, p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
 }
 
 /* Solid-angle density at `ref` with which light_sample, given the light, draws the direction `wi` (unit). Area lights:

@@ -81,10 +81,11 @@ SHARED_FUNCTION float cosine_between(float middle, float most)
     return float_max(0.6f * float_max(middle, 0.0f) + 0.4f * most, 0.0f);
 }
 
-/* An estimate of the irradiance that the lights of a node cause at p, where the surface has the unit normal n. 0 only if
+/* An estimate of the irradiance that the lights of a node cause at p, where the surface has the unit normal n; at a
+ * point in a medium n is 0, and `least`, below which no cosine of n counts, is 1 instead of 0. 0 only if
  * they send nothing to p: with the largest cosines that any point of the sphere allows alone, as by Conty Estevez and
  * Kulla, the variance over many lights was three times as large (docs/TUNING.md). */
-SHARED_FUNCTION float light_node_importance(__global const LightNode *node, Vec3 p, Vec3 n)
+SHARED_FUNCTION float light_node_importance(__global const LightNode *node, Vec3 p, Vec3 n, float least)
 {
     float radius = node->radius, intensity = node->intensity;
     if (radius < 0.0f)
@@ -100,7 +101,7 @@ SHARED_FUNCTION float light_node_importance(__global const LightNode *node, Vec3
     around.sine = radius * scale;
     around.cosine = float_sqrt(float_max(1.0f - around.sine * around.sine, 0.0f));
     uint cones = node->cones;
-    float arriving = float_abs(vec3_dot(n, w));
+    float arriving = float_max(float_abs(vec3_dot(n, w)), least);
     irradiance *= cosine_between(arriving, angle_less(angle_of_cosine(arriving), around).cosine);
     if ((cones >> LIGHT_NODE_NORMALS & 0x7fffu) == 0u) /* normals in all directions */
         return irradiance;
@@ -116,11 +117,11 @@ SHARED_FUNCTION float light_node_importance(__global const LightNode *node, Vec3
 
 /* The probability of the left one of two children. link: of their parent. */
 SHARED_FUNCTION float light_node_share(uint link, __global const LightNode *left, __global const LightNode *right,
-                                       Vec3 p, Vec3 n)
+                                       Vec3 p, Vec3 n, float least)
 {
     if ((link & LIGHT_NODE_EVEN) != 0u)
         return left->intensity / (left->intensity + right->intensity);
-    float to_left = light_node_importance(left, p, n), to_right = light_node_importance(right, p, n);
+    float to_left = light_node_importance(left, p, n, least), to_right = light_node_importance(right, p, n, least);
     float share = to_left / (to_left + to_right);
     if (!(share >= 0.0f)) /* nothing from both, or infinite */
         return 0.5f;
@@ -146,16 +147,23 @@ SHARED_FUNCTION bool number_below(ulong *number, float share)
     return below;
 }
 
+/* `least` of light_node_importance. */
+SHARED_FUNCTION float light_tree_least(const SceneView *scene, Vec3 n)
+{
+    return SCENE_HAS(scene, FEATURE_SCATTERING) && vec3_is_zero(n) ? 1.0f : 0.0f;
+}
+
 /* Chooses a light for p with a number, uniform below 2^64, of which what is left is uniform given the light. *pdf: the
  * probability of the light. */
 SHARED_FUNCTION_APART uint light_tree_choose(const SceneView *scene, Vec3 p, Vec3 n, ulong *number, float *pdf)
 {
     __global const LightNode *node = scene->light_nodes;
+    float least = light_tree_least(scene, n);
     *pdf = 1.0f;
     uint link = node->link;
     while ((link & LIGHT_NODE_LEAF) == 0u) {
         __global const LightNode *left = node + 1, *right = scene->light_nodes + (link & LIGHT_NODE_INDEX);
-        float share = light_node_share(link, left, right, p, n);
+        float share = light_node_share(link, left, right, p, n, least);
         bool below = number_below(number, share);
         node = below ? left : right;
         *pdf *= below ? share : 1.0f - share;
@@ -168,7 +176,7 @@ SHARED_FUNCTION_APART uint light_tree_choose(const SceneView *scene, Vec3 p, Vec
 SHARED_FUNCTION_APART float light_tree_pdf(const SceneView *scene, uint light, Vec3 p, Vec3 n)
 {
     uint leaf = scene->lights[light].leaf, node = 0u;
-    float pdf = 1.0f;
+    float pdf = 1.0f, least = light_tree_least(scene, n);
     if (leaf == NONE)
         return 0.0f;
     for (;;) {
@@ -176,7 +184,7 @@ SHARED_FUNCTION_APART float light_tree_pdf(const SceneView *scene, uint light, V
         if ((link & LIGHT_NODE_LEAF) != 0u)
             return pdf;
         uint right = link & LIGHT_NODE_INDEX;
-        float share = light_node_share(link, scene->light_nodes + node + 1u, scene->light_nodes + right, p, n);
+        float share = light_node_share(link, scene->light_nodes + node + 1u, scene->light_nodes + right, p, n, least);
         uint lower = (right - node) / 2u; /* leaves of the left child, which has 2 lower - 1 nodes */
         bool below = leaf < lower;
         leaf -= below ? 0u : lower;

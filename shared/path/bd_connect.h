@@ -14,6 +14,7 @@
 typedef struct Connection {
     Vec3 contribution; /* unweighted */
     Ray shadow;
+    uint medium; /* in which the shadow ray begins */
     Vec2 film; /* t = 1: film position of y */
     uint target; /* t = 1: pixel of the splat */
     uint target_offset; /* in the filter of that pixel (camera/splat_offset.h) */
@@ -26,7 +27,7 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
 {
     Vec3 wi_frame = frame_to_local(vertex->frame, wi);
     BsdfValue value = bsdf_eval(scene, &vertex->bsdf, vertex->wo, wi_frame, TRANSPORT_IMPORTANCE);
-    if (!vec3_is_zero(value.f_cos))
+    if (!vec3_is_zero(value.f_cos) && !bsdf_is_phase(scene, &vertex->bsdf))
         value.f_cos = vec3_scale(value.f_cos, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
                                                              vertex->wo.z, wi_frame.z));
     return value;
@@ -43,8 +44,9 @@ SHARED_FUNCTION_CALLED bool connect_camera(const SceneView *scene, const Vertex 
     connection->film = camera.film;
     BsdfValue f = vertex_eval_light(scene, y, camera.wi);
     connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
-    connection->shadow = ray_between(y->p, y->ng, camera.p, vec3_splat(0.0f));
-    connection->ends.camera_y1 = camera.pdf * float_abs(vec3_dot(camera.wi, y->ng));
+    connection->shadow = connecting_ray(scene, y->p, y->ng, camera.p, vec3_splat(0.0f));
+    connection->medium = medium_towards(y->bsdf.flags, y->ng, camera.wi);
+    connection->ends.camera_y1 = camera.pdf * vertex_cosine(scene, camera.wi, y->ng);
     connection->ends.camera_y2 = f.pdf_rev_w * y->back;
     return true;
 }
@@ -65,9 +67,10 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     float select = scene->lights[light].select_pdf;
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (choice * sample.pdf_w));
-    connection->shadow = light_shadow_ray(z->p, z->ng, &sample);
+    connection->shadow = light_shadow_ray(scene, z->p, z->ng, &sample);
+    connection->medium = medium_towards(z->bsdf.flags, z->ng, sample.wi);
     StrategyEnds *ends = &connection->ends;
-    float at_z = float_abs(vec3_dot(sample.wi, z->ng));
+    float at_z = vertex_cosine(scene, sample.wi, z->ng);
     ends->light_z2 = f.pdf_rev_w * z->back;
     ends->hittable = sample.delta == 0u;
     ends->connect = choice / select;
@@ -86,15 +89,15 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
         ends->camera_y1 = 0.0f; /* cannot be hit */
         return true;
     }
-    float to_area = solid_angle_to_area(sample.wi, sample.ng, distance2);
+    float to_area = solid_angle_to_area(scene, sample.wi, sample.ng, distance2);
     ends->own_y0 = select * sample.pdf_emit;
     ends->camera_y1 = f.pdf_w * to_area;
     ends->connect *= sample.pdf_emit > 0.0f ? sample.pdf_w * to_area / sample.pdf_emit : 0.0f;
     return true;
 }
 
-/* s >= 2, t >= 2: connects two surfaces. */
-SHARED_FUNCTION_CALLED bool connect_surfaces(const SceneView *scene, const Vertex *y, const Vertex *z,
+/* s >= 2, t >= 2: connects two vertices. */
+SHARED_FUNCTION_CALLED bool connect_vertices(const SceneView *scene, const Vertex *y, const Vertex *z,
                                              Connection *connection)
 {
     Vec3 d = vec3_sub(y->p, z->p);
@@ -108,16 +111,17 @@ SHARED_FUNCTION_CALLED bool connect_surfaces(const SceneView *scene, const Verte
     BsdfValue fy = vertex_eval_light(scene, y, vec3_negate(w));
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z->beta, fz.f_cos), vec3_mul(y->beta, fy.f_cos)), 1.0f / distance2);
-    connection->shadow = ray_between(z->p, z->ng, y->p, y->ng);
+    connection->shadow = connecting_ray(scene, z->p, z->ng, y->p, y->ng);
+    connection->medium = medium_towards(z->bsdf.flags, z->ng, w);
     StrategyEnds *ends = &connection->ends;
-    ends->light_z1 = fy.pdf_w * solid_angle_to_area(w, z->ng, distance2);
+    ends->light_z1 = fy.pdf_w * solid_angle_to_area(scene, w, z->ng, distance2);
     ends->light_z2 = fz.pdf_rev_w * z->back;
-    ends->camera_y1 = fz.pdf_w * solid_angle_to_area(w, y->ng, distance2);
+    ends->camera_y1 = fz.pdf_w * solid_angle_to_area(scene, w, y->ng, distance2);
     ends->camera_y2 = fy.pdf_rev_w * y->back;
     return true;
 }
 
-/* Connects y_{s-1} and z_{t-1}, s + t >= 3: to the lens, to a light, or two surfaces. An end that the strategy lacks is
+/* Connects y_{s-1} and z_{t-1}, s + t >= 3: to the lens, to a light, or two vertices between. An end that the strategy lacks is
  * not read. random: the numbers of the respective case. */
 SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
                                   Random4 random, Connection *connection)
@@ -129,7 +133,43 @@ SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const 
         return connect_camera(scene, y, random, connection);
     if (s == 1u)
         return connect_light(scene, z, random, connection);
-    return connect_surfaces(scene, y, z, connection);
+    return connect_vertices(scene, y, z, connection);
+}
+
+/* In scenes with media, a connection is made twice: before its shadow ray is traced, for the ray, and afterwards, when
+ * what the ray has gone through is known, for contribution and weight. Whether this is the second time. */
+SHARED_FUNCTION bool connection_traced(const SceneView *scene, __global const uint *restrict shadows, uint item)
+{
+    return SCENE_HAS(scene, FEATURE_MEDIUM) &&
+           state_load_float(shadows, scene->frame->pass.stride, RAY_T_MAX, item) > 0.0f;
+}
+
+/* The first time: stores the ray alone. */
+SHARED_FUNCTION void connection_ray_store(const SceneView *scene, __global uint *restrict shadows, uint item,
+                                          const Connection *connection)
+{
+    uint stride = scene->frame->pass.stride;
+    ray_store(shadows, stride, item, connection->shadow);
+    shadow_medium_store(scene, shadows, stride, item, connection->medium);
+}
+
+/* The second time: applies what the shadow ray has gone through to the contribution and to the densities of the two
+ * ends. y and z: NULL at an end that the strategy lacks (s = 1, t = 1). False, and the ray is removed, if nothing is
+ * left. */
+SHARED_FUNCTION bool connection_pass(const SceneView *scene, __global uint *restrict shadows, uint item,
+                                     const Vertex *y, const Vertex *z, Connection *connection)
+{
+    uint stride = scene->frame->pass.stride;
+    Passage passage = passage_shadow(scene, shadows, stride, item);
+    StrategyEnds *ends = &connection->ends;
+    connection->contribution = vec3_mul(connection->contribution, passage.weight);
+    if (z)
+        ends->light_z1 *= passage_density(scene, &passage, z->ng, media_inside(z->bsdf.flags));
+    ends->camera_y1 *= y ? passage_density(scene, &passage, y->ng, media_inside(y->bsdf.flags)) : passage.pdf;
+    if (!vec3_is_zero(connection->contribution) && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
+        return true;
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    return false;
 }
 
 /* t = 1: draws the pixel of the splat; false if there is none. random: lens, pixel. */

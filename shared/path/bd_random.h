@@ -66,6 +66,15 @@ SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint 
     return random_float(bd_random(scene->frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
 }
 
+/* The number that draws the distance of segment `depth` of a side; in scenes without scattering media it is not used. */
+SHARED_FUNCTION uint bd_random_distance(const SceneView *scene, __global const uint *paths, uint item, uint side,
+                                        uint depth)
+{
+    if (!SCENE_HAS(scene, FEATURE_SCATTERING))
+        return 0u;
+    return bd_random(scene->frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[1];
+}
+
 /* A chain has one lens point and one light for all its connections. Turns its coordinates (camera: film, lens) into the
  * numbers of a connection to the lens, where `random` has those of the pixel ... */
 SHARED_FUNCTION Random4 connection_random_lens(Random4 random, Random4 camera)

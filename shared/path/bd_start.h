@@ -42,7 +42,8 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __globa
     float select = scene->lights[light].select_pdf;
     bool infinite = emission.infinite != 0u;
     uint flags = (infinite ? EMITTER_INFINITE : 0u) |
-                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u);
+                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u) |
+                 (SCENE_HAS(scene, FEATURE_MEDIUM) && emission.back != 0u ? EMITTER_BACK : 0u);
     state_store_vec3(vertices, stride, base + VERTEX_POINT, item, infinite ? emission.w : emission.p);
     state_store_vec3(vertices, stride, base + VERTEX_NG, item, emission.ng);
     state_store(paths, stride, BD_EMITTER, item, light);
@@ -53,6 +54,27 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __globa
     Ray ray = ray_spawn(emission.p, on_surface ? emission.ng : vec3_splat(0.0f), emission.w);
     walk_begin(walk, SIDE_LIGHT, ray, beta, infinite ? emission.pdf_p : emission.pdf_w, infinite ? WALK_PARALLEL : 0u);
     return true;
+}
+
+/* The stored ray, which makes segment `depth` of a side, begins in `medium`. */
+SHARED_FUNCTION void bd_ray_media(const SceneView *scene, __global const uint *restrict paths,
+                                  __global uint *restrict rays, uint item, uint side, uint depth, uint medium)
+{
+    walk_ray_media(scene, rays, scene->frame->pass.stride, item, medium,
+                   bd_random_distance(scene, paths, item, side, depth));
+}
+
+/* The medium in which the first ray of a light walk begins. */
+SHARED_FUNCTION uint emitter_medium(const SceneView *scene, Walk walk)
+{
+    if (!SCENE_HAS(scene, FEATURE_MEDIUM))
+        return 0u;
+    __global const Light *light = scene->lights + state_load(walk.paths, walk.stride, BD_EMITTER, walk.item);
+    if (light->kind != LIGHT_AREA)
+        return light_medium(light);
+    uint media = scene->shapes[scene->primitives[light->primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
+    bool back = (state_load(walk.paths, walk.stride, BD_EMITTER_FLAGS, walk.item) & EMITTER_BACK) != 0u;
+    return back ? media_inside(media) : media_outside(media);
 }
 
 /* The first ray of the camera walk, for a sample of the item's pixel. */

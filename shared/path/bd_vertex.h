@@ -70,38 +70,36 @@ SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, u
     return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u;
 }
 
-/* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
- * into one per area there. */
-SHARED_FUNCTION float solid_angle_to_area(Vec3 w, Vec3 n, float distance2)
+/* |cosine| between the unit direction w and the normal n of a vertex; 1 for a vertex in a medium, whose normal is 0. */
+SHARED_FUNCTION float vertex_cosine(const SceneView *scene, Vec3 w, Vec3 n)
 {
-    return float_abs(vec3_dot(w, n)) / distance2;
+    float cosine = float_abs(vec3_dot(w, n));
+    return SCENE_HAS(scene, FEATURE_SCATTERING) && vec3_is_zero(n) ? 1.0f : cosine;
 }
 
-/* Factor that turns a solid-angle density at `p` into an area density at the vertex before it: `from` with normal `ng`
- * or, with flags EMITTER_*, y_0. At the position of a delta light no strategy uses that density. */
-SHARED_FUNCTION float walk_back(Vec3 p, Vec3 from, Vec3 ng, uint emitter_flags)
+/* |cosine| / distance^2 between the unit direction w and the normal n at the far end: turns a density per solid angle
+ * into one per area there; at a vertex in a medium, together with the density of the distance, into one per volume. */
+SHARED_FUNCTION float solid_angle_to_area(const SceneView *scene, Vec3 w, Vec3 n, float distance2)
+{
+    return vertex_cosine(scene, w, n) / distance2;
+}
+
+/* Factor that turns a solid-angle density at a vertex into an area density at the one before it, which is d away and has
+ * the normal `ng` or, with flags EMITTER_*, is y_0. distance2: square of the length of d. At the position of a delta
+ * light no strategy uses that density. */
+SHARED_FUNCTION float walk_back(const SceneView *scene, Vec3 d, float distance2, Vec3 ng, uint emitter_flags)
 {
     if ((emitter_flags & EMITTER_INFINITE) != 0u)
         return 1.0f;
-    Vec3 d = vec3_sub(from, p);
-    float distance2 = vec3_length_squared(d);
     if (!(distance2 > 0.0f))
         return 0.0f;
     if ((emitter_flags & EMITTER_DELTA) != 0u)
         return 1.0f / distance2;
-    return solid_angle_to_area(vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
-}
-
-/* walk_back at p; `before`: base of the vertex before it. */
-SHARED_FUNCTION float walk_back_stored(__global const uint *restrict vertices, uint stride, uint item, uint before,
-                                       Vec3 p, uint emitter_flags)
-{
-    return walk_back(p, state_load_vec3(vertices, stride, before + VERTEX_POINT, item),
-                     state_load_vec3(vertices, stride, before + VERTEX_NG, item), emitter_flags);
+    return solid_angle_to_area(scene, vec3_scale(d, 1.0f / float_sqrt(distance2)), ng, distance2);
 }
 
 /* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
- * section 5.3.2). wo and wi: in world space; cosine_o and cosine_i: their cosines with the shading normal. */
+ * section 5.3.2). Not for vertices in a medium. wo and wi: in world space; cosine_o and cosine_i: their cosines with the shading normal. */
 SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
 {
     float numerator = float_abs(cosine_o) * float_abs(vec3_dot(wi, ng));
@@ -126,7 +124,7 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     if (scene->lights[light].kind != LIGHT_AREA)
         return 1.0f;
     float emitted = light_emit_pdf_p(scene, light, point);
-    float drawn = area_light_pdf_w(scene, light, from, w, point) * solid_angle_to_area(w, point->ng, distance2);
+    float drawn = area_light_pdf_w(scene, light, from, w, point) * solid_angle_to_area(scene, w, point->ng, distance2);
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
@@ -172,15 +170,16 @@ SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global con
     return choice * light_connect_ratio(scene, light, y->p, w, distance2, &point);
 }
 
-/* Area density with which the walk has made the point that it has just hit. first: by the camera's first ray. */
-SHARED_FUNCTION float walk_density(__global const FrameParams *frame, const Ray *ray, const Surface *surface,
-                                   float distance2, bool first, uint flags, float pdf)
+/* Area density with which the walk has made the point that it has just hit, where the geometric normal is ng. first: by
+ * the camera's first ray. */
+SHARED_FUNCTION float walk_density(const SceneView *scene, const Ray *ray, Vec3 ng, float distance2, bool first,
+                                   uint flags, float pdf)
 {
     if (first)
-        return camera_pdf(frame, ray->o, ray->d, float_sqrt(distance2)) * float_abs(vec3_dot(ray->d, surface->ng));
+        return camera_pdf(scene->frame, ray->o, ray->d, float_sqrt(distance2)) * vertex_cosine(scene, ray->d, ng);
     if ((flags & WALK_PARALLEL) != 0u)
-        return pdf * float_abs(vec3_dot(ray->d, surface->ng));
-    return pdf * solid_angle_to_area(ray->d, surface->ng, distance2);
+        return pdf * vertex_cosine(scene, ray->d, ng);
+    return pdf * solid_angle_to_area(scene, ray->d, ng, distance2);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "math/rng.h"
 #include "path/bd_vertex.h"
 #include "path/caustic_rest.h"
+#include "path/passage.h"
 #include "path/strategy.h"
 
 /* ---- a step ------------------------------------------------------------------------------------------------------ */
@@ -77,6 +78,7 @@ typedef struct WalkStep {
     float roulette_scale;
     float survival; /* probability with which it survived roulette here */
     uint delta;
+    uint medium; /* in which the ray begins */
 } WalkStep;
 
 /* Minimum probability with which a pool's walk survives roulette. Pools clamp the contribution that a path has in
@@ -120,7 +122,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
         return false;
     Vec3 wi = frame_to_world(vertex->frame, sample.wi);
     step->beta = vec3_mul(vertex->beta, sample.weight);
-    if (side == SIDE_LIGHT)
+    if (side == SIDE_LIGHT && !bsdf_is_phase(scene, &vertex->bsdf))
         step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
                                                            vertex->wo.z, sample.wi.z));
     step->roulette_scale = side == SIDE_CAMERA ? roulette.scale * sample.eta * sample.eta : roulette.scale;
@@ -133,6 +135,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     if (survival < 1.0f)
         step->beta = vec3_scale(step->beta, 1.0f / survival);
     step->ray = ray_spawn(vertex->p, vertex->ng, wi);
+    step->medium = medium_towards(vertex->bsdf.flags, vertex->ng, wi);
     step->delta = sample.delta;
     step->forward = sample.pdf_w;
     step->reverse = sample.pdf_rev_w;
@@ -155,6 +158,15 @@ SHARED_FUNCTION void walk_step_store(__global uint *restrict paths, __global uin
     ray_store(rays, stride, item, step->ray);
 }
 
+/* The stored ray begins in `medium`. bits: of the number that draws its distance. */
+SHARED_FUNCTION void walk_ray_media(const SceneView *scene, __global uint *restrict rays, uint stride, uint item,
+                                    uint medium, uint bits)
+{
+    ray_medium_store(scene, rays, stride, item, medium);
+    if (SCENE_HAS(scene, FEATURE_SCATTERING))
+        ray_distance_draw(rays, stride, item, bits);
+}
+
 /* Records whether vertex `depth` of a side scatters by a delta lobe. */
 SHARED_FUNCTION void walk_mark(__global uint *restrict paths, uint stride, uint item, uint side, uint depth,
                                const WalkStep *step)
@@ -174,12 +186,42 @@ typedef struct WalkHit {
     uint light; /* index of the light that the primitive is; NONE: it is no light */
     uint instance, primitive; /* of the hit */
     bool missed;
+    bool scattered; /* the hit is in a medium; of `surface` only p and ng, which is 0, are set */
+    Vec3 beta; /* throughput of the walk at the hit */
+    Passage passage;
+    float passage_back; /* density of the distance from the hit to the vertex before */
     /* Unless the ray missed: */
     Surface surface;
     Vec3 from; /* where the ray left */
     float distance2;
     float back; /* Vertex.back at the hit */
 } WalkHit;
+
+/* The media between the vertex before and the hit: the throughput, and the densities of the distance in both directions.
+ * end: the vertex before is the end of the path. */
+SHARED_FUNCTION void walk_hit_pass(const SceneView *scene, __global const uint *restrict rays,
+                                   __global const uint *restrict hits, uint stride, uint item, bool end,
+                                   WalkHit *walk_hit)
+{
+    walk_hit->passage = passage_load(scene, hits, stride, item, walk_hit->scattered);
+    walk_hit->beta = vec3_mul(walk_hit->beta, walk_hit->passage.weight);
+    walk_hit->own *= walk_hit->passage.pdf; /* of a miss; walk_hit_make computes others anew */
+    Vec3 ng = end ? walk_hit->ray.d : walk_hit->from_ng;
+    walk_hit->passage_back = passage_density(scene, &walk_hit->passage, ng, state_load(rays, stride, RAY_MEDIUM, item));
+}
+
+/* Vertex.back at the hit. */
+SHARED_FUNCTION float walk_hit_back(const SceneView *scene, __global const uint *restrict vertices, uint stride,
+                                    uint item, uint emitter_flags, const WalkHit *walk_hit)
+{
+    Vec3 d = vec3_sub(state_load_vec3(vertices, stride, walk_hit->before + VERTEX_POINT, item), walk_hit->surface.p);
+    float distance2 = vec3_length_squared(d);
+    if (walk_hit->scattered) {
+        distance2 = walk_hit->distance2;
+        d = vec3_scale(walk_hit->ray.d, float_sqrt(distance2));
+    }
+    return walk_back(scene, d, distance2, walk_hit->from_ng, emitter_flags) * walk_hit->passage_back;
+}
 
 /* Fills *walk_hit, whose `before` is given, from the ray under way and its hit. */
 SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *restrict paths,
@@ -193,26 +235,56 @@ SHARED_FUNCTION void walk_hit_make(const SceneView *scene, __global const uint *
     Hit hit = hit_load(hits, stride, item);
     walk_hit->ray = ray_load(rays, stride, item);
     walk_hit->missed = hit.primitive == NONE;
+    walk_hit->scattered = SCENE_HAS(scene, FEATURE_SCATTERING) && hit.primitive == HIT_SCATTERED;
+    walk_hit->beta = state_load_vec3(paths, stride, BD_BETA, item);
     walk_hit->instance = hit.instance;
     walk_hit->primitive = hit.primitive;
     walk_hit->own = state_load_float(paths, stride, BD_PDF, item);
     walk_hit->from_ng = first ? walk_hit->ray.d : state_load_vec3(vertices, stride, before + VERTEX_NG, item);
     walk_hit->light = NONE;
+    uint emitter_flags = side == SIDE_LIGHT && depth == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
+    walk_hit->passage_back = 1.0f;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        walk_hit_pass(scene, rays, hits, stride, item, first || (side == SIDE_LIGHT && depth == 1u), walk_hit);
     if (walk_hit->missed)
         return;
-    walk_hit->surface = surface_from_hit(scene, &walk_hit->ray, hit);
+    Ray last_part = ray_last_part(scene, hits, stride, item, walk_hit->ray);
+    if (walk_hit->scattered) {
+        walk_hit->surface.p = scatter_position(&last_part, hit);
+        walk_hit->surface.ng = vec3_splat(0.0f);
+        walk_hit->surface.shape = NONE;
+    } else {
+        walk_hit->surface = surface_from_hit(scene, &last_part, hit);
+    }
     walk_hit->from = first || (flags & WALK_PARALLEL) != 0u
                          ? walk_hit->ray.o
                          : state_load_vec3(vertices, stride, before + VERTEX_POINT, item);
     walk_hit->distance2 = vec3_length_squared(vec3_sub(walk_hit->surface.p, walk_hit->from));
-    walk_hit->own = walk_density(scene->frame, &walk_hit->ray, &walk_hit->surface, walk_hit->distance2, first, flags,
-                                 walk_hit->own);
-    uint emitter_flags = side == SIDE_LIGHT && depth == 1u ? state_load(paths, stride, BD_EMITTER_FLAGS, item) : 0u;
-    walk_hit->back =
-        first ? 1.0f : walk_back_stored(vertices, stride, item, before, walk_hit->surface.p, emitter_flags);
+    if (walk_hit->scattered) { /* the points may coincide by rounding */
+        float distance = state_load_float(hits, stride, HIT_DISTANCE, item);
+        walk_hit->distance2 = distance * distance;
+    }
+    walk_hit->own = walk_density(scene, &walk_hit->ray, walk_hit->surface.ng, walk_hit->distance2, first, flags,
+                                 state_load_float(paths, stride, BD_PDF, item));
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        walk_hit->own *= walk_hit->passage.pdf;
+    walk_hit->back = first ? 1.0f : walk_hit_back(scene, vertices, stride, item, emitter_flags, walk_hit);
+    if (walk_hit->scattered)
+        return;
     uint first_light = scene->shapes[walk_hit->surface.shape].first_light;
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && first_light != NONE)
         walk_hit->light = first_light + hit.primitive - scene->shapes[walk_hit->surface.shape].first_primitive;
+}
+
+/* The vertex where the ray was scattered. */
+SHARED_FUNCTION void medium_vertex_make(const SceneView *scene, const WalkHit *walk_hit, Vertex *vertex)
+{
+    vertex->p = walk_hit->surface.p;
+    vertex->ng = walk_hit->surface.ng;
+    vertex->frame = frame_from_normal(vec3_negate(walk_hit->ray.d));
+    vertex->wo = vec3(0.0f, 0.0f, 1.0f);
+    vertex->beta = walk_hit->beta;
+    vertex->bsdf = medium_bsdf(scene, walk_hit->passage.medium);
 }
 
 /* Makes the vertex at the hit. False, and the walk is to end, if the vertex scatters nothing, or if it is the camera's
@@ -223,10 +295,14 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
 {
     uint stride = scene->frame->pass.stride;
     uint side = state_load(paths, stride, BD_SIDE, item), depth = state_load(paths, stride, BD_DEPTH, item);
-    if ((side == SIDE_CAMERA && depth >= scene->frame->path.max_depth) ||
-        !vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, state_load_vec3(paths, stride, BD_BETA, item), u_mix,
-                     vertex))
+    if (side == SIDE_CAMERA && depth >= scene->frame->path.max_depth)
         return false;
+    if (walk_hit->scattered)
+        medium_vertex_make(scene, walk_hit, vertex);
+    else if (!vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, walk_hit->beta, u_mix, vertex))
+        return false;
+    else
+        vertex->bsdf.flags |= media_at(scene, walk_hit->surface.shape, walk_hit->passage.medium);
     bool first = side == SIDE_LIGHT && depth == 1u;
     if (first && SCENE_HAS(scene, FEATURE_PORTAL) && !emitter_reaches(scene, paths, item, &walk_hit->ray, vertex->p))
         return false;
@@ -265,7 +341,7 @@ SHARED_FUNCTION bool walk_leave_vertex(const SceneView *scene, Walk walk, const 
         if (ray_traceable(step->ray.o, step->ray.d)) {
             if (side == SIDE_CAMERA && scene->frame->photons.count > 0u)
                 receiver_leave(paths, stride, BD_RECEIVER, item, vertex->p, step->ray.d,
-                               step->delta != 0u ? 0.0f : step->forward);
+                               receiver_pdf(scene, &vertex->bsdf, step->forward, step->delta));
             return true;
         }
         diagnostic_count(walk.diagnostics, DIAGNOSTIC_RAY_RANGE);
@@ -298,11 +374,14 @@ SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hi
     return light_emitted(scene, light, surface->ng, towards);
 }
 
-/* The same for a light at infinity. ng: geometric normal of the vertex that the ray leaves. */
-SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const Ray *ray, Vec3 ng, StrategyEnds *ends)
+/* The same for a light at infinity that the walk has missed the scene towards. */
+SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const WalkHit *miss, StrategyEnds *ends)
 {
+    const Ray *ray = &miss->ray;
+    Vec3 ng = miss->from_ng;
     ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, ray->d);
-    ends->light_z2 = light_aimed_pdf_disc(scene, light, ray->o, vec3_negate(ray->d)) * float_abs(vec3_dot(ray->d, ng));
+    ends->light_z2 = light_aimed_pdf_disc(scene, light, ray->o, vec3_negate(ray->d)) *
+                     vertex_cosine(scene, ray->d, ng) * miss->passage_back;
     ends->connect =
         light_choice_ratio(scene, light, ray->o, ng) * environment_connect_ratio(scene, light, ray->o, ray->d);
     ends->hittable = true;

@@ -48,13 +48,29 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
     return bd_weights(frame, s, t, view, ends).own;
 }
 
+/* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other strategy
+ * makes such a path. */
+SHARED_FUNCTION void walk_add_glow(const SceneView *scene, __global uint *restrict paths,
+                                   __global const uint *restrict hits, uint item, uint depth)
+{
+    __global const FrameParams *frame = scene->frame;
+    uint stride = frame->pass.stride;
+    if (!strategy_wanted(frame, 0u, depth + 1u))
+        return;
+    if (frame->film.split_depths != 0u)
+        state_store(paths, stride, BD_GATHERED, item, depth);
+    bd_add_radiance(
+        paths, stride, item,
+        vec3_mul(state_load_vec3(paths, stride, BD_BETA, item), state_load_vec3(hits, stride, HIT_GLOW, item)));
+}
+
 /* s = 0 at infinity: the sum over all lights there, when the camera walk has missed after `depth` segments. */
-SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, const Ray *ray, Vec3 ng, uint depth)
+SHARED_FUNCTION Vec3 walk_environment(const SceneView *scene, DensityView view, const WalkHit *miss, uint depth)
 {
     Vec3 sum = vec3_splat(0.0f);
     for (uint i = 0; i < scene->frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], ray, ng, &ends);
+        Vec3 radiance = environment_met(scene, scene->infinite_lights[i], miss, &ends);
         if (!vec3_is_zero(radiance))
             sum = vec3_mad(sum, bd_weight(scene->frame, 0u, depth + 1u, &view, &ends), radiance);
     }

@@ -5,11 +5,13 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/material.h"
+#include "geometry/media_walk.h"
 #include "geometry/ray.h"
 #include "layout/diagnostics.h"
 #include "light/light.h"
 #include "path/caustic_rest.h"
 #include "path/path_random.h"
+#include "path/passage.h"
 #include "path/path_state.h"
 
 /* Random numbers of the receiver after `depth` segments: `what` 0 for the photon and the direction, then the smooth
@@ -33,6 +35,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     uint stride = frame->pass.stride, depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth + 2u > frame->path.max_depth ||
         (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u ||
+        state_load(paths, stride, PATH_BSDF + STORED_BSDF_KIND, item) == MATERIAL_PHASE ||
         !receiver_draws(params.everywhere, state_load(paths, stride, PATH_DELTA, item), depth))
         return;
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item);
@@ -59,6 +62,8 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     if (vec3_is_zero(value.f_cos) || !(density > 0.0f) || !ray_traceable(ray.o, ray.d))
         return;
     ray_store(rays, stride, item, ray);
+    ray_medium_store(scene, rays, stride, item,
+                     medium_towards(bsdf.flags, state_load_vec3(paths, stride, PATH_NG, item), w));
     state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, depth + 1u);
     state_store(paths, stride, PATH_CAUSTIC_LIGHT, item, lobe.light);
     state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, vec3_scale(beta, 1.0f / density));
@@ -106,15 +111,16 @@ SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ra
 /* What a surface does to a path that a delta lobe is drawn for. */
 typedef struct DeltaScatter {
     Ray ray; /* on */
+    uint medium; /* in which it begins */
     Vec3 weight; /* factor of the throughput */
     bool transmitted;
     bool smooth; /* the surface has delta lobes alone */
 } DeltaScatter;
 
-/* Draws a lobe at a surface that a ray has hit along d; false if it is no delta or brings nothing. random: the lobe, its
- * point, mix materials. */
-SHARED_FUNCTION bool delta_scatter(const SceneView *scene, Surface *surface, Vec3 d, uint transport, Random4 random,
-                                   DeltaScatter *scatter)
+/* Draws a lobe at a surface that a ray in `medium` has hit along d; false if it is no delta or brings nothing. random: the
+ * lobe, its point, mix materials. */
+SHARED_FUNCTION bool delta_scatter(const SceneView *scene, Surface *surface, Vec3 d, uint medium, uint transport,
+                                   Random4 random, DeltaScatter *scatter)
 {
     Bsdf bsdf;
     Frame frame;
@@ -129,22 +135,24 @@ SHARED_FUNCTION bool delta_scatter(const SceneView *scene, Surface *surface, Vec
     scatter->weight = sample.weight;
     scatter->transmitted = sample.transmitted != 0u;
     scatter->ray = ray_spawn(surface->p, surface->ng, vec3_normalize(frame_to_world(frame, sample.wi)));
+    scatter->medium = medium_towards(media_at(scene, surface->shape, medium), surface->ng, scatter->ray.d);
     return !vec3_is_zero(sample.weight) && ray_traceable(scatter->ray.o, scatter->ray.d);
 }
 
-/* Continues a caustic path at what its ray has hit along d; false if it ends there. */
+/* Continues a caustic path at what its ray, in `medium`, has hit along d; false if it ends there. */
 SHARED_FUNCTION bool caustic_continue(const SceneView *scene, __global uint *restrict paths,
-                                      __global uint *restrict rays, uint item, Surface *surface, Vec3 d)
+                                      __global uint *restrict rays, uint item, Surface *surface, Vec3 d, uint medium)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride, segments = state_load(paths, stride, PATH_CAUSTIC_SEGMENTS, item);
     uint depth = state_load(paths, stride, PATH_DEPTH, item), vertex = segments - depth;
     DeltaScatter scatter;
     if (segments >= frame->path.max_depth || vertex > CAUSTIC_VERTICES ||
-        !delta_scatter(scene, surface, d, TRANSPORT_RADIANCE, caustic_random(frame, paths, item, depth, vertex),
+        !delta_scatter(scene, surface, d, medium, TRANSPORT_RADIANCE, caustic_random(frame, paths, item, depth, vertex),
                        &scatter))
         return false;
     ray_store(rays, stride, item, scatter.ray);
+    ray_medium_store(scene, rays, stride, item, scatter.medium);
     state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, segments + 1u);
     state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item,
                      vec3_mul(scatter.weight, state_load_vec3(paths, stride, PATH_CAUSTIC_BETA, item)));

@@ -12,6 +12,7 @@
 #ifndef TWINLIGHT_PATH_CAUSTIC_REST_H
 #define TWINLIGHT_PATH_CAUSTIC_REST_H
 
+#include "bsdf/bsdf.h"
 #include "path/bd_state.h"
 #include "path/photon.h"
 
@@ -72,7 +73,15 @@ SHARED_FUNCTION uint receiver_find(uint everywhere, uint delta, uint last)
 #define RECEIVER_DIRECTION 4u /* 3 */
 #define RECEIVER_WORDS 7u
 
-/* The subpath leaves p in the direction w, drawn with density pdf; 0: by a delta lobe. */
+/* The density of a direction drawn at a vertex, as RECEIVER_PDF: 0 for a delta lobe, and infinite in a medium, where no
+ * directions are drawn by photons. */
+SHARED_FUNCTION float receiver_pdf(const SceneView *scene, const Bsdf *bsdf, float pdf, uint delta)
+{
+    float drawn = bsdf_is_phase(scene, bsdf) ? FLOAT_INFINITY : pdf;
+    return delta != 0u ? 0.0f : drawn;
+}
+
+/* The subpath leaves p in the direction w, drawn with density pdf (receiver_pdf). */
 SHARED_FUNCTION void receiver_leave(__global uint *restrict paths, uint stride, uint base, uint item, Vec3 p, Vec3 w,
                                     float pdf)
 {

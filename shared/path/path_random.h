@@ -11,7 +11,7 @@
 #define RANDOM_CAMERA 0u
 #define RANDOM_LIGHT 1u /* z, w: which light, and point on it; x: light_select_point */
 #define RANDOM_SCATTER 2u /* x: lobe. y, z: direction. w: Russian roulette */
-#define RANDOM_MIX 3u /* x: mix materials */
+#define RANDOM_MIX 3u /* x: mix materials; y: the distance of the segment that ends there */
 #define RANDOM_BLOCKS_PER_VERTEX 3u
 
 /* The block of a pixel's sample, of the integrator `stream`. pair: the first of two numbers that are best stratified

@@ -38,6 +38,10 @@
 #define PATH_LIGHT_SHOWN 65u /* the part of PATH_LIGHT that is below it */
 #define PATH_OFFSET 66u /* in the pixel's filter (camera/splat_offset.h) */
 #define PATH_WORDS 67u
+/* In scenes with media, where PATH_LIGHT is unweighted */
+#define PATH_LIGHT_PDF 67u /* density of the light sample */
+#define PATH_LIGHT_OTHER 68u /* of its direction by the Bsdf; 0: it cannot be hit */
+#define PATH_MEDIA_WORDS 69u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 

@@ -11,6 +11,7 @@ SHARED_FILES += \
 	shared/path/ib_weight.h \
 	shared/path/mis.h \
 	shared/path/partition.h \
+	shared/path/passage.h \
 	shared/path/path_random.h \
 	shared/path/path_state.h \
 	shared/path/photon.h \

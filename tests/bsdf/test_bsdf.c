@@ -5,6 +5,7 @@ int main(void)
     Suite *suite = suite_create("bsdf");
     suite_add_tcase(suite, bsdf_formula_tests());
     suite_add_tcase(suite, bsdf_identity_tests());
+    suite_add_tcase(suite, bsdf_phase_tests());
     suite_add_tcase(suite, bsdf_sampling_tests());
     suite_add_tcase(suite, bsdf_inverse_tests());
     suite_add_tcase(suite, bsdf_energy_tests());

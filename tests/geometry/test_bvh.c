@@ -67,7 +67,7 @@ static void closest_compare(Comparison *comparison, WalkState *state)
     memcpy(state->hits, hits, sizeof state->hits);
     kernel_run(KERNEL_trace_closest, state->buffers, NULL, BLOCK);
     atomic_fetch_add(&comparison->traced, rays_embree_trace_closest(comparison->rays, state->buffers[BUFFER_RAYS],
-                                                                    state->hits, NULL, BLOCK, BLOCK));
+                                                                    state->hits, NULL, NULL, BLOCK, BLOCK));
     uint differ = 0, met = 0;
     for (uint t = 0; t < BLOCK; ++t) {
         uint different = 0;
@@ -98,7 +98,7 @@ static void shadows_compare(Comparison *comparison, WalkState *state)
     uint *shadows = state->buffers[BUFFER_SHADOWS];
     memcpy(state->shadows, shadows, sizeof state->shadows);
     kernel_run(KERNEL_trace_shadow, state->buffers, NULL, BLOCK);
-    rays_embree_trace_shadow(comparison->rays, state->shadows, BLOCK, BLOCK);
+    rays_embree_trace_shadow(comparison->rays, state->shadows, NULL, BLOCK, BLOCK);
     uint differ = 0, occluded = 0;
     for (uint t = 0; t < BLOCK; ++t) {
         uint a = state_load(shadows, BLOCK, SHADOW_OCCLUDED, t);

@@ -284,9 +284,10 @@ START_TEST(test_environment)
     for (size_t i = 0; i < sizeof densities / sizeof densities[0]; ++i)
         densities[i] = float_bits(octaves(&shown, 1.0));
     DensityView view = {.light = densities, .camera = densities, .stride = 1};
+    WalkHit miss = {.ray = ray, .from_ng = ng, .missed = true, .passage_back = 1.0f};
     for (uint i = 0; i < frame->scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], &ray, ng, &ends);
+        Vec3 met = environment_met(&shown.light.view, shown.light.view.infinite_lights[i], &miss, &ends);
         StrategyWeights weights = strategy_weights(STRATEGIES_BDPT, 2, 0, depth + 1, &view, &ends);
         colors[i] = vec3_scale(vec3_mul(beta, met), weights.own);
         by_path_tracing[i] = weights.path_tracing;
@@ -295,7 +296,6 @@ START_TEST(test_environment)
         expected[1] += (double)colors[i].y;
         expected[2] += (double)colors[i].z;
     }
-    WalkHit miss = {.ray = ray, .from_ng = ng, .missed = true};
     for (uint k = 0; k < N; ++k) {
         float path_tracing = 0.0f;
         Vec3 got = chain_environment(&shown.light.view, beta, view, &miss, depth, ((float)k + 0.5f) / N, &path_tracing);
@@ -341,7 +341,7 @@ START_TEST(test_met_lamp)
             full[i * DENSITY_WORDS + DENSITY_OTHER] = float_bits(other);
             compact[i] = float_bits(i + 2 < D ? other / own : own);
         }
-        WalkHit walk_hit = {.light = 0, .instance = 0, .primitive = 0, .back = 0.7f};
+        WalkHit walk_hit = {.light = 0, .instance = 0, .primitive = 0, .back = 0.7f, .beta = beta};
         walk_hit.from = vec3(0.3f, 0.2f, 2.0f);
         walk_hit.ray.o = walk_hit.from;
         walk_hit.ray.d = vec3(0.0f, 0.0f, -1.0f);

@@ -64,7 +64,7 @@ void partition_close(Partition *p)
 
 static void closest_trace(Partition *p, const FrameParams *frame, Item *item)
 {
-    trace_closest(frame, SCENE_OF(p), p->bvh.words, item->rays, item->hits);
+    trace_closest(frame, SCENE_OF(p), p->bvh.words, item->rays, item->hits, NULL);
 }
 
 /* ---- the pool ---------------------------------------------------------------------------------------------------- */
@@ -104,7 +104,7 @@ void partition_sample(Partition *p, uint item, float clamp_threshold)
     while (pool->paths[BD_T] <= PARTITION_DEPTH) {
         uint s = pool->paths[BD_S], t = pool->paths[BD_T];
         bd_connect(frame, &p->guide, SCENE_OF(p), pool->paths, pool->shadows, pool->vertices, pool->densities);
-        trace_shadow(frame, SCENE_OF(p), p->bvh.words, pool->shadows);
+        trace_shadow(frame, SCENE_OF(p), p->bvh.words, pool->shadows, NULL);
         seen.count = 0;
         bd_add_connections(frame, &p->guide, pool->paths, pool->shadows, pool->splats, pool->diagnostics);
         if (seen.count > 0)
@@ -142,7 +142,7 @@ static void chain_start(Partition *p, uint select)
     mlt_start_camera(frame, &p->guide, SCENE_OF(p), chain->paths, chain->rays, chain->vertices, chain->diagnostics);
     chain_walk(p, PARTITION_DEPTH);
     mlt_connect(frame, &p->guide, SCENE_OF(p), chain->paths, chain->shadows, chain->vertices, chain->densities);
-    trace_shadow(frame, SCENE_OF(p), p->bvh.words, chain->shadows);
+    trace_shadow(frame, SCENE_OF(p), p->bvh.words, chain->shadows, NULL);
     mlt_accept(frame, &p->guide, SCENE_OF(p), chain->paths, chain->shadows, chain->vertices, chain->splats,
                chain->diagnostics);
 }
@@ -184,11 +184,12 @@ static double light_visits(const Partition *p, uint light, uint d)
     Ray ray = ray_load(item->rays, 1, 0);
     Vec3 ng = state_load_vec3(item->paths, 1, PATH_NG, 0);
     Vec3 beta = state_load_vec3(item->paths, 1, PATH_BETA, 0);
+    WalkHit miss = {.ray = ray, .from_ng = ng, .missed = true, .passage_back = 1.0f};
     DensityView view = bd_density_view(&p->pool_frame, p->pool.paths, p->pool.densities, 0);
     double all = 0.0, own = 0.0;
     for (uint i = 0; i < p->chain_frame.scene.infinite_light_count; ++i) {
         StrategyEnds ends = {0};
-        Vec3 radiance = environment_met(&p->view, p->view.infinite_lights[i], &ray, ng, &ends);
+        Vec3 radiance = environment_met(&p->view, p->view.infinite_lights[i], &miss, &ends);
         double part = (double)rgb_luminance(vec3_mul(beta, radiance)) *
                       (double)bd_weight(&p->chain_frame, 0u, d + 1u, &view, &ends);
         all += part;

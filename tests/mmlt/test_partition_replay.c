@@ -188,7 +188,7 @@ void paths_run(Partition *p, bool met)
             gathered_clear(item);
             pt_sample_lights(frame, SCENE_OF(p), item->paths, item->shadows);
             state_store(item->shadows, 1, SHADOW_OCCLUDED, 0, 0u);
-            pt_add_lights(frame, item->paths, item->shadows);
+            pt_add_lights(frame, SCENE_OF(p), item->paths, item->shadows);
             made = true;
         }
         if (!made)

@@ -96,7 +96,7 @@ static float scattered(const Walks *walks, const RealPath *path, uint from, uint
                     .pdf_w;
     if (to == path->k && path->infinite)
         return pdf;
-    return pdf * solid_angle_to_area(on, path->vertices[to].ng, distance2);
+    return pdf * solid_angle_to_area(&walks->view, on, path->vertices[to].ng, distance2);
 }
 
 /* Density of x_{k-1} with respect to area when emitted by the light. */
@@ -109,7 +109,7 @@ static float emitted(const Walks *walks, const RealPath *path)
                float_abs(vec3_dot(w, ng));
     return light_aimed_pdf_w(&walks->view, path->light, path->vertices[path->k].p, path->vertices[path->k].ng,
                              vec3_negate(w)) *
-           solid_angle_to_area(w, ng, distance2);
+           solid_angle_to_area(&walks->view, w, ng, distance2);
 }
 
 /* Density of x_k as sampled on the light. */

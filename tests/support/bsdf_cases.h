@@ -24,6 +24,7 @@ TCase *bsdf_energy_tests(void);
 TCase *bsdf_formula_tests(void);
 TCase *bsdf_identity_tests(void);
 TCase *bsdf_inverse_tests(void);
+TCase *bsdf_phase_tests(void);
 TCase *bsdf_sampling_tests(void);
 
 /* SplitMix64 (Steele, Lea and Flood 2014). */

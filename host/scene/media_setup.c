@@ -1,0 +1,121 @@
+#include "scene/media_setup.h"
+
+#include "geometry/media_walk.h"
+#include "light/delta.h"
+
+#include <math.h>
+
+/* Mean free paths of media_reach. */
+#define REACH_PATHS 40.0f
+
+static const Medium *medium_of(const Scene *scene, uint number)
+{
+    return &ARRAY_AT(&scene->media, Medium, number);
+}
+
+static uint medium_features(const Scene *scene, uint number)
+{
+    if (number == 0)
+        return 0u;
+    const Medium *medium = medium_of(scene, number);
+    return FEATURE_MEDIUM | (medium_scatters(medium) ? (uint)FEATURE_SCATTERING : 0u) |
+           (vec3_is_zero(medium->glow) ? 0u : (uint)FEATURE_GLOW);
+}
+
+uint media_features(const Scene *scene)
+{
+    uint features = medium_features(scene, scene->camera_settings.medium);
+    for (size_t i = 0; i < scene->shapes.count; ++i) {
+        uint flags = ARRAY_AT(&scene->shapes, Shape, i).flags;
+        features |= medium_features(scene, media_inside(flags)) | medium_features(scene, media_outside(flags));
+    }
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        features |= medium_features(scene, light_medium(&ARRAY_AT(&scene->lights, Light, i)));
+    return features;
+}
+
+/* ---- the medium around the scene --------------------------------------------------------------------------------- */
+
+/* Any direction: surfaces that separate media should be closed, so that all lead to the same medium. */
+static const Vec3 OUTWARDS = {0.36f, 0.48f, 0.8f};
+
+/* The first surface that separates media among the primitives of an object. */
+static void separation_find(const SceneView *view, const Object *object, uint instance, const RayQuery *query, Hit *hit)
+{
+    for (uint i = object->first_primitive; i < object->first_primitive + object->primitive_count; ++i) {
+        uint shape = view->primitives[i].shape_and_kind & PRIMITIVE_SHAPE_MASK;
+        if (media_differ(view->shapes[shape].flags))
+            primitive_intersect(view, i, instance, query, hit);
+    }
+}
+
+static Hit separation_next(const Scene *scene, const SceneView *view, const Ray *ray)
+{
+    Hit hit = hit_none(ray->t_max);
+    RayQuery query = ray_query(*ray);
+    separation_find(view, view->objects, NONE, &query, &hit);
+    for (size_t i = 0; i < scene->instances.count; ++i) {
+        const Instance *instance = &view->instances[i];
+        RayQuery inner = ray_query_transform(instance->object_from_world, &query);
+        separation_find(view, view->objects + instance->object, (uint)i, &inner, &hit);
+    }
+    return hit;
+}
+
+/* The medium that a ray from the camera is in when it has left the scene. */
+static uint medium_around(const Scene *scene)
+{
+    const double *camera = scene->camera_settings.world_from_camera;
+    uint medium = scene->camera_settings.medium;
+    uint features = scene->features & ~(uint)(FEATURE_ALPHA | FEATURE_TEXTURE | FEATURE_TANGENTS);
+    SceneView view = {.features = features,
+                      .positions = scene->positions.data,
+                      .normals = scene->normals.data,
+                      .uvs = scene->uvs.data,
+                      .primitives = scene->primitives.data,
+                      .shapes = scene->shapes.data,
+                      .patches = scene->patches.data,
+                      .quadrics = scene->quadrics.data,
+                      .objects = scene->objects.data,
+                      .instances = scene->instances.data};
+    Ray ray = {vec3((float)camera[3], (float)camera[7], (float)camera[11]), OUTWARDS, FLOAT_MAX};
+    for (uint crossings = 0; crossings < CROSSINGS_MAX; ++crossings) {
+        Hit hit = separation_next(scene, &view, &ray);
+        if (hit.primitive == NONE)
+            break;
+        Surface surface = surface_from_hit(&view, &ray, hit);
+        medium = medium_towards(view.shapes[surface.shape].flags, surface.ng, ray.d);
+        ray = ray_spawn(surface.p, surface.ng, ray.d);
+    }
+    return medium;
+}
+
+void media_lights_setup(Scene *scene)
+{
+    if (!(scene->features & FEATURE_MEDIUM))
+        return;
+    uint around = medium_around(scene);
+    Vec3 extinction = medium_of(scene, around)->extinction;
+    for (size_t i = 0; i < scene->lights.count; ++i) {
+        Light *light = &ARRAY_AT(&scene->lights, Light, i);
+        if (!light_is_far(light->kind))
+            continue;
+        light->flags = (light->flags & ((1u << LIGHT_MEDIUM_SHIFT) - 1u)) | around << LIGHT_MEDIUM_SHIFT;
+        light->emission.x = extinction.x > 0.0f ? 0.0f : light->emission.x;
+        light->emission.y = extinction.y > 0.0f ? 0.0f : light->emission.y;
+        light->emission.z = extinction.z > 0.0f ? 0.0f : light->emission.z;
+    }
+}
+
+float media_reach(const Scene *scene)
+{
+    if (!(scene->features & FEATURE_SCATTERING))
+        return 0.0f;
+    const Medium *medium = medium_of(scene, medium_around(scene));
+    const float extinction[3] = {medium->extinction.x, medium->extinction.y, medium->extinction.z};
+    float reach = 0.0f;
+    for (int c = 0; medium_scatters(medium) && c < 3; ++c)
+        if (extinction[c] > 0.0f)
+            reach = fmaxf(reach, REACH_PATHS / extinction[c]);
+    return reach;
+}

@@ -1,0 +1,18 @@
+/* What is derived from a scene's media. */
+#ifndef TWINLIGHT_SCENE_MEDIA_SETUP_H
+#define TWINLIGHT_SCENE_MEDIA_SETUP_H
+
+#include "scene/scene.h"
+
+/* Features of media that some shape, light or the camera uses. */
+uint media_features(const Scene *scene);
+
+/* Puts lights at infinity into the medium that fills the space around the scene, and takes the light of the colour
+ * channels that it attenuates, of which nothing arrives from infinity. Before lights are weighed. */
+void media_lights_setup(Scene *scene);
+
+/* How far vertices in media may lie outside of the scene's geometry: 40 mean free paths, beyond which one path in 10^17
+ * goes. 0 if no scattering medium can reach outside. */
+float media_reach(const Scene *scene);
+
+#endif

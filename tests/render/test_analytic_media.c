@@ -1,0 +1,209 @@
+/* Participating media against closed forms and numerical integrals, by every integrator that renders paths of any
+ * length. */
+#include "support/analytic.h"
+
+#include "render/integrator.h"
+
+#include <string.h>
+
+typedef struct MediaCase {
+    const char *name; /* of the integrator */
+    const Integrator *(*integrator)(void);
+} MediaCase;
+
+static const MediaCase CASES[] = {{"pt", integrator_pt}, {"ibpt", integrator_ibpt}, {"bdpt", integrator_bdpt}};
+enum { CASE_COUNT = 3 };
+
+static void media_color(double mean[3], const Integrator *integrator, unsigned samples, int depth, const char *text)
+{
+    RenderSetup setup = {.text = text, .samples = samples, .max_depth = depth, .seed = 11, .integrator = integrator};
+    RenderedImage image;
+    fixture_render(&setup, &image);
+    int pixels = image.width * image.height;
+    for (int c = 0; c < 3; ++c) {
+        mean[c] = 0.0;
+        for (int i = 0; i < pixels; ++i)
+            mean[c] += (double)image.rgb[3 * i + c] / pixels;
+    }
+    fixture_destroy(&image);
+}
+
+static void media_check(const MediaCase *by, const char *what, const double got[3], const double expected[3],
+                        double tolerance)
+{
+    for (int c = 0; c < 3; ++c) {
+        char name[96];
+        snprintf(name, sizeof name, "%s, %s, channel %d", what, by->name, c);
+        analytic_check(name, got[c], expected[c], tolerance);
+    }
+}
+
+/* Looks along z, from z = -4, at a lamp of radiance 1 at z = 3. */
+#define ALONG_Z(camera)                                                                                                \
+    ANALYTIC_FILM                                                                                                      \
+    "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.25 0.5 1 ] \"float sigma_s\" 0\n"     \
+    "\"float scale\" 2\n" camera "LookAt 0 0 -4  0 0 0  0 1 0\n"                                                       \
+    "Camera \"orthographic\" \"float screenwindow\" [ -0.1 0.1 -0.1 0.1 ]\nWorldBegin\n"
+#define LAMP                                                                                                           \
+    "AttributeBegin MediumInterface \"\" Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"                         \
+    "AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" true Translate 0 0 3\n"                         \
+    "Shape \"bilinearmesh\" \"point3 P\" [ -5 -5 0  5 -5 0  -5 5 0  5 5 0 ] AttributeEnd\n"
+/* Two planes, at z = 0 and 1, whose normals point away from each other. */
+#define SLAB                                                                                                           \
+    "Shape \"bilinearmesh\" \"point3 P\" [ -4 -4 1  4 -4 1  -4 4 1  4 4 1 ]\n"                                         \
+    "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [ -4 -4 0  4 -4 0  -4 4 0  4 4 0 ]\n"
+
+/* A slab of depth 1 with optical depths 0.5, 1 and 2 between the camera and a lamp. */
+START_TEST(test_slab)
+{
+    static const double EXPECTED[3] = {0.60653066, 0.36787944, 0.13533528};
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        double mean[3];
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("") LAMP "MediumInterface \"ink\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "slab", mean, EXPECTED, 1e-5);
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("") LAMP "MediumInterface \"\" \"ink\" Material \"interface\" ReverseOrientation\n" SLAB);
+        media_check(&CASES[i], "slab from outside", mean, EXPECTED, 1e-5);
+    }
+}
+END_TEST
+
+/* The same slab of clear glass with an absorbing inside: the sum over all internal reflections. */
+START_TEST(test_glass)
+{
+    double expected[3], mean[3], r = 0.04;
+    for (int c = 0; c < 3; ++c) {
+        double a = exp(-0.5 * (1 << c));
+        expected[c] = (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
+    }
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 4096, 12,
+                    ALONG_Z("") LAMP "MediumInterface \"ink\" \"\" Material \"dielectric\" \"float eta\" 1.5\n" SLAB);
+        media_check(&CASES[i], "absorbing glass", mean, expected, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
+/* The camera in a medium that goes on beyond the lamp: 7 units. Of the environment nothing arrives. */
+START_TEST(test_camera_inside)
+{
+    double expected[3], mean[3];
+    for (int c = 0; c < 3; ++c)
+        expected[c] = exp(-7.0 * 0.05 * (1 << c));
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("MakeNamedMedium \"air\" \"string type\" \"homogeneous\" \"float sigma_s\" 0\n"
+                            "\"rgb sigma_a\" [ 0.05 0.1 0.2 ]\nMediumInterface \"\" \"air\"\n") LAMP
+                    "LightSource \"infinite\"\n");
+        media_check(&CASES[i], "camera in a medium", mean, expected, 1e-5);
+    }
+}
+END_TEST
+
+/* ---- scattering -------------------------------------------------------------------------------------------------- */
+
+/* A sphere of fog around a point light of intensity 1 at (0, 0.2, 0), seen along the line (0.5, 0, z). */
+static const char *const SINGLE =
+    ANALYTIC_FILM "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.2 0.4 0.6 ]\n"
+                  "\"rgb sigma_s\" [ 0.5 0.8 0.4 ] \"float g\" 0.4\n"
+                  "LookAt 0.5 0 -4  0.5 0 0  0 1 0\n"
+                  "Camera \"orthographic\" \"float screenwindow\" [ -0.001 0.001 -0.001 0.001 ]\nWorldBegin\n"
+                  "AttributeBegin MediumInterface \"\" \"fog\"\n"
+                  "LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"point3 from\" [ 0 0.2 0 ] AttributeEnd\n"
+                  "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n";
+
+static double single_expected(double absorption, double scattering, double g)
+{
+    enum { STEPS = 100000 };
+    double end = sqrt(1.0 - 0.25), sum = 0.0, t = absorption + scattering;
+    for (int i = 0; i < STEPS; ++i) {
+        double z = end * (2.0 * (i + 0.5) / STEPS - 1.0);
+        double r = sqrt(0.25 + 0.04 + z * z), cosine = -z / r; /* between the light's and the camera's direction */
+        double phase = (1.0 - g * g) / (4.0 * M_PI * pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
+        sum += exp(-t * (z + end)) * scattering * phase * exp(-t * r) / (r * r);
+    }
+    return sum * 2.0 * end / STEPS;
+}
+
+START_TEST(test_single_scattering)
+{
+    const double expected[3] = {single_expected(0.2, 0.5, 0.4), single_expected(0.4, 0.8, 0.4),
+                                single_expected(0.6, 0.4, 0.4)};
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        double mean[3];
+        media_color(mean, CASES[i].integrator(), 16384, 2, SINGLE);
+        media_check(&CASES[i], "single scattering", mean, expected, 0.01);
+    }
+}
+END_TEST
+
+/* A sphere that absorbs nothing in an environment of radiance 1 cannot be seen, however often light is scattered. */
+START_TEST(test_furnace)
+{
+    static const double EXPECTED[3] = {1.0, 1.0, 1.0};
+    static const char *const MEDIA[] = {"\"rgb sigma_s\" [ 1 2 3 ] \"float g\" 0.6", "\"float sigma_s\" 4",
+                                        "\"rgb sigma_s\" [ 20 20 20 ] \"float g\" -0.9"};
+    for (int i = 0; i < 3; ++i) {
+        char text[1024];
+        double mean[3];
+        snprintf(text, sizeof text,
+                 ANALYTIC_FILM "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float sigma_a\" 0 %s\n"
+                               "LookAt 0.3 0 -4  0.3 0 0  0 1 0\n"
+                               "Camera \"perspective\" \"float fov\" 2\nWorldBegin LightSource \"infinite\"\n"
+                               "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n",
+                 MEDIA[i]);
+        media_color(mean, integrator_pt(), i == 2 ? 256 : 4096, 1000, text);
+        media_check(&CASES[0], MEDIA[i], mean, EXPECTED, 0.005);
+    }
+}
+END_TEST
+
+/* A slab that absorbs and emits, before a lamp of radiance 1: T + Le (1 - T). */
+START_TEST(test_glow)
+{
+    static const double LE[3] = {3.0, 2.0, 1.5};
+    double expected[3], mean[3];
+    for (int c = 0; c < 3; ++c) {
+        double a = exp(-0.5 * (1 << c));
+        expected[c] = a + 2.0 * LE[c] * (1.0 - a);
+    }
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"float sigma_s\" 0\n"
+                            "\"rgb sigma_a\" [ 0.5 1 2 ] \"rgb Le\" [ 3 2 1.5 ] \"float Lescale\" 2\n") LAMP
+                    "MediumInterface \"fire\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission", mean, expected, 1e-5);
+    }
+}
+END_TEST
+
+/* Emission does not depend on where the ray is scattered: a thin medium that emits and scatters, at depth 1. */
+START_TEST(test_glow_of_fog)
+{
+    double expected[3], mean[3];
+    for (int c = 0; c < 3; ++c)
+        expected[c] = 0.5 / (0.5 + 2.0) * (1.0 - exp(-2.5)) + exp(-2.5);
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16384, 1,
+                    ALONG_Z("MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"float sigma_s\" 2\n"
+                            "\"float sigma_a\" 0.5 \"rgb Le\" [ 1 1 1 ]\n") LAMP
+                    "MediumInterface \"fire\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission of fog", mean, expected, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
+TCase *analytic_media_case(void)
+{
+    TCase *tcase = tcase_create("media");
+    tcase_add_test(tcase, test_slab);
+    tcase_add_test(tcase, test_glass);
+    tcase_add_test(tcase, test_camera_inside);
+    tcase_add_test(tcase, test_single_scattering);
+    tcase_add_test(tcase, test_furnace);
+    tcase_add_test(tcase, test_glow);
+    tcase_add_test(tcase, test_glow_of_fog);
+    tcase_set_timeout(tcase, 300);
+    return tcase;
+}
