@@ -474,9 +474,9 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
     return asked.tfar < 0.0f;
 }
 
-/* rays_embree_closest through media (geometry/media_walk.h). */
-static Hit media_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint *diagnostics, uint stride,
-                         uint item, Ray ray)
+/* rays_embree_closest through media (geometry/media_walk.h). Not inlined: other scenes do not pay for it. */
+__attribute__((noinline)) static Hit media_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words,
+                                                   uint *diagnostics, uint stride, uint item, Ray ray)
 {
     MediaWalk walk = media_walk_load(ray_words, stride, item);
     Hit hit;
@@ -487,7 +487,8 @@ static Hit media_closest(const RaysEmbree *rays, const uint *ray_words, uint *hi
     return hit;
 }
 
-static void media_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics, uint stride, uint item, Ray ray)
+__attribute__((noinline)) static void media_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics,
+                                                   uint stride, uint item, Ray ray)
 {
     MediaWalk walk = media_walk_begin(state_load(shadow_words, stride, SHADOW_MEDIUM, item));
     Hit hit;

@@ -103,17 +103,13 @@ static void homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
     memcpy(scattering, milk->scattering, sizeof scattering);
     coefficient_read(im, list, "sigma_a", absorption);
     coefficient_read(im, list, "sigma_s", scattering);
-    if (preset) {
-        memcpy(absorption, preset->absorption, sizeof absorption);
-        memcpy(scattering, preset->scattering, sizeof scattering);
-    }
     value_color(im, list, "Le", COLOR_ILLUMINANT, glow);
     double scale = (double)positive_read(list, "scale"), brightness = (double)positive_read(list, "Lescale");
     medium->g = param_float(list, "g", 0.0f);
     if (!(medium->g > -1.0f && medium->g < 1.0f))
         param_error(list, "g", "\"g\" of a medium must be above -1 and below 1");
-    Vec3 absorbed = coefficients_scale(list, absorption, scale);
-    medium->scattering = coefficients_scale(list, scattering, scale);
+    Vec3 absorbed = coefficients_scale(list, preset ? preset->absorption : absorption, scale);
+    medium->scattering = coefficients_scale(list, preset ? preset->scattering : scattering, scale);
     medium->extinction = vec3_add(absorbed, medium->scattering);
     medium->glow = vec3_mul(absorbed, vec3_scale(vec3(glow[0], glow[1], glow[2]), (float)brightness));
     if (!vec3_finite(medium->extinction) || !vec3_finite(medium->glow))

@@ -56,7 +56,7 @@ SHARED_FUNCTION bool bsdf_is_phase(const SceneView *scene, const Bsdf *bsdf)
 SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
     if (bsdf_is_phase(scene, bsdf))
-        return phase_eval(bsdf, wi);
+        return phase_eval(bsdf->color0.x, wi);
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
         return bsdf_value_zero();
 #define EVAL(NAME, name, text, traits)                                                                                 \
@@ -78,8 +78,10 @@ SHARED_FUNCTION bool bsdf_has_base(const Bsdf *bsdf)
 SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
                                       BsdfSample *sample)
 {
-    if (bsdf_is_phase(scene, bsdf))
-        return phase_sample(bsdf, draw.u, sample);
+    if (bsdf_is_phase(scene, bsdf)) {
+        *sample = phase_sample(bsdf->color0.x, draw.u);
+        return true;
+    }
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
         return false;
 #define SAMPLE(NAME, name, text, traits)                                                                               \

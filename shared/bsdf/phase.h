@@ -35,10 +35,10 @@ SHARED_FUNCTION float phase_versine(float g, Vec3 wi)
     return 0.5f * (wi.x * wi.x + wi.y * wi.y + z * z);
 }
 
-SHARED_FUNCTION BsdfValue phase_eval(const Bsdf *bsdf, Vec3 wi)
+SHARED_FUNCTION_APART BsdfValue phase_eval(float g, Vec3 wi)
 {
     BsdfValue value;
-    value.pdf_w = phase_density(bsdf->color0.x, phase_versine(bsdf->color0.x, wi));
+    value.pdf_w = phase_density(g, phase_versine(g, wi));
     value.pdf_rev_w = value.pdf_w;
     value.f_cos = vec3_splat(value.pdf_w);
     return value;
@@ -46,18 +46,20 @@ SHARED_FUNCTION BsdfValue phase_eval(const Bsdf *bsdf, Vec3 wi)
 
 /* Draws wi by inverting the distribution of q, through a disk as warp_cone does: with r^2 uniform, q = r^2 m and
  * m = (1 - |g|)^2 (1 + |g| + d) / d^2, where d = 1 + |g| - 2 |g| r^2. */
-SHARED_FUNCTION bool phase_sample(const Bsdf *bsdf, Vec2 u, BsdfSample *sample)
+SHARED_FUNCTION_APART BsdfSample phase_sample(float g, Vec2 u)
 {
-    float g = bsdf->color0.x, a = float_abs(g), r;
+    float a = float_abs(g), r;
     Vec2 disk = warp_disk_polar(u, &r);
     float d = (1.0f - a) + 2.0f * a * ((1.0f - r) * (1.0f + r)), part = (1.0f - a) / d;
     float m = part * part * (1.0f + a + d), q = float_min(r * r * m, 2.0f), across = float_sqrt(m * (2.0f - q));
     Vec3 wi = vec3(disk.x * across, disk.y * across, g > 0.0f ? q - 1.0f : 1.0f - q);
+    BsdfSample sample;
     BsdfValue value;
     value.pdf_w = phase_density(g, q);
     value.pdf_rev_w = value.pdf_w;
-    bsdf_sample_set(sample, wi, vec3_splat(1.0f), value);
-    return true;
+    value.f_cos = vec3_splat(value.pdf_w);
+    bsdf_sample_set(&sample, wi, vec3_splat(1.0f), value);
+    return sample;
 }
 
 #endif

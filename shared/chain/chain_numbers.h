@@ -245,7 +245,7 @@ SHARED_FUNCTION uint chain_distance_number(__global const FrameParams *frame, ui
 }
 
 /* The medium and the distance of the walk's stored ray, which leads to vertex i of `side` in a path of d segments. */
-SHARED_FUNCTION void chain_ray_media(const SceneView *scene, Walk walk, uint side, uint d, uint i, uint medium)
+SHARED_FUNCTION_APART void chain_ray_media(const SceneView *scene, Walk walk, uint side, uint d, uint i, uint medium)
 {
     __global const FrameParams *frame = scene->frame;
     uint bits = 0u;

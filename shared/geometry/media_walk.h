@@ -153,7 +153,7 @@ SHARED_FUNCTION void media_walk_scatter(const SceneView *scene, const Ray *ray, 
     float near = walk->target / coefficient, last = distance;
     if (surface)
         last -= RAY_OFFSET_ULPS * FLOAT_EPSILON * (vec3_max_abs(ray->o) + distance);
-    near = float_max(float_min(near, last), 0.0f);
+    near = float_min(near, float_max(last, 0.5f * distance));
     walk->scattered = true;
     walk->point.origin = ray->o;
     walk->point.t = near / length;

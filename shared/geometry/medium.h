@@ -52,6 +52,12 @@ SHARED_FUNCTION uint medium_towards(uint bits, Vec3 ng, Vec3 w)
     return vec3_dot(w, ng) > 0.0f ? media_outside(bits) : media_inside(bits);
 }
 
+/* The same in any scene; 0 without media. */
+SHARED_FUNCTION uint medium_leaving(const SceneView *scene, uint bits, Vec3 ng, Vec3 w)
+{
+    return SCENE_HAS(scene, FEATURE_MEDIUM) ? medium_towards(bits, ng, w) : 0u;
+}
+
 /* The medium around a light, except for area lights, which have those of their shape. */
 SHARED_FUNCTION uint light_medium(__global const Light *light)
 {

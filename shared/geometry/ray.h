@@ -97,7 +97,7 @@ SHARED_FUNCTION Ray ray_between(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
 }
 
 /* The same, from p to q in this order: media are counted from p on. */
-SHARED_FUNCTION Ray ray_from_to(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
+SHARED_FUNCTION_APART Ray ray_from_to(Vec3 p, Vec3 ngp, Vec3 q, Vec3 ngq)
 {
     Vec3 w = vec3_sub(q, p);
     Ray ray;

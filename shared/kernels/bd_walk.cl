@@ -40,7 +40,8 @@ __kernel void bd_start_light(__global const FrameParams *restrict frame, __globa
         pool_roulette_weigh(frame, paths, item, 1.0f);
     state_store_float(densities, stride, density_base(frame, SIDE_LIGHT, 0u) + DENSITY_OWN, item, own);
     state_store(paths, stride, BD_LENGTHS, item, 1u);
-    bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
 }
 
 /* From: the pixel. To: the camera's first ray. */
@@ -58,7 +59,8 @@ __kernel void bd_start_camera(__global const FrameParams *restrict frame, __glob
         pool_start_camera(scene, walk);
     else
         walk_start_camera(scene, walk);
-    bd_ray_media(scene, paths, rays, item, SIDE_CAMERA, 1u, frame->camera.medium);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bd_ray_media(scene, paths, rays, item, SIDE_CAMERA, 1u, frame->camera.medium);
 }
 
 /* reservoir_update for a path with s = 0. */
@@ -165,7 +167,8 @@ __kernel void bd_extend_walks(__global const FrameParams *restrict frame, __glob
     if (side == SIDE_LIGHT || depth > 1u)
         state_store_float(densities, stride, density_base(frame, side, depth - 1u) + DENSITY_OTHER, item, step.reverse);
     walk_step_store(paths, rays, stride, item, depth, &step);
-    bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
 }
 
 #endif

@@ -34,10 +34,9 @@ __kernel void pt_walk_caustics(__global const FrameParams *restrict frame, __glo
     KERNEL_SCENE(frame, geometry, tables, texels);
     Ray whole = ray_load(rays, stride, item), ray = ray_last_part(scene, hits, stride, item, whole);
     Hit hit = hit_load(hits, stride, item);
-    Passage passage = passage_load(scene, hits, stride, item, false);
     Vec3 beta = state_load_vec3(paths, stride, PATH_CAUSTIC_BETA, item);
     if (SCENE_HAS(scene, FEATURE_MEDIUM)) { /* its directions are drawn for paths that pass unscattered */
-        beta = vec3_mul(beta, transmittance(passage.depth.all));
+        beta = vec3_mul(beta, transmittance(hit_depth(hits, stride, item).all));
         state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, beta);
     }
     Surface surface = {0};
@@ -53,7 +52,7 @@ __kernel void pt_walk_caustics(__global const FrameParams *restrict frame, __glo
     }
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
     if (hit.primitive != NONE)
-        caustic_continue(scene, paths, rays, item, &surface, ray.d, passage.medium);
+        caustic_continue(scene, paths, rays, item, &surface, ray.d, hit_medium(scene, hits, stride, item));
 }
 
 #endif

@@ -29,7 +29,8 @@ __kernel void ib_start_light(__global const FrameParams *restrict frame, __globa
         walk_start_light(scene, walk, vertices, 0u, bd_random(frame, paths, item, BD_RANDOM_LIGHT),
                          bd_random(frame, paths, item, BD_RANDOM_EMIT), &own))
         state_store_float(paths, stride, IB_OWN_BEFORE, item, own);
-    bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bd_ray_media(scene, paths, rays, item, SIDE_LIGHT, 1u, emitter_medium(scene, walk));
 }
 
 /* s = 0: adds what a light sends that was hit. beta: throughput of the walk. */
@@ -166,7 +167,8 @@ __kernel void ib_extend_walks(__global const FrameParams *restrict frame, __glob
         return;
     ib_leave(paths, stride, item, side, depth, step.reverse, step.delta != 0u);
     walk_step_store(paths, rays, stride, item, depth, &step);
-    bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bd_ray_media(scene, paths, rays, item, side, depth + 1u, step.medium);
 }
 
 #endif

@@ -111,7 +111,8 @@ __kernel void mlt_propose(__global const FrameParams *restrict frame, __global c
     if (walk_start_light(scene, walk, vertices, chain_vertex_base(SIDE_LIGHT, bank), chain_select(frame, paths, item),
                          chain_emit(frame, paths, item), &own)) {
         state_store_float(densities, stride, chain_density(frame, SIDE_LIGHT, bank, s, 0u), item, own);
-        chain_ray_media(scene, walk, SIDE_LIGHT, chain_key_depth(key), 1u, emitter_medium(scene, walk));
+        if (SCENE_HAS(scene, FEATURE_MEDIUM))
+            chain_ray_media(scene, walk, SIDE_LIGHT, chain_key_depth(key), 1u, emitter_medium(scene, walk));
     }
 }
 
@@ -139,7 +140,8 @@ __kernel void mlt_start_camera(__global const FrameParams *restrict frame, __glo
     KERNEL_SCENE_GUIDED(frame, guide, geometry, tables, texels);
     Walk walk = {paths, rays, diagnostics, stride, item};
     walk_start_film(scene, walk, chain_camera(frame, paths, item));
-    chain_ray_media(scene, walk, SIDE_CAMERA, chain_key_depth(key), 1u, frame->camera.medium);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        chain_ray_media(scene, walk, SIDE_CAMERA, chain_key_depth(key), 1u, frame->camera.medium);
 }
 
 /* The walk has made the last vertex of its side: stores what the connection needs to know of it. */
@@ -191,7 +193,8 @@ SHARED_FUNCTION void chain_walk_on(const SceneView *scene, Walk walk, __global u
                           step.reverse / state_load_float(densities, stride, before, item));
     }
     walk_step_store(paths, walk.rays, stride, item, depth, &step);
-    chain_ray_media(scene, walk, side, at.d, depth + 1u, step.medium);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        chain_ray_media(scene, walk, side, at.d, depth + 1u, step.medium);
 }
 
 /* From: closest hits. To: the vertex with its density, the density ratio of the vertex before, and the next ray; for s

@@ -37,8 +37,8 @@ SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *rest
 }
 
 /* The stored ray, which ends segment `depth` of the path, begins in `medium`. */
-SHARED_FUNCTION void path_ray_media(const SceneView *scene, __global const uint *restrict paths,
-                                    __global uint *restrict rays, uint item, uint medium, uint depth)
+SHARED_FUNCTION_APART void path_ray_media(const SceneView *scene, __global const uint *restrict paths,
+                                          __global uint *restrict rays, uint item, uint medium, uint depth)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
@@ -98,7 +98,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item, vec3_splat(0.0f));
     }
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
-    path_ray_media(scene, paths, rays, item, camera.medium, 1u);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        path_ray_media(scene, paths, rays, item, camera.medium, 1u);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         path_end(paths, rays, stride, item);
@@ -197,19 +198,30 @@ SHARED_FUNCTION void path_add_emission(const SceneView *scene, __global uint *re
 }
 
 /* Stores the path's vertex, except for its Bsdf. */
-SHARED_FUNCTION void path_vertex_store(const SceneView *scene, __global uint *restrict paths, uint item, Vec3 p,
-                                       Vec3 ng, Vec3 wo, const Frame *frame)
+SHARED_FUNCTION void path_vertex_store(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                       Vec3 p, Vec3 ng, Vec3 wo, const Frame *shading)
 {
-    uint stride = scene->frame->pass.stride;
+    uint stride = frame->pass.stride;
     state_store_vec3(paths, stride, PATH_POINT, item, p);
     state_store_vec3(paths, stride, PATH_NG, item, ng);
     state_store_vec3(paths, stride, PATH_WO, item, wo);
-    frame_store(paths, stride, PATH_FRAME, item, *frame);
+    frame_store(paths, stride, PATH_FRAME, item, *shading);
+}
+
+/* The vertex where the path's ray was scattered, in `medium`. */
+SHARED_FUNCTION_APART void path_vertex_in_medium(const SceneView *scene, __global uint *restrict paths, uint item,
+                                                 Ray ray, Hit hit, uint medium)
+{
+    Frame along = frame_from_normal(vec3_negate(ray.d));
+    Bsdf phase = medium_bsdf(scene, medium);
+    path_vertex_store(scene->frame, paths, item, scatter_position(&ray, hit), vec3_splat(0.0f), vec3(0.0f, 0.0f, 1.0f),
+                      &along);
+    bsdf_store(scene, paths, scene->frame->pass.stride, PATH_BSDF, item, &phase);
 }
 
 /* Takes the path through the media before its hit: throughput, density, and the light that they emit. */
-SHARED_FUNCTION void path_pass_media(const SceneView *scene, __global uint *restrict paths,
-                                     __global const uint *restrict hits, uint item, bool scattered)
+SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint *restrict paths,
+                                           __global const uint *restrict hits, uint item, bool scattered)
 {
     uint stride = scene->frame->pass.stride;
     Passage passage = passage_load(scene, hits, stride, item, scattered);
@@ -248,12 +260,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     }
     uint medium = hit_medium(scene, hits, stride, item);
     if (scattered && depth < frame->path.max_depth) {
-        Vec3 wo = vec3_negate(ray.d);
-        Frame along = frame_from_normal(wo);
-        Bsdf phase = medium_bsdf(scene, medium);
-        path_vertex_store(scene, paths, item, scatter_position(&ray, hit), vec3_splat(0.0f), vec3(0.0f, 0.0f, 1.0f),
-                          &along);
-        bsdf_store(scene, paths, stride, PATH_BSDF, item, &phase);
+        path_vertex_in_medium(scene, paths, item, ray, hit, medium);
         return;
     }
     if (scattered) {
@@ -285,8 +292,17 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
         return;
     }
     bsdf.flags |= media_at(scene, surface.shape, medium);
-    path_vertex_store(scene, paths, item, surface.p, surface.ng, frame_to_local(shading, vec3_negate(ray.d)), &shading);
+    path_vertex_store(frame, paths, item, surface.p, surface.ng, frame_to_local(shading, vec3_negate(ray.d)), &shading);
     bsdf_store(scene, paths, stride, PATH_BSDF, item, &bsdf);
+}
+
+/* Keeps an unweighted light sample until its shadow ray has been traced (path_light_pass). */
+SHARED_FUNCTION_APART void path_light_keep(__global uint *restrict paths, uint stride, uint item, Vec3 light, float pdf,
+                                           float pdf_other)
+{
+    state_store_vec3(paths, stride, PATH_LIGHT, item, light);
+    state_store_float(paths, stride, PATH_LIGHT_PDF, item, pdf);
+    state_store_float(paths, stride, PATH_LIGHT_OTHER, item, pdf_other);
 }
 
 /* Stores what a light sample brings if it is visible. light: f times the radiance; pdf: its density; pdf_other: that of
@@ -339,9 +355,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
         return;
     ray_store(shadows, stride, item, shadow);
     if (SCENE_HAS(scene, FEATURE_MEDIUM)) {
-        state_store_vec3(paths, stride, PATH_LIGHT, item, light_term);
-        state_store_float(paths, stride, PATH_LIGHT_PDF, item, pdf);
-        state_store_float(paths, stride, PATH_LIGHT_OTHER, item, pdf_other);
+        path_light_keep(paths, stride, item, light_term, pdf, pdf_other);
         shadow_medium_store(scene, shadows, stride, item, medium_towards(bsdf.flags, ng, shadow.d));
     } else {
         path_light_weigh(frame, paths, item, light_term, pdf, pdf_other);
@@ -349,8 +363,8 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
 }
 
 /* In scenes with media: weights the light sample after its shadow ray has been traced through them. */
-SHARED_FUNCTION void path_light_pass(const SceneView *scene, __global uint *restrict paths,
-                                     __global const uint *restrict shadows, uint item)
+SHARED_FUNCTION_APART void path_light_pass(const SceneView *scene, __global uint *restrict paths,
+                                           __global const uint *restrict shadows, uint item)
 {
     uint stride = scene->frame->pass.stride;
     Passage passage = passage_shadow(scene, shadows, stride, item);
@@ -448,7 +462,8 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store_float(paths, stride, PATH_ETA_SCALE, item, eta_scale);
     state_store(paths, stride, PATH_FLAGS, item, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
     state_store(paths, stride, PATH_DEPTH, item, depth + 1u);
-    path_ray_media(scene, paths, rays, item, medium_towards(bsdf.flags, ng, wi), depth + 1u);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        path_ray_media(scene, paths, rays, item, medium_towards(bsdf.flags, ng, wi), depth + 1u);
 }
 
 /* Splats what the path has gathered in `field` to its pixel, and clears it. A sum that is not finite is counted, and

@@ -57,15 +57,15 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __globa
 }
 
 /* The stored ray, which makes segment `depth` of a side, begins in `medium`. */
-SHARED_FUNCTION void bd_ray_media(const SceneView *scene, __global const uint *restrict paths,
-                                  __global uint *restrict rays, uint item, uint side, uint depth, uint medium)
+SHARED_FUNCTION_APART void bd_ray_media(const SceneView *scene, __global const uint *restrict paths,
+                                        __global uint *restrict rays, uint item, uint side, uint depth, uint medium)
 {
     walk_ray_media(scene, rays, scene->frame->pass.stride, item, medium,
                    bd_random_distance(scene, paths, item, side, depth));
 }
 
 /* The medium in which the first ray of a light walk begins. */
-SHARED_FUNCTION uint emitter_medium(const SceneView *scene, Walk walk)
+SHARED_FUNCTION_APART uint emitter_medium(const SceneView *scene, Walk walk)
 {
     if (!SCENE_HAS(scene, FEATURE_MEDIUM))
         return 0u;

@@ -135,7 +135,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     if (survival < 1.0f)
         step->beta = vec3_scale(step->beta, 1.0f / survival);
     step->ray = ray_spawn(vertex->p, vertex->ng, wi);
-    step->medium = medium_towards(vertex->bsdf.flags, vertex->ng, wi);
+    step->medium = medium_leaving(scene, vertex->bsdf.flags, vertex->ng, wi);
     step->delta = sample.delta;
     step->forward = sample.pdf_w;
     step->reverse = sample.pdf_rev_w;
@@ -207,7 +207,7 @@ SHARED_FUNCTION void walk_hit_pass(const SceneView *scene, __global const uint *
     walk_hit->beta = vec3_mul(walk_hit->beta, walk_hit->passage.weight);
     walk_hit->own *= walk_hit->passage.pdf; /* of a miss; walk_hit_make computes others anew */
     Vec3 ng = end ? walk_hit->ray.d : walk_hit->from_ng;
-    walk_hit->passage_back = passage_density(scene, &walk_hit->passage, ng, state_load(rays, stride, RAY_MEDIUM, item));
+    walk_hit->passage_back = passage_density(scene, walk_hit->passage, ng, state_load(rays, stride, RAY_MEDIUM, item));
 }
 
 /* Vertex.back at the hit. */

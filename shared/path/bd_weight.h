@@ -50,8 +50,8 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
 
 /* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other strategy
  * makes such a path. */
-SHARED_FUNCTION void walk_add_glow(const SceneView *scene, __global uint *restrict paths,
-                                   __global const uint *restrict hits, uint item, uint depth)
+SHARED_FUNCTION_APART void walk_add_glow(const SceneView *scene, __global uint *restrict paths,
+                                         __global const uint *restrict hits, uint item, uint depth)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;

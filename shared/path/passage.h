@@ -25,8 +25,8 @@ SHARED_FUNCTION Passage passage_free(void)
 }
 
 /* How the ray of a path has reached its hit. scattered: that is in a medium. */
-SHARED_FUNCTION Passage passage_load(const SceneView *scene, __global const uint *hits, uint stride, uint item,
-                                     bool scattered)
+SHARED_FUNCTION_APART Passage passage_load(const SceneView *scene, __global const uint *hits, uint stride, uint item,
+                                           bool scattered)
 {
     Passage passage = passage_free();
     if (!SCENE_HAS(scene, FEATURE_MEDIUM))
@@ -45,7 +45,8 @@ SHARED_FUNCTION Passage passage_load(const SceneView *scene, __global const uint
 }
 
 /* What a shadow ray has gone through: no distance was drawn. */
-SHARED_FUNCTION Passage passage_shadow(const SceneView *scene, __global const uint *shadows, uint stride, uint item)
+SHARED_FUNCTION_APART Passage passage_shadow(const SceneView *scene, __global const uint *shadows, uint stride,
+                                             uint item)
 {
     Passage passage = passage_free();
     if (!SCENE_HAS(scene, FEATURE_MEDIUM))
@@ -59,15 +60,15 @@ SHARED_FUNCTION Passage passage_shadow(const SceneView *scene, __global const ui
 
 /* Density of the distance with which a vertex at either end of the passage is reached from the other. ng and media: of
  * the vertex that is reached; a vertex in a medium has ng 0. */
-SHARED_FUNCTION float passage_density(const SceneView *scene, const Passage *passage, Vec3 ng, uint medium)
+SHARED_FUNCTION_APART float passage_density(const SceneView *scene, Passage passage, Vec3 ng, uint medium)
 {
     if (!SCENE_HAS(scene, FEATURE_SCATTERING))
         return 1.0f;
-    return vec3_is_zero(ng) ? scattering_density(scene, &passage->depth, medium) : passing_probability(&passage->depth);
+    return vec3_is_zero(ng) ? scattering_density(scene, &passage.depth, medium) : passing_probability(&passage.depth);
 }
 
 /* The Bsdf of a vertex in a medium. */
-SHARED_FUNCTION Bsdf medium_bsdf(const SceneView *scene, uint medium)
+SHARED_FUNCTION_APART Bsdf medium_bsdf(const SceneView *scene, uint medium)
 {
     Bsdf bsdf = phase_bsdf(scene->media[medium].g);
     bsdf.flags = media_bits(medium, medium);

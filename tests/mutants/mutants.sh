@@ -196,6 +196,9 @@ likely() {
     shared/path/mis.h | shared/path/strategy.h) echo test_light:mis test_bidirectional:weights test_bidirectional:walks ;;
     shared/chain/mutation.h) echo test_chain:shown test_partition test_chain test_shift test_layers ;;
     shared/chain/shift.h) echo test_shift:kept test_chain test_shift ;;
+    shared/bsdf/phase.h) echo test_bsdf:phase ;;
+    shared/geometry/media_walk.h | shared/geometry/medium.h | shared/path/passage.h) echo test_analytic:media test_bidirectional:sums ;;
+    host/pbrt/* | host/scene/media_setup.c) echo test_import ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
     shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h | host/render/photon_*.c) echo test_caustic:photons test_caustic ;;

@@ -178,6 +178,33 @@ START_TEST(test_glow)
 }
 END_TEST
 
+/* Emission behind a slab that absorbs; and of a slab so thin that 1 - exp(-x) would lose digits. */
+START_TEST(test_glow_behind)
+{
+    static const double THIN[3] = {3e-4, 3e-4, 3e-4};
+    double expected[3], mean[3];
+    for (int c = 0; c < 3; ++c) {
+        double a = exp(-0.5 * (1 << c));
+        expected[c] = a * (exp(-1.0) + 3.0 * (1.0 - exp(-1.0)));
+    }
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"float sigma_s\" 0\n"
+                            "\"float sigma_a\" 1 \"rgb Le\" [ 3 3 3 ]\n") LAMP
+                    "MediumInterface \"fire\" \"\" Material \"interface\" AttributeBegin Translate 0 0 1.5\n" SLAB
+                    "AttributeEnd MediumInterface \"ink\" \"\"\n" SLAB);
+        media_check(&CASES[i], "emission behind a slab", mean, expected, 1e-5);
+        media_color(
+            mean, CASES[i].integrator(), 16, 3,
+            ALONG_Z(
+                "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"float sigma_s\" 0\n"
+                "\"float sigma_a\" 1e-6 \"rgb Le\" [ 300 300 300 ]\n") "LightSource \"point\" MediumInterface \"fire\" "
+                                                                       "\"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission of a thin slab", mean, THIN, 1e-4);
+    }
+}
+END_TEST
+
 /* Emission does not depend on where the ray is scattered: a thin medium that emits and scatters, at depth 1. */
 START_TEST(test_glow_of_fog)
 {
@@ -203,6 +230,7 @@ TCase *analytic_media_case(void)
     tcase_add_test(tcase, test_single_scattering);
     tcase_add_test(tcase, test_furnace);
     tcase_add_test(tcase, test_glow);
+    tcase_add_test(tcase, test_glow_behind);
     tcase_add_test(tcase, test_glow_of_fog);
     tcase_set_timeout(tcase, 300);
     return tcase;
