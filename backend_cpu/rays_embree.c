@@ -448,7 +448,8 @@ static inline bool ray_is_outer(const RaysEmbree *rays, const Ray *ray)
     return rays->outer.words && vec3_max_abs(ray->o) > rays->reach;
 }
 
-Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
+/* Inlined into the loop over the rays of a chunk. */
+__attribute__((always_inline)) static inline Hit ray_closest(const RaysEmbree *rays, const Ray *ray)
 {
     RayWalk walk;
     if (ray_is_outer(rays, ray))
@@ -459,6 +460,11 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
     struct RTCRayHit rayhit = {.ray = embree_ray(&walk, ray->o, ray->d)};
     rtcIntersect1(rays->objects[0].scene, &walk.context, &rayhit);
     return walk.best;
+}
+
+Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray)
+{
+    return ray_closest(rays, ray);
 }
 
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
@@ -510,7 +516,7 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
             continue;
         hit_store(hit_words, stride, item,
                   media ? media_closest(rays, ray_words, hit_words, diagnostics, stride, item, ray)
-                        : rays_embree_closest(rays, &ray));
+                        : ray_closest(rays, &ray));
         ++traced;
     }
     return traced;

@@ -10,6 +10,22 @@
 
 static const atomic_int NEVER = 0;
 
+/* Media that absorb, scatter and emit, inside each other, in glass and around the camera. */
+static const char *const MEDIA_SCENE =
+    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.01 0.02 0.03 ]\n"
+    "\"rgb sigma_s\" [ 0.1 0.2 0.3 ] \"float g\" 0.6\n"
+    "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 2 3 ] \"float sigma_s\" 0.5\n"
+    "\"rgb Le\" [ 3 2 1 ]\n"
+    "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 0.5 2 ] \"float sigma_s\" 0\n"
+    "MediumInterface \"fog\" LookAt 0 1.2 -6  0 -0.2 0  0 1 0 Camera \"perspective\" \"float fov\" 38\nWorldBegin\n"
+    "AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -1 2 -1  1 2 -1  -1 2 1  1 2 1 ] AttributeEnd\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ]\n"
+    "AttributeBegin MediumInterface \"ink\" \"fog\" Translate -1 0 0 Material \"dielectric\" Shape \"sphere\"\n"
+    "AttributeEnd MediumInterface \"fire\" \"fog\" Translate 1.2 0 0 Material \"interface\" Shape \"sphere\"\n"
+    "MediumInterface \"\" \"fire\" Shape \"sphere\" \"float radius\" 0.4";
+
 /* Opens the setup on the CPU and on a device. */
 static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyPair *pair)
 {
@@ -32,7 +48,10 @@ START_TEST(test_state_is_the_same)
                  {OPENCL_MATERIALS_SCENE, 0, integrator_pt(), 7, 20000},
                  {OPENCL_MATERIALS_SCENE, 1000, integrator_pt(), 7, 20000},
                  {OPENCL_MATERIALS_SCENE, 0, integrator_ibpt(), 5, 3000},
-                 {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000}};
+                 {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000},
+                 {MEDIA_SCENE, 0, integrator_pt(), 7, 3000},
+                 {MEDIA_SCENE, 0, integrator_ibpt(), 5, 3000},
+                 {MEDIA_SCENE, 0, integrator_bdpt(), 4, 3000}};
     if (!test_device_promises())
         return;
     RenderSetup setup = {.text = cases[_i].text,
@@ -137,7 +156,7 @@ TCase *opencl_inspect_tests(void)
 {
     TCase *inspect = tcase_create("inspect");
     tcase_set_timeout(inspect, 120);
-    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 5);
+    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 8);
     tcase_add_test(inspect, test_inspect_is_run);
     tcase_add_test(inspect, test_fault_is_named);
     tcase_add_test(inspect, test_failure);
