@@ -123,7 +123,7 @@ MediumInterface "fire" ""
 Material "interface"
 Shape "sphere" "float radius" 0.5
 TEXT
-expect 1 'has a medium that emits light (Le), which mmlt does not support' render --integrator=mmlt --samples=1 fire.pbrt
+expect 2 'has a medium that emits light (Le), which mmlt does not support' render --integrator=mmlt --samples=1 fire.pbrt
 expect 0 '' render --integrator=bdpt --samples=1 -o fire.exr fire.pbrt
 expect 0 'media         1' info fire.pbrt
 expect 1 'nowhere/image.exr' render -o nowhere/image.exr "$scene"

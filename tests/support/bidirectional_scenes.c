@@ -146,8 +146,8 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "AttributeBegin Translate 1 0 0 Material \"interface\"\n" BD_BALL "AttributeEnd\n",
      SUPPORT_SUM_ONLY, 5, 2},
     {"fog around glass, and a denser one behind an interface",
-     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.01 0.02 0.03 ]\n"
-     "\"rgb sigma_s\" [ 0.1 0.15 0.2 ] \"float g\" 0.5\n"
+     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.02 0.03 0.05 ]\n"
+     "\"rgb sigma_s\" [ 0.25 0.3 0.4 ] \"float g\" 0.5\n"
      "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.1 0.2 0.4 ]\n"
      "\"rgb sigma_s\" [ 2 1.5 1 ] \"float g\" -0.3\n"
      "MediumInterface \"fog\"\n" BD_ROOM "AttributeBegin MediumInterface \"\" \"fog\" Translate -1 0 0\n"
