@@ -103,7 +103,8 @@ static void kept_walk(Kept *kept, Vec3 o, Vec3 p, Vec3 ng, float pdf_w)
 
 static bool kept_hit(Kept *kept, uint depth)
 {
-    return shift_hit(&kept->frame, kept->paths, kept->vertices, 0, depth, &kept->walk_hit);
+    const SceneView view = {.frame = &kept->frame};
+    return shift_hit(&view, kept->paths, kept->vertices, 0, depth, &kept->walk_hit);
 }
 
 /* Density per area by the definition. */

@@ -155,6 +155,16 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "AttributeBegin MediumInterface \"milk\" \"fog\" Translate 1 0 0 Material \"interface\"\n" BD_BALL
      "AttributeEnd\n",
      SUPPORT_SUM_ONLY, 4, 2},
+    {"a closed room full of fog",
+     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.02 0.01 0.005 ]\n"
+     "\"rgb sigma_s\" [ 0.2 0.3 0.4 ] \"float g\" 0.5\nMediumInterface \"fog\"\n" BD_FILM
+     "LookAt 0 1 -3.9  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+     "AttributeBegin Translate 0 1.98 0 AreaLightSource \"diffuse\" \"rgb L\" [ 8 8 8 ]\n"
+     "Shape \"bilinearmesh\" \"point3 P\" [ -.5 0 -.5  .5 0 -.5  -.5 0 .5  .5 0 .5 ] AttributeEnd\n"
+     "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.7 0.7 ]\n"
+     "Shape \"trianglemesh\" \"point3 P\" [ -1 0 -4  1 0 -4  1 0 1  -1 0 1  -1 2 -4  1 2 -4  1 2 1  -1 2 1 ]\n"
+     "\"integer indices\" [ 0 1 2 0 2 3 4 6 5 4 7 6 3 2 6 3 6 7 0 3 7 0 7 4 1 5 6 1 6 2 0 4 5 0 5 1 ]",
+     SUPPORT_SUM_ONLY, 5, 2},
     {"fog in a sphere under a sky, lit by a point",
      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.1 0.2 0.3 ]\n"
      "\"rgb sigma_s\" [ 1 2 1.5 ] \"float g\" 0.7\n" BD_BEGIN "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n"
