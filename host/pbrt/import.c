@@ -124,8 +124,7 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.offset = scene->origin = *offset;
-    bool good =
-        source_open(&im, source) && directives_read(&im) && late_materials_finish(&im) && media_check(&im);
+    bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im) && media_check(&im);
     good = errors_end(&im) && good;
     balance_apply(&im);
     camera_move(&scene->camera_settings, im.offset);
