@@ -155,7 +155,7 @@ static bool depth_check(const RenderCommand *command, const Integrator *integrat
 /* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. */
 static bool media_check(const Integrator *integrator, const Scene *scene, Error *error)
 {
-    if (!(scene->features & FEATURE_GLOW) || integrator != integrator_mmlt())
+    if (!(scene->features & FEATURE_MEDIUM_EMISSION) || integrator != integrator_mmlt())
         return true;
     error_set(error, "the scene has a medium that emits light (Le), which mmlt does not support");
     return error_fix(error, "use --integrator=pt, ibpt or bdpt, or set Le of the medium to 0");

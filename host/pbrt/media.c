@@ -98,12 +98,12 @@ static float positive_read(ParamList *list, const char *name)
 static void homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
 {
     const MediumPreset *preset = preset_read(im, list), *milk = preset_find(DEFAULT_PRESET);
-    float absorption[3], scattering[3], glow[3] = {0.0f, 0.0f, 0.0f};
+    float absorption[3], scattering[3], emission[3] = {0.0f, 0.0f, 0.0f};
     memcpy(absorption, milk->absorption, sizeof absorption);
     memcpy(scattering, milk->scattering, sizeof scattering);
     coefficient_read(im, list, "sigma_a", absorption);
     coefficient_read(im, list, "sigma_s", scattering);
-    value_color(im, list, "Le", COLOR_ILLUMINANT, glow);
+    value_color(im, list, "Le", COLOR_ILLUMINANT, emission);
     double scale = (double)positive_read(list, "scale"), brightness = (double)positive_read(list, "Lescale");
     medium->g = param_float(list, "g", 0.0f);
     if (!(medium->g > -1.0f && medium->g < 1.0f))
@@ -111,8 +111,8 @@ static void homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
     Vec3 absorbed = coefficients_scale(list, preset ? preset->absorption : absorption, scale);
     medium->scattering = coefficients_scale(list, preset ? preset->scattering : scattering, scale);
     medium->extinction = vec3_add(absorbed, medium->scattering);
-    medium->glow = vec3_mul(absorbed, vec3_scale(vec3(glow[0], glow[1], glow[2]), (float)brightness));
-    if (!vec3_finite(medium->extinction) || !vec3_finite(medium->glow))
+    medium->emission = vec3_mul(absorbed, vec3_scale(vec3(emission[0], emission[1], emission[2]), (float)brightness));
+    if (!vec3_finite(medium->extinction) || !vec3_finite(medium->emission))
         param_error(list, "scale", "the coefficients of %s overflow", list->owner);
 }
 

@@ -19,7 +19,7 @@ static uint medium_features(const Scene *scene, uint number)
         return 0u;
     const Medium *medium = medium_of(scene, number);
     return FEATURE_MEDIUM | (medium_scatters(medium) ? (uint)FEATURE_SCATTERING : 0u) |
-           (vec3_is_zero(medium->glow) ? 0u : (uint)FEATURE_GLOW);
+           (vec3_is_zero(medium->emission) ? 0u : (uint)FEATURE_MEDIUM_EMISSION);
 }
 
 uint media_features(const Scene *scene)

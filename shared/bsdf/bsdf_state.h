@@ -2,11 +2,12 @@
 #ifndef TWINLIGHT_BSDF_BSDF_STATE_H
 #define TWINLIGHT_BSDF_BSDF_STATE_H
 
+#include "geometry/medium.h"
 #include "layout/scene_view.h"
 #include "layout/state.h"
 
 /* Fields of a stored Bsdf, relative to its base. */
-#define STORED_BSDF_KIND 0u
+#define STORED_BSDF_KIND 0u /* and, in the bits of MEDIA_BITS, Bsdf.media */
 #define STORED_BSDF_FLAGS 1u
 #define STORED_BSDF_COLOR0 2u /* 3 */
 #define STORED_BSDF_COLOR1 5u /* 3 */
@@ -28,7 +29,7 @@
 SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint item,
                                 const Bsdf *bsdf)
 {
-    state_store(buffer, stride, base + STORED_BSDF_KIND, item, bsdf->kind);
+    state_store(buffer, stride, base + STORED_BSDF_KIND, item, bsdf->kind | bsdf->media);
     state_store(buffer, stride, base + STORED_BSDF_FLAGS, item, bsdf->flags);
     state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR0, item, bsdf->color0);
     if (SCENE_HAS(scene, FEATURES_COLOR1))
@@ -42,10 +43,21 @@ SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, u
     }
 }
 
+/* Bsdf.kind alone. */
+SHARED_FUNCTION uint bsdf_kind_load(const SceneView *scene, __global const uint *buffer, uint stride, uint base,
+                                    uint item)
+{
+    uint word = state_load(buffer, stride, base + STORED_BSDF_KIND, item);
+    return SCENE_HAS(scene, FEATURE_MEDIUM) ? word & ~MEDIA_BITS : word;
+}
+
 SHARED_FUNCTION Bsdf bsdf_load(const SceneView *scene, __global const uint *buffer, uint stride, uint base, uint item)
 {
     Bsdf bsdf;
-    bsdf.kind = state_load(buffer, stride, base + STORED_BSDF_KIND, item);
+    bsdf.kind = bsdf_kind_load(scene, buffer, stride, base, item);
+    bsdf.media = 0u;
+    if (SCENE_HAS(scene, FEATURE_MEDIUM))
+        bsdf.media = state_load(buffer, stride, base + STORED_BSDF_KIND, item) & MEDIA_BITS;
     bsdf.flags = state_load(buffer, stride, base + STORED_BSDF_FLAGS, item);
     bsdf.color0 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR0, item);
     bsdf.color1 = vec3_splat(0.0f);

@@ -118,6 +118,7 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
     Bsdf bsdf;
     bsdf.kind = material->kind;
     bsdf.flags = 0u;
+    bsdf.media = 0u;
     bsdf.color0 = color_param_eval(scene, material->color0, point);
     bsdf.color1 = vec3_splat(0.0f);
     bsdf.alpha_x = 0.0f;

@@ -77,11 +77,11 @@ typedef struct MediaWalk {
     OpticalDepth depth;
     float target; /* what is left to the optical depth in `channel` at which it is scattered */
     uint channel;
-    bool scattered; /* at `point`; then the walk continues for `glow` alone */
+    bool scattered; /* at `point`; then the walk continues for `emission` alone */
     bool arrived; /* at the end of a ray with t_max, right behind an interface */
     bool blocked; /* CROSSINGS_MAX */
     ScatterPoint point;
-    Vec3 glow; /* light that the media emit towards the ray's origin, as far as the walk would go unscattered */
+    Vec3 emission; /* light that the media emit towards the ray's origin, as far as the walk would go unscattered */
 } MediaWalk;
 
 SHARED_FUNCTION MediaWalk media_walk_begin(uint medium)
@@ -114,26 +114,26 @@ SHARED_FUNCTION Ray ray_behind(const Ray *ray, const Surface *surface)
 }
 
 /* Below this optical depth the emission of a part of a ray is a series, whose error is below 2^-24. */
-#define GLOW_SERIES 0.03125f
+#define EMISSION_SERIES 0.03125f
 
 /* Light that `distance` in a medium emits towards its near end, in one channel. */
-SHARED_FUNCTION float glow_part(float glow, float extinction, float distance)
+SHARED_FUNCTION float emission_part(float emission, float extinction, float distance)
 {
     float x = attenuation(extinction, distance);
-    if (!(glow > 0.0f))
+    if (!(emission > 0.0f))
         return 0.0f;
-    if (x < GLOW_SERIES)
-        return glow * distance * (1.0f - x * (0.5f - x * (1.0f / 6.0f - x * (1.0f / 24.0f))));
-    return glow * (1.0f - float_exp(-x)) / extinction;
+    if (x < EMISSION_SERIES)
+        return emission * distance * (1.0f - x * (0.5f - x * (1.0f / 6.0f - x * (1.0f / 24.0f))));
+    return emission * (1.0f - float_exp(-x)) / extinction;
 }
 
 /* Adds the light that the next `distance` emits; walk->depth is still that before it. */
-SHARED_FUNCTION void media_walk_glow(__global const Medium *medium, float distance, MediaWalk *walk)
+SHARED_FUNCTION void media_walk_emission(__global const Medium *medium, float distance, MediaWalk *walk)
 {
-    Vec3 glow = vec3(glow_part(medium->glow.x, medium->extinction.x, distance),
-                     glow_part(medium->glow.y, medium->extinction.y, distance),
-                     glow_part(medium->glow.z, medium->extinction.z, distance));
-    walk->glow = vec3_add(walk->glow, vec3_mul(transmittance(walk->depth.all), glow));
+    Vec3 emission = vec3(emission_part(medium->emission.x, medium->extinction.x, distance),
+                         emission_part(medium->emission.y, medium->extinction.y, distance),
+                         emission_part(medium->emission.z, medium->extinction.z, distance));
+    walk->emission = vec3_add(walk->emission, vec3_mul(transmittance(walk->depth.all), emission));
 }
 
 /* Scatters the ray in its medium before `distance`, where that is due. length: of the ray's direction. surface: the
@@ -174,8 +174,8 @@ SHARED_FUNCTION bool media_walk_on(const SceneView *scene, Ray *ray, const Hit *
         distance = FLOAT_INFINITY;
     if (SCENE_HAS(scene, FEATURE_SCATTERING))
         media_walk_scatter(scene, ray, length, distance, !missed, walk);
-    if (SCENE_HAS(scene, FEATURE_GLOW))
-        media_walk_glow(scene->media + walk->medium, distance, walk);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
+        media_walk_emission(scene->media + walk->medium, distance, walk);
     else if (walk->scattered)
         return false;
     optical_depth_add(scene, &walk->depth, walk->medium, distance);
@@ -221,7 +221,7 @@ SHARED_FUNCTION void media_walk_end(__global uint *hits, __global uint *diagnost
     state_store(hits, stride, HIT_MEDIUM, item, point.medium);
     state_store_float(hits, stride, HIT_DISTANCE, item, point.travelled);
     optical_depth_store(hits, stride, HIT_DEPTH, item, &point.depth);
-    state_store_vec3(hits, stride, HIT_GLOW, item, walk->glow);
+    state_store_vec3(hits, stride, HIT_EMISSION, item, walk->emission);
 }
 
 /* Of a shadow ray that has ended at `hit`. */

@@ -8,7 +8,7 @@
 /* ---- the media at a point ---------------------------------------------------------------------------------------- */
 
 /* The numbers of the media inside and outside of a surface in one word: the upper bits of Shape.flags and, of a vertex,
- * of Bsdf.flags. A vertex in a medium has that medium on both sides. */
+ * Bsdf.media. A vertex in a medium has that medium on both sides. */
 #define MEDIA_INSIDE_SHIFT 8
 #define MEDIA_OUTSIDE_SHIFT 20
 #define MEDIA_NUMBER_MASK (MEDIA_MAX - 1u)

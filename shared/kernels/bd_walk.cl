@@ -114,8 +114,8 @@ __kernel void bd_shade_hits(__global const FrameParams *restrict frame, __global
     walk_hit.before = vertex_base(frame, side, depth - 1u);
     walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     Vec3 beta = walk_hit.beta;
-    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_GLOW))
-        walk_add_glow(scene, paths, hits, item, depth);
+    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
+        walk_add_medium_emission(scene, paths, hits, item, depth);
     DensityView view = bd_density_view(frame, paths, densities, item);
     state_store_float(densities, stride, density_base(frame, side, depth) + DENSITY_OWN, item, walk_hit.own);
     if (walk_hit.missed) {

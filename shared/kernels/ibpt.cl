@@ -73,8 +73,8 @@ __kernel void ib_shade_hits(__global const FrameParams *restrict frame, __global
     WalkHit walk_hit = {0};
     walk_hit_make(scene, paths, rays, hits, vertices, item, &walk_hit);
     state_store_float(paths, stride, IB_OWN, item, walk_hit.own);
-    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_GLOW))
-        walk_add_glow(scene, paths, hits, item, depth);
+    if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
+        walk_add_medium_emission(scene, paths, hits, item, depth);
     if (walk_hit.missed) {
         if (side == SIDE_CAMERA && SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
             ib_add_environment(scene, paths, item, depth, &walk_hit);

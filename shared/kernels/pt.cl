@@ -226,9 +226,9 @@ SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint
     uint stride = scene->frame->pass.stride;
     Passage passage = passage_load(scene, hits, stride, item, scattered);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
-    if (SCENE_HAS(scene, FEATURE_GLOW))
+    if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
         path_add_radiance(scene->frame, paths, item, state_load(paths, stride, PATH_DEPTH, item),
-                          vec3_mul(beta, state_load_vec3(hits, stride, HIT_GLOW, item)), 1.0f);
+                          vec3_mul(beta, state_load_vec3(hits, stride, HIT_EMISSION, item)), 1.0f);
     state_store_vec3(paths, stride, PATH_BETA, item, vec3_mul(beta, passage.weight));
     state_store_float(paths, stride, PATH_PDF_W, item, state_load_float(paths, stride, PATH_PDF_W, item) * passage.pdf);
 }
@@ -291,7 +291,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
         path_end(paths, rays, stride, item);
         return;
     }
-    bsdf.flags |= media_at(scene, surface.shape, medium);
+    bsdf.media = media_at(scene, surface.shape, medium);
     path_vertex_store(frame, paths, item, surface.p, surface.ng, frame_to_local(shading, vec3_negate(ray.d)), &shading);
     bsdf_store(scene, paths, stride, PATH_BSDF, item, &bsdf);
 }
@@ -356,7 +356,7 @@ __kernel void pt_sample_lights(__global const FrameParams *restrict frame, __glo
     ray_store(shadows, stride, item, shadow);
     if (SCENE_HAS(scene, FEATURE_MEDIUM)) {
         path_light_keep(paths, stride, item, light_term, pdf, pdf_other);
-        shadow_medium_store(scene, shadows, stride, item, medium_towards(bsdf.flags, ng, shadow.d));
+        shadow_medium_store(scene, shadows, stride, item, medium_towards(bsdf.media, ng, shadow.d));
     } else {
         path_light_weigh(frame, paths, item, light_term, pdf, pdf_other);
     }
@@ -463,7 +463,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     state_store(paths, stride, PATH_FLAGS, item, sample.delta != 0u ? PATH_FLAG_DELTA : 0u);
     state_store(paths, stride, PATH_DEPTH, item, depth + 1u);
     if (SCENE_HAS(scene, FEATURE_MEDIUM))
-        path_ray_media(scene, paths, rays, item, medium_towards(bsdf.flags, ng, wi), depth + 1u);
+        path_ray_media(scene, paths, rays, item, medium_towards(bsdf.media, ng, wi), depth + 1u);
 }
 
 /* Splats what the path has gathered in `field` to its pixel, and clears it. A sum that is not finite is counted, and

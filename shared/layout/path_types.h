@@ -41,6 +41,7 @@ typedef struct Surface {
  * kind: MATERIAL_DIFFUSE ... MATERIAL_DIFFUSE_TRANSMISSION. */
 typedef struct Bsdf {
     uint kind;
+    uint media; /* on both sides of the vertex (geometry/medium.h); 0 in scenes without media */
     uint flags; /* BSDF_*; from BSDF_BASE_SHIFT on the alphas of a coated conductor (bsdf/coated_conductor.h) */
     Vec3 color0; /* diffuse, coated diffuse, transmission: reflectance. conductor: eta or reflectance. coated conductor:
                     eta, relative to the coat */

@@ -38,7 +38,7 @@
     X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */         \
     X(MEDIUM, medium, "medium", 0u) /* participating media */                                                          \
     X(SCATTERING, scattering, "scattering medium", 0u)                                                                 \
-    X(GLOW, glow, "emissive medium", 0u)
+    X(MEDIUM_EMISSION, medium_emission, "emissive medium", 0u)
 #define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
 
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
@@ -239,7 +239,7 @@ typedef struct Material {
 typedef struct Medium {
     Vec3 extinction; /* sigma_t: absorption and scattering */
     Vec3 scattering; /* sigma_s */
-    Vec3 glow; /* emitted radiance per length: sigma_a Le */
+    Vec3 emission; /* emitted radiance per length: sigma_a Le */
     float g; /* of the phase function of Henyey and Greenstein: mean cosine between old and new direction */
 } Medium;
 

@@ -78,7 +78,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
 #define HIT_MEDIUM 8u /* of the last part */
 #define HIT_DISTANCE 9u /* from the ray's origin; infinite for a miss */
 #define HIT_DEPTH 10u /* OpticalDepth, 6 */
-#define HIT_GLOW 16u /* emitted on the way towards the origin, 3 */
+#define HIT_EMISSION 16u /* emitted on the way towards the origin, 3 */
 #define HIT_MEDIA_WORDS 19u
 
 /* `primitive` of a ray that has been scattered in a medium. */

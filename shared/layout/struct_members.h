@@ -146,7 +146,7 @@
     STRUCT(Medium)                                                                                                     \
     MEMBER(Medium, extinction)                                                                                         \
     MEMBER(Medium, scattering)                                                                                         \
-    MEMBER(Medium, glow)                                                                                               \
+    MEMBER(Medium, emission)                                                                                           \
     MEMBER(Medium, g)                                                                                                  \
     STRUCT(PixelFilter)                                                                                                \
     MEMBER(PixelFilter, kind)                                                                                          \

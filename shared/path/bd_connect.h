@@ -45,7 +45,7 @@ SHARED_FUNCTION_CALLED bool connect_camera(const SceneView *scene, const Vertex 
     BsdfValue f = vertex_eval_light(scene, y, camera.wi);
     connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
     connection->shadow = connecting_ray(scene, y->p, y->ng, camera.p, vec3_splat(0.0f));
-    connection->medium = medium_leaving(scene, y->bsdf.flags, y->ng, camera.wi);
+    connection->medium = medium_leaving(scene, y->bsdf.media, y->ng, camera.wi);
     connection->ends.camera_y1 = camera.pdf * vertex_cosine(scene, camera.wi, y->ng);
     connection->ends.camera_y2 = f.pdf_rev_w * y->back;
     return true;
@@ -68,7 +68,7 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (choice * sample.pdf_w));
     connection->shadow = light_shadow_ray(scene, z->p, z->ng, &sample);
-    connection->medium = medium_leaving(scene, z->bsdf.flags, z->ng, sample.wi);
+    connection->medium = medium_leaving(scene, z->bsdf.media, z->ng, sample.wi);
     StrategyEnds *ends = &connection->ends;
     float at_z = vertex_cosine(scene, sample.wi, z->ng);
     ends->light_z2 = f.pdf_rev_w * z->back;
@@ -112,7 +112,7 @@ SHARED_FUNCTION_CALLED bool connect_vertices(const SceneView *scene, const Verte
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z->beta, fz.f_cos), vec3_mul(y->beta, fy.f_cos)), 1.0f / distance2);
     connection->shadow = connecting_ray(scene, z->p, z->ng, y->p, y->ng);
-    connection->medium = medium_leaving(scene, z->bsdf.flags, z->ng, w);
+    connection->medium = medium_leaving(scene, z->bsdf.media, z->ng, w);
     StrategyEnds *ends = &connection->ends;
     ends->light_z1 = fy.pdf_w * solid_angle_to_area(scene, w, z->ng, distance2);
     ends->light_z2 = fz.pdf_rev_w * z->back;
@@ -164,8 +164,8 @@ SHARED_FUNCTION bool connection_pass(const SceneView *scene, __global uint *rest
     StrategyEnds *ends = &connection->ends;
     connection->contribution = vec3_mul(connection->contribution, passage.weight);
     if (z)
-        ends->light_z1 *= passage_density(scene, passage, z->ng, media_inside(z->bsdf.flags));
-    ends->camera_y1 *= y ? passage_density(scene, passage, y->ng, media_inside(y->bsdf.flags)) : passage.pdf;
+        ends->light_z1 *= passage_density(scene, passage, z->ng, media_inside(z->bsdf.media));
+    ends->camera_y1 *= y ? passage_density(scene, passage, y->ng, media_inside(y->bsdf.media)) : passage.pdf;
     if (!vec3_is_zero(connection->contribution) && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
         return true;
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);

@@ -135,7 +135,7 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     if (survival < 1.0f)
         step->beta = vec3_scale(step->beta, 1.0f / survival);
     step->ray = ray_spawn(vertex->p, vertex->ng, wi);
-    step->medium = medium_leaving(scene, vertex->bsdf.flags, vertex->ng, wi);
+    step->medium = medium_leaving(scene, vertex->bsdf.media, vertex->ng, wi);
     step->delta = sample.delta;
     step->forward = sample.pdf_w;
     step->reverse = sample.pdf_rev_w;
@@ -302,7 +302,7 @@ SHARED_FUNCTION bool walk_vertex_make(const SceneView *scene, __global uint *res
     else if (!vertex_make(scene, &walk_hit->surface, walk_hit->ray.d, walk_hit->beta, u_mix, vertex))
         return false;
     else
-        vertex->bsdf.flags |= media_at(scene, walk_hit->surface.shape, walk_hit->passage.medium);
+        vertex->bsdf.media = media_at(scene, walk_hit->surface.shape, walk_hit->passage.medium);
     bool first = side == SIDE_LIGHT && depth == 1u;
     if (first && SCENE_HAS(scene, FEATURE_PORTAL) && !emitter_reaches(scene, paths, item, &walk_hit->ray, vertex->p))
         return false;

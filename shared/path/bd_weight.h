@@ -50,8 +50,8 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
 
 /* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other strategy
  * makes such a path. */
-SHARED_FUNCTION_APART void walk_add_glow(const SceneView *scene, __global uint *restrict paths,
-                                         __global const uint *restrict hits, uint item, uint depth)
+SHARED_FUNCTION_APART void walk_add_medium_emission(const SceneView *scene, __global uint *restrict paths,
+                                                    __global const uint *restrict hits, uint item, uint depth)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
@@ -61,7 +61,7 @@ SHARED_FUNCTION_APART void walk_add_glow(const SceneView *scene, __global uint *
         state_store(paths, stride, BD_GATHERED, item, depth);
     bd_add_radiance(
         paths, stride, item,
-        vec3_mul(state_load_vec3(paths, stride, BD_BETA, item), state_load_vec3(hits, stride, HIT_GLOW, item)));
+        vec3_mul(state_load_vec3(paths, stride, BD_BETA, item), state_load_vec3(hits, stride, HIT_EMISSION, item)));
 }
 
 /* s = 0 at infinity: the sum over all lights there, when the camera walk has missed after `depth` segments. */

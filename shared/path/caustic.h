@@ -35,7 +35,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     uint stride = frame->pass.stride, depth = state_load(paths, stride, PATH_DEPTH, item);
     if (depth + 2u > frame->path.max_depth ||
         (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u ||
-        state_load(paths, stride, PATH_BSDF + STORED_BSDF_KIND, item) == MATERIAL_PHASE ||
+        bsdf_kind_load(scene, paths, stride, PATH_BSDF, item) == MATERIAL_PHASE ||
         !receiver_draws(params.everywhere, state_load(paths, stride, PATH_DELTA, item), depth))
         return;
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item);
@@ -63,7 +63,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
         return;
     ray_store(rays, stride, item, ray);
     ray_medium_store(scene, rays, stride, item,
-                     medium_towards(bsdf.flags, state_load_vec3(paths, stride, PATH_NG, item), w));
+                     medium_towards(bsdf.media, state_load_vec3(paths, stride, PATH_NG, item), w));
     state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, depth + 1u);
     state_store(paths, stride, PATH_CAUSTIC_LIGHT, item, lobe.light);
     state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, vec3_scale(beta, 1.0f / density));

@@ -71,7 +71,7 @@ SHARED_FUNCTION_APART float passage_density(const SceneView *scene, Passage pass
 SHARED_FUNCTION_APART Bsdf medium_bsdf(const SceneView *scene, uint medium)
 {
     Bsdf bsdf = phase_bsdf(scene->media[medium].g);
-    bsdf.flags = media_bits(medium, medium);
+    bsdf.media = media_bits(medium, medium);
     return bsdf;
 }
 

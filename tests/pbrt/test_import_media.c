@@ -22,11 +22,11 @@ START_TEST(coefficients)
     Medium m = medium_of("\"rgb sigma_a\" [ 1 2 3 ] \"rgb sigma_s\" [ 4 5 6 ] \"float scale\" 2 \"float g\" -0.25");
     assert_vec3(m.extinction, 10.0f, 14.0f, 18.0f, 1e-5f);
     assert_vec3(m.scattering, 8.0f, 10.0f, 12.0f, 1e-5f);
-    assert_vec3(m.glow, 0.0f, 0.0f, 0.0f, 0.0f);
+    assert_vec3(m.emission, 0.0f, 0.0f, 0.0f, 0.0f);
     ASSERT_FLOAT(m.g, -0.25f);
     m = medium_of("\"float sigma_a\" 0.5 \"float sigma_s\" 0 \"rgb Le\" [ 1 2 3 ] \"float Lescale\" 4");
     assert_vec3(m.extinction, 0.5f, 0.5f, 0.5f, 1e-6f);
-    assert_vec3(m.glow, 2.0f, 4.0f, 6.0f, 1e-5f);
+    assert_vec3(m.emission, 2.0f, 4.0f, 6.0f, 1e-5f);
     m = medium_of("\"spectrum sigma_a\" [ 300 2 900 2 ] \"float sigma_s\" 1");
     assert_vec3(m.extinction, 3.0f, 3.0f, 3.0f, 1e-4f);
 }
@@ -87,13 +87,14 @@ START_TEST(features)
          FEATURE_MEDIUM | FEATURE_SCATTERING},
         {MEDIUM("\"float sigma_s\" 0 \"rgb Le\" [ 1 1 1 ]") "WorldBegin MediumInterface \"\" \"m\" "
                                                             "LightSource \"point\"",
-         FEATURE_MEDIUM | FEATURE_GLOW}};
+         FEATURE_MEDIUM | FEATURE_MEDIUM_EMISSION}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         Scene scene;
         Error error = {0};
         import_text(cases[i].text, &scene);
         ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
-        ck_assert_uint_eq(scene.features & (FEATURE_MEDIUM | FEATURE_SCATTERING | FEATURE_GLOW), cases[i].features);
+        ck_assert_uint_eq(scene.features & (FEATURE_MEDIUM | FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION),
+                          cases[i].features);
         scene_destroy(&scene);
     }
 }

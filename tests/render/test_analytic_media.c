@@ -160,7 +160,7 @@ START_TEST(test_furnace)
 END_TEST
 
 /* A slab that absorbs and emits, before a lamp of radiance 1: T + Le (1 - T). */
-START_TEST(test_glow)
+START_TEST(test_emission)
 {
     static const double LE[3] = {3.0, 2.0, 1.5};
     double expected[3], mean[3];
@@ -179,7 +179,7 @@ START_TEST(test_glow)
 END_TEST
 
 /* Emission behind a slab that absorbs; and of a slab so thin that 1 - exp(-x) would lose digits. */
-START_TEST(test_glow_behind)
+START_TEST(test_emission_behind)
 {
     static const double THIN[3] = {3e-4, 3e-4, 3e-4};
     double expected[3], mean[3];
@@ -206,7 +206,7 @@ START_TEST(test_glow_behind)
 END_TEST
 
 /* Emission does not depend on where the ray is scattered: a thin medium that emits and scatters, at depth 1. */
-START_TEST(test_glow_of_fog)
+START_TEST(test_emission_of_fog)
 {
     double expected[3], mean[3];
     for (int c = 0; c < 3; ++c)
@@ -229,9 +229,9 @@ TCase *analytic_media_case(void)
     tcase_add_test(tcase, test_camera_inside);
     tcase_add_test(tcase, test_single_scattering);
     tcase_add_test(tcase, test_furnace);
-    tcase_add_test(tcase, test_glow);
-    tcase_add_test(tcase, test_glow_behind);
-    tcase_add_test(tcase, test_glow_of_fog);
+    tcase_add_test(tcase, test_emission);
+    tcase_add_test(tcase, test_emission_behind);
+    tcase_add_test(tcase, test_emission_of_fog);
     tcase_set_timeout(tcase, 300);
     return tcase;
 }
