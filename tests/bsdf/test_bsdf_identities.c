@@ -1,6 +1,10 @@
 /* Identities for arbitrary pairs of directions: weights, reciprocity, reverse densities, adjoints, finite values. */
 #include "support/bsdf_cases.h"
 
+#include "bsdf/bsdf_state.h"
+
+#include <string.h>
+
 #define POOL 64
 #define PAIRS 400000
 
@@ -223,10 +227,36 @@ START_TEST(test_extreme_inputs)
 }
 END_TEST
 
+/* Stored and loaded, a Bsdf of any kind between any media is what it was. */
+START_TEST(test_stored)
+{
+    TestScene scene;
+    TestRandom random = {9};
+    uint words[STORED_BSDF_WORDS];
+    test_scene_init(&scene);
+    for (int n = 0; n < 1000; ++n) {
+        Bsdf bsdf = {.kind = (uint)(random_next(&random) % (MATERIAL_PHASE + 1u)), .coat_table = 12u + (uint)n};
+        bsdf.media = media_bits((uint)random_next(&random) % MEDIA_MAX, (uint)random_next(&random) % MEDIA_MAX);
+        bsdf.flags = (uint)random_next(&random);
+        bsdf.color0 = vec3(0.25f, 0.5f, random_float24(&random));
+        bsdf.color1 = vec3(random_float24(&random), 2.0f, 3.0f);
+        bsdf.alpha_x = random_float24(&random);
+        bsdf.alpha_y = random_float24(&random);
+        bsdf.eta = 1.0f + random_float24(&random);
+        bsdf_store(&scene.view, words, 1u, 0u, 0u, &bsdf);
+        Bsdf loaded = bsdf_load(&scene.view, words, 1u, 0u, 0u);
+        REQUIRE(memcmp(&loaded, &bsdf, sizeof bsdf) == 0);
+        REQUIRE(bsdf_kind_load(&scene.view, words, 1u, 0u, 0u) == bsdf.kind);
+    }
+    test_scene_destroy(&scene);
+}
+END_TEST
+
 TCase *bsdf_identity_tests(void)
 {
     TCase *tcase = tcase_create("identities");
     tcase_set_timeout(tcase, 60);
+    tcase_add_test(tcase, test_stored);
     tcase_add_test(tcase, test_weight_is_value_over_density);
     tcase_add_test(tcase, test_reciprocity);
     tcase_add_test(tcase, test_smooth_refraction);

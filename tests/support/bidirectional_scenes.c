@@ -143,7 +143,9 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.1 0.05 0.02 ] \"float sigma_s\" 0\n"
      "MediumInterface \"smoke\"\n" BD_ROOM "MediumInterface \"ink\" \"smoke\"\n"
      "AttributeBegin Translate -1 0 0 Material \"dielectric\"\n" BD_BALL "AttributeEnd\n"
-     "AttributeBegin Translate 1 0 0 Material \"interface\"\n" BD_BALL "AttributeEnd\n",
+     "AttributeBegin Translate 1 0 0 Material \"interface\"\n" BD_BALL "AttributeEnd\n"
+     "AttributeBegin MediumInterface \"\" \"smoke\" Translate 0 -0.5 -1 Scale 0.5 0.5 0.5\n"
+     "Material \"coatedconductor\" \"float conductor.roughness\" 0.3\n" BD_BALL "AttributeEnd\n",
      SUPPORT_SUM_ONLY, 5, 2},
     {"fog around glass, and a denser one behind an interface",
      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.02 0.03 0.05 ]\n"
