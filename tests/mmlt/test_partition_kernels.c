@@ -229,6 +229,22 @@ static uint emitter_place(const Partition *p)
     return place;
 }
 
+/* Whether infinite light number `place` is seen along path tracing's last ray, past its portal if it has one. */
+static bool light_reaches(const Partition *p, uint place)
+{
+    Ray ray = ray_load(p->paths.rays, 1, 0);
+    return environment_reaches(&p->view, p->view.infinite_lights[place], ray.o, ray.d);
+}
+
+/* How many infinite lights path tracing adds before number `place`. */
+static uint lights_before(const Partition *p, uint place)
+{
+    uint count = 0;
+    for (uint i = 0; i < place; ++i)
+        count += light_reaches(p, i) ? 1u : 0u;
+    return count;
+}
+
 PathFound partition_path(Partition *p, uint s, uint t, uint light, PathParts *parts)
 {
     const Seen pool = p->shown[s][t];
@@ -249,6 +265,9 @@ PathFound partition_path(Partition *p, uint s, uint t, uint light, PathParts *pa
     parts->pool_carried = (double)pool.carried;
     paths_run(p, met);
     uint place = missed ? light : infinite && met ? emitter_place(p) : 0u;
+    if (missed && !light_reaches(p, light))
+        return PATH_NONE;
+    place = lights_before(p, place);
     if (seen.count <= place)
         return PATH_UNFOUND;
     parts->paths = (double)seen.calls[place].part;
