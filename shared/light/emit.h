@@ -9,8 +9,8 @@
 
 /* light_emit of a light with a portal: along a direction in proportion to the light that passes it, through a uniform
  * point of it. */
-SHARED_FUNCTION bool portal_light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
-                                       LightEmission *emission)
+SHARED_FUNCTION_APART bool portal_light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
+                                             LightEmission *emission)
 {
     Portal portal = light_portal(scene, light);
     float pdf, stretch;

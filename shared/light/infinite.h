@@ -125,7 +125,8 @@ SHARED_FUNCTION float environment_sample_pdf_w(const SceneView *scene, uint ligh
 }
 
 /* infinite_light_sample of a light with a portal: a direction in its window. */
-SHARED_FUNCTION void portal_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
+SHARED_FUNCTION_APART void portal_light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u,
+                                               LightSample *sample)
 {
     Portal portal = light_portal(scene, light);
     PortalWindow window;

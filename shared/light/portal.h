@@ -16,7 +16,7 @@
 /* ---- geometry ---------------------------------------------------------------------------------------------------- */
 
 /* Whether the line through p along d crosses the portal, if d points to the side that the light comes from. */
-SHARED_FUNCTION bool portal_crossed(const Portal *portal, Vec3 p, Vec3 d)
+SHARED_FUNCTION_APART bool portal_crossed(const Portal *portal, Vec3 p, Vec3 d)
 {
     Vec3 w = frame_to_local(portal->axes, d), corner = frame_to_local(portal->axes, vec3_sub(portal->corner, p));
     float x = corner.z * w.x - corner.x * w.z, y = corner.z * w.y - corner.y * w.z;
@@ -49,7 +49,7 @@ SHARED_FUNCTION float portal_stretch(Vec3 w)
 }
 
 /* The point of the square of the unit direction d; false if d points to the lit side. *stretch: portal_stretch. */
-SHARED_FUNCTION bool portal_uv(const Portal *portal, Vec3 d, Vec2 *uv, float *stretch)
+SHARED_FUNCTION_APART bool portal_uv(const Portal *portal, Vec3 d, Vec2 *uv, float *stretch)
 {
     Vec3 w = frame_to_local(portal->axes, d);
     if (!(w.z > 0.0f))
@@ -208,7 +208,7 @@ SHARED_FUNCTION Vec2 portal_sample(const SceneView *scene, const Portal *portal,
 
 /* Density per solid angle with which portal_sample draws the direction d (unit) for p; 0 if d does not pass the
  * portal. */
-SHARED_FUNCTION float portal_pdf_w(const SceneView *scene, const Portal *portal, Vec3 p, Vec3 d)
+SHARED_FUNCTION_APART float portal_pdf_w(const SceneView *scene, const Portal *portal, Vec3 p, Vec3 d)
 {
     PortalWindow window;
     Vec2 uv;
