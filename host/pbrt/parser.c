@@ -8,13 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Recognises other file formats by their first bytes. */
+/* Recognises other file formats by their first bytes, and by the name unless it is NULL. */
 static bool format_check(TextWindow *window, const char *name, Error *error)
 {
     const char *fix, *other;
     text_window_reaches(window, 64);
     other = scene_format_other(window->position, (size_t)(window->end - window->position), &fix);
-    if (!other)
+    if (!other && name)
         other = scene_format_named(name, &fix);
     if (!other)
         return true;

@@ -79,8 +79,8 @@ bool photon_map_worth(const RenderRun *run, bool *worth, Error *error)
 {
     size_t pixels = (size_t)run->frame.film.width * run->frame.film.height;
     uint paths = pixels < WORTH_PATHS ? (uint)pixels : WORTH_PATHS;
-    *worth = has_lights_without_extent(&run->photons);
-    if (*worth || run->photons.params.count == 0)
+    *worth = run->photons.params.count == 0 || has_lights_without_extent(&run->photons);
+    if (*worth)
         return true;
     float *luminance[2] = {calloc(pixels, sizeof(float)), calloc(pixels, sizeof(float))};
     bool done = luminance[0] && luminance[1] ? paths_render(run, paths, true, luminance[0], error) &&

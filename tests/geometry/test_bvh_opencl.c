@@ -15,13 +15,16 @@
 #define STRIDE 2016u
 #define BOUNCES 4
 
-static const uint STATE_WORDS[BUFFER_COUNT] = {
-    [BUFFER_PATHS] = WALK_WORDS, [BUFFER_RAYS] = RAY_WORDS, [BUFFER_HITS] = HIT_WORDS, [BUFFER_SHADOWS] = SHADOW_WORDS};
+static const uint STATE_WORDS[BUFFER_COUNT] = {[BUFFER_PATHS] = WALK_WORDS,
+                                               [BUFFER_RAYS] = RAY_WORDS,
+                                               [BUFFER_HITS] = HIT_WORDS,
+                                               [BUFFER_SHADOWS] = SHADOW_WORDS,
+                                               [BUFFER_DIAGNOSTICS] = 1};
 
 static const BufferId CLOSEST[] = {BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS,
-                                   BUFFER_BVH,   BUFFER_RAYS,     BUFFER_HITS};
-static const BufferId SHADOW[] = {BUFFER_FRAME,  BUFFER_GEOMETRY, BUFFER_TABLES,
-                                  BUFFER_TEXELS, BUFFER_BVH,      BUFFER_SHADOWS};
+                                   BUFFER_BVH,   BUFFER_RAYS,     BUFFER_HITS,   BUFFER_DIAGNOSTICS};
+static const BufferId SHADOW[] = {BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES,     BUFFER_TEXELS,
+                                  BUFFER_BVH,   BUFFER_SHADOWS,  BUFFER_DIAGNOSTICS};
 
 typedef struct Twin {
     TestScene test;
@@ -133,13 +136,13 @@ static void walks_compare(const BvhCase *entry, bool specialised)
         for (uint bounce = 0; bounce < BOUNCES; ++bounce) {
             if (bounce > 0)
                 rays_blank(&twin, BUFFER_RAYS, bounce);
-            hits += twin_trace(&twin, KERNEL_trace_closest, "trace_closest", CLOSEST, 7, BUFFER_RAYS, BUFFER_HITS);
+            hits += twin_trace(&twin, KERNEL_trace_closest, "trace_closest", CLOSEST, 8, BUFFER_RAYS, BUFFER_HITS);
             for (uint t = 0; t < WALKS; ++t)
                 met += state_load(twin.buffers[BUFFER_HITS], STRIDE, HIT_PRIMITIVE, t) != NONE;
             kernel_loop_walk_extend(twin.buffers, NULL, WALKS);
             rays_blank(&twin, BUFFER_SHADOWS, bounce);
             shadows +=
-                twin_trace(&twin, KERNEL_trace_shadow, "trace_shadow", SHADOW, 6, BUFFER_SHADOWS, BUFFER_SHADOWS);
+                twin_trace(&twin, KERNEL_trace_shadow, "trace_shadow", SHADOW, 7, BUFFER_SHADOWS, BUFFER_SHADOWS);
         }
         ck_assert_msg(hits == 0 && shadows == 0, "%s: %u words of hits and %u of shadows differ", entry->name, hits,
                       shadows);

@@ -107,8 +107,8 @@ START_TEST(medium_around)
                                                                    "WorldBegin LightSource \"point\" "
                                                                    "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n";
     static const char *const INSIDE[] = {"", "MediumInterface \"m\" \"\" Material \"interface\" Shape \"sphere\"",
-                                         "MediumInterface \"m\" \"\" ObjectBegin \"o\" Material \"interface\" "
-                                         "Shape \"sphere\" ObjectEnd ObjectInstance \"o\""};
+                                         ("MediumInterface \"m\" \"\" ObjectBegin \"o\" Material \"interface\" "
+                                          "Shape \"sphere\" ObjectEnd ObjectInstance \"o\"")};
     for (int i = 0; i < 3; ++i) {
         char text[1024];
         Scene scene;
