@@ -66,6 +66,19 @@ FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator, uint
     return frame;
 }
 
+bool pilot_run(const RenderRun *run, const Integrator *integrator, FrameParams *frame, const SplatSink *sink,
+               Error *error)
+{
+    StepList list;
+    if (!integrator->list(frame, &list, error))
+        return false;
+    list.guide = run->guide;
+    list.photons = frame->photons.count > 0 ? &run->photons : NULL;
+    bool done = run->interface->run(run->backend, frame, &list, sink, render_run_stop(run), NULL, error);
+    step_list_destroy(&list);
+    return done;
+}
+
 /* Mean radiance if the lights' flux were spread over the scene's bounding sphere and left it evenly in all
  * directions. */
 static double radiance_of_power(const Scene *scene)
@@ -79,16 +92,11 @@ bool film_pilot_run(const RenderRun *run, const Integrator *integrator, const Sc
     const Integrator *shown = pilot_integrator(integrator);
     FrameParams frame = pilot_frame(run, shown, PILOT_ITEMS);
     Pilot pilot;
-    StepList list;
     memset(pilot.mantissas, 0, sizeof pilot.mantissas);
-    if (!shown->list(&frame, &list, error))
-        return false;
-    list.guide = run->guide;
     pthread_mutex_init(&pilot.mutex, NULL);
     const SplatSink sink = {.splats = pilot_splats, .context = &pilot, .whole = true};
-    bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);
+    bool done = pilot_run(run, shown, &frame, &sink, error);
     pthread_mutex_destroy(&pilot.mutex);
-    step_list_destroy(&list);
     double mean = pilot_sum(&pilot) / PILOT_ITEMS;
     film_quantum_set(run->film, mean > 0.0 ? mean : radiance_of_power(scene));
     return done;

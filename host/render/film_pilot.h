@@ -12,6 +12,10 @@
 /* The parameters of `items` paths over the whole film, with all strategies of the integrator. */
 FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator, uint items);
 
+/* Renders the paths of a pilot_frame, by run->photons if the frame has any. Fails if the backend does or out of memory. */
+bool pilot_run(const RenderRun *run, const Integrator *integrator, FrameParams *frame, const SplatSink *sink,
+               Error *error);
+
 /* Sets the quantum of run->film from the mean radiance of 4096 paths over the whole film. They use all of the
  * integrator's strategies, even those excluded by `only_strategy`, and ignore `unweighted`. If all are black, the
  * lights' power is used instead. The quantum depends on scene, integrator, depth and seed only, so a crop has the same

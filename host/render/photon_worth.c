@@ -1,6 +1,5 @@
 #include "render/photon_worth.h"
 
-#include "backend/step_recorder.h"
 #include "layout/state.h"
 #include "math/vec.h"
 #include "render/film_pilot.h"
@@ -40,17 +39,11 @@ static bool paths_render(const RenderRun *run, uint paths, bool photons, float *
 {
     PathLight light = {.luminance = luminance};
     FrameParams frame = pilot_frame(run, integrator_pt(), paths);
-    StepList list;
     frame.photons = photons ? run->photons.params : (PhotonParams){0};
-    if (!integrator_pt()->list(&frame, &list, error))
-        return false;
-    list.guide = run->guide;
-    list.photons = photons ? &run->photons : NULL;
     pthread_mutex_init(&light.mutex, NULL);
     const SplatSink sink = {.splats = path_light_add, .context = &light, .whole = true};
-    bool done = run->interface->run(run->backend, &frame, &list, &sink, render_run_stop(run), NULL, error);
+    bool done = pilot_run(run, integrator_pt(), &frame, &sink, error);
     pthread_mutex_destroy(&light.mutex);
-    step_list_destroy(&list);
     return done;
 }
 

@@ -72,14 +72,6 @@ typedef struct OpticalDepth {
     Vec3 all, scattering;
 } OpticalDepth;
 
-SHARED_FUNCTION OpticalDepth optical_depth_zero(void)
-{
-    OpticalDepth depth;
-    depth.all = vec3_splat(0.0f);
-    depth.scattering = vec3_splat(0.0f);
-    return depth;
-}
-
 /* coefficient * distance, where either may be infinite or 0; 0 times infinity is 0. */
 SHARED_FUNCTION float attenuation(float coefficient, float distance)
 {

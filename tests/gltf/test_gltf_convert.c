@@ -18,6 +18,19 @@ static void assert_same_scene(const Scene *a, const Scene *b)
     ck_assert_mem_eq(&a->frame, &b->frame, sizeof a->frame);
 }
 
+/* Loads a glTF file, and the conversion of it that is written to `converted`. */
+static void both_load(const char *path, const char *converted, Scene *read, Scene *written)
+{
+    Error error = {{0}, {0}};
+    scene_init(read);
+    scene_init(written);
+    ck_assert_msg(scene_file_load(path, false, read, &error), "%s", error.message);
+    Gltf *gltf = gltf_open(path, &error);
+    ck_assert_msg(gltf && gltf_convert(gltf, converted, &error), "%s", error.message);
+    gltf_close(gltf);
+    ck_assert_msg(pbrt_load(converted, false, written, &error), "%s", error.message);
+}
+
 static void folder_remove(const char *path)
 {
     DIR *folder = opendir(path);
@@ -43,16 +56,9 @@ static void folder_remove(const char *path)
 
 START_TEST(conversions_are_the_same_scene)
 {
-    Error error = {{0}, {0}};
     Scene read, written;
     const char *path = gltf_write("all.glb", EVERYTHING), *converted = gltf_path("all.pbrt");
-    scene_init(&read);
-    scene_init(&written);
-    ck_assert_msg(scene_file_load(path, false, &read, &error), "%s", error.message);
-    Gltf *gltf = gltf_open(path, &error);
-    ck_assert_msg(gltf && gltf_convert(gltf, converted, &error), "%s", error.message);
-    gltf_close(gltf);
-    ck_assert_msg(pbrt_load(converted, false, &written, &error), "%s", error.message);
+    both_load(path, converted, &read, &written);
     ck_assert_uint_gt(read.lights.count, 2);
     ck_assert_uint_gt(read.instances.count, 0);
     assert_same_scene(&read, &written);
@@ -71,7 +77,6 @@ static const char DEEP[] =
 START_TEST(deep_images_are_floats)
 {
     char members[4096];
-    Error error = {{0}, {0}};
     Scene read, written;
     snprintf(members, sizeof members,
              GLTF_SQUARE ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},"
@@ -80,14 +85,8 @@ START_TEST(deep_images_are_floats)
                          "\"nodes\":[{\"mesh\":0}]",
              DEEP);
     const char *path = gltf_write("deep.glb", members), *converted = gltf_path("deep.pbrt");
-    scene_init(&read);
-    scene_init(&written);
-    ck_assert_msg(scene_file_load(path, false, &read, &error), "%s", error.message);
-    Gltf *gltf = gltf_open(path, &error);
-    ck_assert_msg(gltf && gltf_convert(gltf, converted, &error), "%s", error.message);
-    gltf_close(gltf);
+    both_load(path, converted, &read, &written);
     ck_assert_int_eq(access(gltf_path("deep-textures/0.exr"), R_OK), 0);
-    ck_assert_msg(pbrt_load(converted, false, &written, &error), "%s", error.message);
     assert_same_scene(&read, &written);
     /* Image 0 is the roughness: the green channel, as it is. */
     const float *green = (const float *)read.texels.data;
