@@ -122,7 +122,7 @@ static bool backend_build(Backend *backend, const BackendScene *scene, const Bac
     if (!timeline_init(&backend->timeline, options->record_spans, error) || !queues_make(backend, error))
         return false;
     launcher_init(backend, options);
-    if (!ocl_program_init(&backend->launcher.program, backend->context, &backend->device, scene->frame->scene.features,
+    if (!ocl_program_init(&backend->launcher.program, backend->context, &backend->device, frame_features(scene->frame),
                           error) ||
         !scene_build(backend, scene, options, error))
         return false;

@@ -5,6 +5,7 @@
 #include "program_source.h"
 #include "timeline.h"
 
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,9 +31,9 @@ const char *ocl_kernel_name(unsigned kernel)
 
 /* None of these options changes results: OpenCL's fast-math options are off by default, and contraction to fused
  * multiply-add is disabled in math/platform.h. */
-void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size)
+void ocl_program_options(const OclDevice *device, ulong features, char *options, size_t size)
 {
-    snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%xu%s", features,
+    snprintf(options, size, "-cl-std=CL1.2 -D TWINLIGHT_FEATURES=0x%" PRIx64 "ul%s", features,
              device->info.promises_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
@@ -217,7 +218,7 @@ static bool program_build(OclProgram *program, int which, Error *error)
 
 /* ---- the interface ----------------------------------------------------------------------------------------------- */
 
-bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error)
+bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, ulong features, Error *error)
 {
     memset(program, 0, sizeof *program);
     program->context = context;

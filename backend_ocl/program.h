@@ -28,12 +28,12 @@ typedef struct OclProgram {
 
 /* Compiler options. Correctly rounded division is requested only from devices that claim it, because other drivers
  * reject the option. */
-void ocl_program_options(const OclDevice *device, uint features, char *options, size_t size);
+void ocl_program_options(const OclDevice *device, ulong features, char *options, size_t size);
 
 /* For scenes with these features (FEATURE_*). Builds the first program; the others follow in ocl_program_kernel.
  * `context` and `device` are borrowed. On failure the error has the compiler's first error message, and the log has all
  * of them. */
-bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, uint features, Error *error);
+bool ocl_program_init(OclProgram *program, cl_context context, const OclDevice *device, ulong features, Error *error);
 void ocl_program_destroy(OclProgram *program);
 
 /* The source of program `which`: kernels that belong to another one become functions. NULL if there is no memory. */

@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "support/opencl_probe.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -56,8 +57,8 @@ static void device_open(Bench *bench, const char *shared)
     char options[4096], message[8192] = "";
     bool absent;
     snprintf(options, sizeof options,
-             "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DTWINLIGHT_FEATURES=0x%xu -I%s",
-             bench->frame.scene.features, shared);
+             "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DTWINLIGHT_FEATURES=0x%" PRIx64 "ul -I%s",
+             frame_features(&bench->frame), shared);
     bench->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!bench->probe) {
         printf("# no OpenCL: %s\n", message);

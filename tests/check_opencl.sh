@@ -40,7 +40,7 @@ check() {
 " ;;
         esac
     done
-    for check_features in "" -DTWINLIGHT_FEATURES=0xffffffffu -DTWINLIGHT_FEATURES=0u; do
+    for check_features in "" -DTWINLIGHT_FEATURES=0xfffffffffffffffful -DTWINLIGHT_FEATURES=0ul; do
         if [ -n "$check_kernels" ] && ! compile "$1" "$check_kernels" $check_features; then
             echo "$1: the kernels do not compile together $check_features"
             check_status=1

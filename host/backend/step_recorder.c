@@ -58,7 +58,7 @@ void recorder_walk(Recorder *recorder, uint segments, unsigned shade, unsigned e
 StepList recorder_list(const Recorder *recorder, const FrameParams *frame, uint path_words, const StateField *fields,
                        size_t field_count)
 {
-    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    bool media = (frame_features(frame) & FEATURE_MEDIUM) != 0;
     StepList list = {.steps = recorder->steps, .count = recorder->count, .fields = fields, .field_count = field_count};
     list.words_per_item[BUFFER_PATHS] = path_words;
     list.words_per_item[BUFFER_RAYS] = media ? RAY_MEDIA_WORDS : RAY_WORDS;

@@ -49,7 +49,7 @@ static void record_proposal(Recorder *recorder, const FrameParams *frame, bool s
     recorder_walk(recorder, max_depth, KERNEL_mlt_walk, KERNEL_COUNT);
     recorder_kernel(recorder, KERNEL_mlt_connect, false);
     recorder_step(recorder, STEP_TRACE_SHADOW);
-    if (frame->scene.features & FEATURE_MEDIUM)
+    if (frame_features(frame) & FEATURE_MEDIUM)
         recorder_kernel(recorder, KERNEL_mlt_connect, false); /* connection_traced in path/bd_connect.h */
     recorder_kernel(recorder, KERNEL_mlt_accept, false);
     if (splat)
@@ -59,7 +59,7 @@ static void record_proposal(Recorder *recorder, const FrameParams *frame, bool s
 ChainWords chain_words(const FrameParams *frame)
 {
     uint paths = CHAIN_NUMBERS + number_count(frame), densities = 2 * frame->path.max_depth;
-    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    bool media = (frame_features(frame) & FEATURE_MEDIUM) != 0;
     uint rays = media ? RAY_MEDIA_WORDS + HIT_MEDIA_WORDS + SHADOW_MEDIA_WORDS : RAY_WORDS + HIT_WORDS + SHADOW_WORDS;
     return (ChainWords){.state = paths - BD_HEADER_WORDS,
                         .densities = densities,

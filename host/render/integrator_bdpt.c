@@ -62,7 +62,7 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     uint max_depth = frame->path.max_depth;
     const BidirectionalSteps steps = {.max_depth = max_depth,
                                       .split = frame->film.split_depths != 0,
-                                      .media = (frame->scene.features & FEATURE_MEDIUM) != 0};
+                                      .media = (frame_features(frame) & FEATURE_MEDIUM) != 0};
     /* Two walks, their starts, the last splat, and up to six steps per connection. */
     size_t capacity = 9 * (size_t)max_depth + 9 + 6 * (size_t)max_depth * (max_depth + 1) / 2;
     Recorder recorder;

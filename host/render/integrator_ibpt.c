@@ -60,7 +60,7 @@ static void record_camera(Recorder *recorder, uint segments, bool media)
 static bool ibpt_list(FrameParams *frame, StepList *list, Error *error)
 {
     uint max_depth = frame->path.max_depth;
-    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    bool media = (frame_features(frame) & FEATURE_MEDIUM) != 0;
     size_t capacity = 4 + 2 * (size_t)max_depth * SEGMENT_STEPS_MAX;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))

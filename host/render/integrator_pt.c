@@ -153,7 +153,7 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
     steps_record(&recorder, &steps);
-    bool media = (frame->scene.features & FEATURE_MEDIUM) != 0;
+    bool media = (frame_features(frame) & FEATURE_MEDIUM) != 0;
     size_t fields = sizeof PATH_FIELDS / sizeof PATH_FIELDS[0];
     *list = recorder_list(&recorder, frame, media ? PATH_MEDIA_WORDS : PATH_WORDS, PATH_FIELDS,
                           media ? fields : fields - PATH_FIELDS_OF_MEDIA);

@@ -198,7 +198,7 @@ static float light_reach(const Scene *scene, const Light *light)
 /* ---- features ---------------------------------------------------------------------------------------------------- */
 
 #define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_##NAME,
-static const uint FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
+static const ulong FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
 #undef FEATURE_OF
 
 /* The alpha that the kernels use for a constant roughness. */
@@ -249,17 +249,17 @@ bool scene_has_delta(const Scene *scene)
 }
 
 /* Of a coated conductor, whose record is kept with what rough lobes need. */
-static uint base_features(const Material *m)
+static ulong base_features(const Material *m)
 {
-    uint features = FEATURE_ROUGH;
+    ulong features = FEATURE_ROUGH;
     if (m->base_u.program != m->base_v.program || m->base_u.value != m->base_v.value)
         features |= FEATURE_TANGENTS;
     return m->base_u.program != NONE || m->base_v.program != NONE ? features | FEATURE_TEXTURE : features;
 }
 
-static uint material_features(const Material *m)
+static ulong material_features(const Material *m)
 {
-    uint features = FEATURE_OF_MATERIAL[m->kind];
+    ulong features = FEATURE_OF_MATERIAL[m->kind];
     if (scene_material_is_rough(m))
         features |= FEATURE_ROUGH;
     if (m->kind == MATERIAL_COATED_CONDUCTOR)
@@ -274,9 +274,9 @@ static uint material_features(const Material *m)
     return features;
 }
 
-static uint geometry_features(const Scene *scene)
+static ulong geometry_features(const Scene *scene)
 {
-    uint features = scene->instances.count > 0 ? FEATURE_INSTANCE : 0u;
+    ulong features = scene->instances.count > 0 ? FEATURE_INSTANCE : 0u;
     for (size_t s = 0; s < scene->shapes.count; ++s) {
         const Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
         features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
@@ -284,18 +284,25 @@ static uint geometry_features(const Scene *scene)
     }
     /* FEATURE_TRIANGLE << kind: the kinds have consecutive bits in the order of their numbers */
     for (size_t i = 0; i < scene->primitives.count; ++i)
-        features |= (uint)FEATURE_TRIANGLE
-                    << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
+        features |=
+            FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
     return features;
 }
 
 #define FEATURE_OF(NAME, name, text, feature, position) [LIGHT_##NAME] = (feature),
-static const uint FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
+static const ulong FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
 #undef FEATURE_OF
 
-static uint scene_features(const Scene *scene)
+void scene_features_set(Scene *scene, ulong features)
 {
-    uint features = geometry_features(scene);
+    scene->features = features;
+    scene->frame.scene.features[0] = (uint)features;
+    scene->frame.scene.features[1] = (uint)(features >> 32);
+}
+
+static ulong scene_features(const Scene *scene)
+{
+    ulong features = geometry_features(scene);
     for (size_t i = 0; i < scene->materials.count; ++i)
         features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
     for (size_t i = 0; i < scene->lights.count; ++i)
@@ -423,7 +430,7 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     if (!primitives_group_by_object(scene, error) || !scene_bounds(scene, error))
         return false;
-    scene->features = scene->frame.scene.features = scene_features(scene);
+    scene_features_set(scene, scene_features(scene));
     scene->primitive_count = scene->primitives.count;
     if (!scene_coat_tables(scene, error) ||
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error))

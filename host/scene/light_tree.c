@@ -390,7 +390,7 @@ static size_t leaves_fill(const SceneView *view, const double *powers, double di
 bool light_tree_build(Scene *scene, const double *powers, double disk, Error *error)
 {
     size_t count, light_count = scene->lights.count, most = 2 * light_count - 1;
-    SceneView view = {.features = ~(uint)(FEATURE_ALPHA | FEATURE_TEXTURE),
+    SceneView view = {.features = ~(FEATURE_ALPHA | FEATURE_TEXTURE),
                       .positions = scene->positions.data,
                       .normals = scene->normals.data,
                       .primitives = scene->primitives.data,
@@ -412,9 +412,7 @@ bool light_tree_build(Scene *scene, const double *powers, double disk, Error *er
     Builder builder = {.nodes = nodes, .lights = scene->lights.data};
     nodes_make(&builder, leaves, count, lamps, 0);
     scene->light_nodes.count = builder.node_count;
-    uint feature = builder.differ ? (uint)FEATURE_LIGHT_TREE : 0u;
-    scene->features |= feature;
-    scene->frame.scene.features |= feature;
+    scene_features_set(scene, scene->features | (builder.differ ? FEATURE_LIGHT_TREE : 0u));
     free(leaves);
     return true;
 }

@@ -13,7 +13,7 @@ static const Medium *medium_of(const Scene *scene, uint number)
     return &ARRAY_AT(&scene->media, Medium, number);
 }
 
-static uint medium_features(const Scene *scene, uint number)
+static ulong medium_features(const Scene *scene, uint number)
 {
     if (number == 0)
         return 0u;
@@ -22,9 +22,9 @@ static uint medium_features(const Scene *scene, uint number)
            (vec3_is_zero(medium->emission) ? 0u : (uint)FEATURE_MEDIUM_EMISSION);
 }
 
-uint media_features(const Scene *scene)
+ulong media_features(const Scene *scene)
 {
-    uint features = medium_features(scene, scene->camera_settings.medium);
+    ulong features = medium_features(scene, scene->camera_settings.medium);
     for (size_t i = 0; i < scene->shapes.count; ++i) {
         uint flags = ARRAY_AT(&scene->shapes, Shape, i).flags;
         features |= medium_features(scene, media_inside(flags)) | medium_features(scene, media_outside(flags));
@@ -67,7 +67,7 @@ static uint medium_around(const Scene *scene)
 {
     const double *camera = scene->camera_settings.world_from_camera;
     uint medium = scene->camera_settings.medium;
-    uint features = scene->features & ~(uint)(FEATURE_ALPHA | FEATURE_TEXTURE | FEATURE_TANGENTS);
+    ulong features = scene->features & ~(FEATURE_ALPHA | FEATURE_TEXTURE | FEATURE_TANGENTS);
     SceneView view = {.features = features,
                       .positions = scene->positions.data,
                       .normals = scene->normals.data,

@@ -5,7 +5,7 @@
 #include "scene/scene.h"
 
 /* Features of media that some shape, light or the camera uses. */
-uint media_features(const Scene *scene);
+ulong media_features(const Scene *scene);
 
 /* Puts lights at infinity into the medium that fills the space around the scene, and takes the light of the colour
  * channels that it attenuates, of which nothing arrives from infinity. Before lights are weighed. */

@@ -185,7 +185,7 @@ bool portal_setup(Scene *scene, uint light, double *flux, Error *error)
                    .side = side_choose(scene, source),
                    .portal = ARRAY_AT(&scene->portals, Portal, source->portal)};
     r.view = (SceneView){.frame = &scene->frame,
-                         .features = ~0u,
+                         .features = ~(ulong)0,
                          .images = scene->images.data,
                          .lights = scene->lights.data,
                          .lookup = scene->lookup.data,

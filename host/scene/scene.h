@@ -88,7 +88,7 @@ typedef struct Scene {
     /* set by scene_finish */
     float bounds_min[3], bounds_max[3]; /* bounds of everything in the file's world space, see scene/center.h */
     float ray_reach; /* largest coordinate of ray origins on surfaces and lights; SceneParams: also on the camera */
-    uint features;
+    ulong features;
     size_t primitive_count; /* the array itself is freed by packing */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are set by the integrator */
     Guide guide; /* light guides; importance and visits are set by the integrator */
@@ -161,6 +161,9 @@ bool scene_material_is_rough(const Material *m);
  * of the scene may. */
 bool scene_material_has_delta(const Scene *scene, uint material);
 bool scene_has_delta(const Scene *scene);
+
+/* Sets the feature mask, of the kernels' frame too. */
+void scene_features_set(Scene *scene, ulong features);
 
 /* Number of 32-bit words that the geometry would take when packed now. A buffer may have SCENE_WORDS_MAX, 16 GiB. */
 size_t scene_geometry_words(const Scene *scene);

@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk", "cylinder"};
@@ -66,7 +67,7 @@ void scene_summary_text(const Scene *scene, const SceneSummary *summary, const c
     fprintf(stream, "%-14s%zu\n", "media", summary->media);
     fprintf(stream, "%-14s(%g, %g, %g) to (%g, %g, %g)\n", "bounds", (double)low[0], (double)low[1], (double)low[2],
             (double)high[0], (double)high[1], (double)high[2]);
-    fprintf(stream, "%-14s0x%06x ", "features", scene->features);
+    fprintf(stream, "%-14s0x%06" PRIx64 " ", "features", scene->features);
     for (int bit = 0; bit < FEATURE_COUNT; ++bit)
         if (scene->features >> bit & 1u)
             fprintf(stream, " %s%s", FEATURE_NAMES[bit], scene->features >> bit > 1u ? "," : "");

@@ -25,7 +25,7 @@
  * scattering media, last, the distance of the segment that leads to the vertex, as its own subpath makes it. */
 SHARED_FUNCTION uint chain_vertex_numbers(__global const FrameParams *frame)
 {
-    uint features = frame->scene.features;
+    ulong features = frame_features(frame);
     return 3u + ((features & FEATURE_MIX) != 0u ? 1u : 0u) + ((features & FEATURE_SCATTERING) != 0u ? 1u : 0u);
 }
 

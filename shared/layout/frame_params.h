@@ -32,7 +32,7 @@
 
 typedef struct SceneParams {
     SceneLayout layout;
-    uint features;
+    uint features[2]; /* the feature mask: low, high (frame_features) */
     uint light_count;
     uint infinite_light_count;
     uint aim_count; /* of light subpaths (light/aim.h) */
@@ -117,6 +117,12 @@ typedef struct FrameParams {
     ChainParams chains;
     PassParams pass;
 } FrameParams;
+
+/* What the scene uses, as a mask of FEATURE_*. */
+SHARED_FUNCTION ulong frame_features(__global const FrameParams *frame)
+{
+    return (ulong)frame->scene.features[1] << 32 | frame->scene.features[0];
+}
 
 /* What guides chains and pools. In a buffer of its own (BUFFER_GUIDE), because FrameParams are copied for every chunk
  * of items. */

@@ -12,8 +12,8 @@
 
 /* ---- what a scene uses: the feature mask ---------------------------------------------------------------------- */
 
-/* Features: X(NAME, name, text, 0u). Between the two lists come the BSDFs, whose bits are in the order of their
- * kinds. */
+/* Features, at most 64: X(NAME, name, text, 0u). Between the two lists come the BSDFs, whose bits are in the order of
+ * their kinds. */
 #define FEATURE_LIST_BEFORE(X)                                                                                         \
     X(TRIANGLE, triangle, "triangle", 0u)                                                                              \
     X(BILINEAR, bilinear, "bilinear", 0u)                                                                              \
@@ -44,9 +44,38 @@
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
 enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #undef FEATURE_NUMBER
-#define FEATURE_BIT(NAME, name, text, traits) FEATURE_##NAME = 1 << FEATURE_NUMBER_##NAME,
-enum { FEATURE_LIST(FEATURE_BIT) FEATURE_NONE = 0 };
-#undef FEATURE_BIT
+/* Macros, because constants of an enum are ints. */
+#define FEATURE_BIT(NAME) ((ulong)1 << FEATURE_NUMBER_##NAME)
+#define FEATURE_TRIANGLE FEATURE_BIT(TRIANGLE)
+#define FEATURE_BILINEAR FEATURE_BIT(BILINEAR)
+#define FEATURE_SPHERE FEATURE_BIT(SPHERE)
+#define FEATURE_DISK FEATURE_BIT(DISK)
+#define FEATURE_CYLINDER FEATURE_BIT(CYLINDER)
+#define FEATURE_INSTANCE FEATURE_BIT(INSTANCE)
+#define FEATURE_ALPHA FEATURE_BIT(ALPHA)
+#define FEATURE_NORMALS FEATURE_BIT(NORMALS)
+#define FEATURE_TEXTURE FEATURE_BIT(TEXTURE)
+#define FEATURE_BUMP FEATURE_BIT(BUMP)
+#define FEATURE_MIX FEATURE_BIT(MIX)
+#define FEATURE_DIFFUSE FEATURE_BIT(DIFFUSE)
+#define FEATURE_CONDUCTOR FEATURE_BIT(CONDUCTOR)
+#define FEATURE_DIELECTRIC FEATURE_BIT(DIELECTRIC)
+#define FEATURE_THIN_DIELECTRIC FEATURE_BIT(THIN_DIELECTRIC)
+#define FEATURE_COATED_DIFFUSE FEATURE_BIT(COATED_DIFFUSE)
+#define FEATURE_COATED_CONDUCTOR FEATURE_BIT(COATED_CONDUCTOR)
+#define FEATURE_DIFFUSE_TRANSMISSION FEATURE_BIT(DIFFUSE_TRANSMISSION)
+#define FEATURE_PROCEDURAL FEATURE_BIT(PROCEDURAL)
+#define FEATURE_ROUGH FEATURE_BIT(ROUGH)
+#define FEATURE_AREA_LIGHT FEATURE_BIT(AREA_LIGHT)
+#define FEATURE_INFINITE_LIGHT FEATURE_BIT(INFINITE_LIGHT)
+#define FEATURE_PORTAL FEATURE_BIT(PORTAL)
+#define FEATURE_DELTA_LIGHT FEATURE_BIT(DELTA_LIGHT)
+#define FEATURE_LIGHT_TREE FEATURE_BIT(LIGHT_TREE)
+#define FEATURE_LENS FEATURE_BIT(LENS)
+#define FEATURE_TANGENTS FEATURE_BIT(TANGENTS)
+#define FEATURE_MEDIUM FEATURE_BIT(MEDIUM)
+#define FEATURE_SCATTERING FEATURE_BIT(SCATTERING)
+#define FEATURE_MEDIUM_EMISSION FEATURE_BIT(MEDIUM_EMISSION)
 
 #define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
 

@@ -9,7 +9,7 @@ typedef struct SceneView {
     __global const FrameParams *frame;
     __global const Guide *guide; /* NULL in kernels without one */
     __global const uint *photons; /* BUFFER_PHOTONS; NULL in kernels without them */
-    uint features;
+    ulong features;
     /* geometry */
     __global const Vec3 *positions;
     __global const Vec3 *normals;
@@ -57,7 +57,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.frame = frame;
     view.guide = 0;
     view.photons = 0;
-    view.features = frame->scene.features;
+    view.features = frame_features(frame);
     view.positions = (__global const Vec3 *)(geometry + layout->positions);
     view.normals = (__global const Vec3 *)(geometry + layout->normals);
     view.uvs = (__global const Vec2 *)(geometry + layout->uvs);

@@ -9,6 +9,7 @@
 #include "support/opencl_probe.h"
 #include "support/walk_kernels.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #define WALKS 2000u
@@ -50,8 +51,8 @@ static bool device_open(Twin *twin, bool specialised)
     int used = snprintf(options, sizeof options, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -I%s/shared",
                         test_source_folder());
     if (specialised)
-        snprintf(options + used, sizeof options - (size_t)used, " -DTWINLIGHT_FEATURES=0x%xu",
-                 twin->frame.scene.features);
+        snprintf(options + used, sizeof options - (size_t)used, " -DTWINLIGHT_FEATURES=0x%" PRIx64 "ul",
+                 frame_features(&twin->frame));
     setenv("POCL_KERNEL_CACHE", "0", 0); /* the cache does not notice changed include files */
     twin->probe = opencl_probe_open("#include \"kernels/trace.cl\"\n", options, message, sizeof message, &absent);
     if (!twin->probe) {

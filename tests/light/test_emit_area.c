@@ -300,7 +300,7 @@ START_TEST(test_alpha)
         ARRAY_AT(&f.scene.shapes, Shape, 0).alpha = 0;
         ARRAY_AT(&f.scene.primitives, Primitive, 0).shape_and_kind |= PRIMITIVE_ALPHA_BIT;
         fixture_finish(&f);
-        f.view.features = ~0u;
+        f.view.features = ~(ulong)0;
         bool emits = light_emit(&f.view, 0, vec2(0.3f, 0.3f), vec2(0.3f, 0.3f), &e);
         ck_assert(emits == !hidden);
         ck_assert(hidden || e.radiance.x == 0.5f);

@@ -199,7 +199,7 @@ START_TEST(test_alpha)
     ARRAY_AT(&f.scene.shapes, Shape, 0).alpha = 0;
     ARRAY_AT(&f.scene.primitives, Primitive, 0).shape_and_kind |= PRIMITIVE_ALPHA_BIT;
     fixture_finish(&f);
-    f.view.features = ~0u;
+    f.view.features = ~(ulong)0;
     LightSample s;
     ck_assert(light_sample(&f.view, 0, vec3(0, 0, 3), fixture_random(1, 0), &s));
     ck_assert(s.radiance.x == 0.5f && s.radiance.z == 0.5f);

@@ -217,7 +217,7 @@ START_TEST(test_kept_numbers)
     scene.frame.pass.stride = 1;
     scene.frame.path.max_depth = 5;
     scene.frame.path.roulette_depth = 100;
-    SceneView view = {.frame = &scene.frame, .guide = &scene.guide, .features = ~0u};
+    SceneView view = {.frame = &scene.frame, .guide = &scene.guide, .features = ~(ulong)0};
     Vertex vertex = {.p = vec3(0.5f, -0.25f, 1.0f), .beta = vec3_splat(1.0f), .back = 1.0f};
     vertex.ng = vec3_normalize(vec3(1.0f, 2.0f, 0.5f));
     vertex.frame = frame_from_normal(vertex.ng);

@@ -78,7 +78,7 @@ START_TEST(features)
 {
     static const struct {
         const char *text;
-        uint features;
+        ulong features;
     } cases[] = {
         {MEDIUM("") "WorldBegin LightSource \"point\" Shape \"sphere\"", 0u},
         {MEDIUM("\"float sigma_s\" 0") "WorldBegin LightSource \"point\" MediumInterface \"m\" \"\" Shape \"sphere\"",

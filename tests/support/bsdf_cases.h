@@ -68,7 +68,7 @@ static inline void test_scene_init(TestScene *scene)
 {
     *scene = (TestScene){0};
     array_init(&scene->lookup, sizeof(float));
-    scene->view.features = 0xffffffffu;
+    scene->view.features = ~(ulong)0;
 }
 
 static inline void test_scene_destroy(TestScene *scene)

@@ -216,8 +216,8 @@ void test_scene_finish(TestScene *test)
     Error error = {0};
     Scene *scene = &test->scene;
     ck_assert_msg(scene_finish(scene, &error), "%s", error.message);
-    scene->frame.scene.features |=
-        FEATURE_TANGENTS | FEATURE_TEXTURE; /* not needed by any material here, but by the tests */
+    /* Not needed by any material here, but by the tests. */
+    scene_features_set(scene, scene->features | FEATURE_TANGENTS | FEATURE_TEXTURE);
     test->backend = scene_backend_view(scene);
     test->view = scene_view(test->backend.frame, test->backend.geometry, test->backend.tables, test->backend.texels);
 }

@@ -36,7 +36,7 @@ static inline void fixture_finish(LightFixture *f)
     s->frame.scene.infinite_light_count = (uint)s->infinite_lights.count;
     f->view = (SceneView){.frame = &s->frame,
                           .guide = &s->guide,
-                          .features = ~(uint)FEATURE_ALPHA,
+                          .features = ~FEATURE_ALPHA,
                           .positions = s->positions.data,
                           .normals = s->normals.data,
                           .uvs = s->uvs.data,
