@@ -35,7 +35,8 @@ static _Thread_local SceneView kernel_scene __attribute__((unused));
 
 typedef void KernelLoop(void *const *buffers, const uint *items, uint count);
 
-#define KERNEL_DECLARE(name, n, ...) KernelLoop kernel_loop_##name, kernel_wide_##name;
+#define KERNEL_DECLARE(name, n, ...)                                                                                   \
+    KernelLoop kernel_loop_##name, kernel_plain_##name, kernel_wide_##name, kernel_wide_plain_##name;
 KERNEL_LIST(KERNEL_DECLARE)
 #undef KERNEL_DECLARE
 

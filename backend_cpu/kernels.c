@@ -8,29 +8,52 @@
 
 #include "kernel_loop.h"
 
-#define KERNEL_ENTRY(name, n, ...) kernel_loop_##name,
-static KernelLoop *const KERNEL_LOOPS[KERNEL_COUNT] = {KERNEL_LIST(KERNEL_ENTRY)};
+#define LOOP(name, n, ...) [KERNEL_##name] = kernel_loop_##name,
+#define LOOP_PLAIN(name, n, ...) [KERNEL_##name] = kernel_plain_##name,
+#define LOOP_WIDE(name, n, ...) [KERNEL_##name] = kernel_wide_##name,
+#define LOOP_WIDE_PLAIN(name, n, ...) [KERNEL_##name] = kernel_wide_plain_##name,
 
+/* Kernels compiled in one way. */
+typedef struct KernelVariant {
+    bool plain; /* for scenes that have no features but FEATURES_PLAIN */
+    bool wide; /* for processors with the instruction sets of WIDE_CFLAGS in configure.ac */
+    KernelLoop *loops[KERNEL_COUNT]; /* NULL: not compiled in this way */
+} KernelVariant;
+
+/* The best first. */
+static const KernelVariant VARIANTS[] = {
+#if defined HAVE_PLAIN_KERNELS && defined HAVE_WIDE_KERNELS
+    {true, true, {KERNEL_LIST_CHAINS(LOOP_WIDE_PLAIN)}},
+#endif
+#ifdef HAVE_PLAIN_KERNELS
+    {true,
+     false,
+     {KERNEL_LIST_PATHS(LOOP_PLAIN) KERNEL_LIST_BIDIRECTIONAL(LOOP_PLAIN) KERNEL_LIST_IBPT(LOOP_PLAIN)
+          KERNEL_LIST_CHAINS(LOOP_PLAIN)}},
+#endif
 #ifdef HAVE_WIDE_KERNELS
-#define KERNEL_WIDE(name, n, ...) [KERNEL_##name] = kernel_wide_##name,
-static KernelLoop *const WIDE_LOOPS[KERNEL_COUNT] = {KERNEL_LIST_CHAINS(KERNEL_WIDE)};
+    {false, true, {KERNEL_LIST_CHAINS(LOOP_WIDE)}},
+#endif
+    {false, false, {KERNEL_LIST(LOOP)}},
+};
 
-/* The instruction sets of WIDE_CFLAGS in configure.ac. */
 static bool processor_wide(void)
 {
+#ifdef HAVE_WIDE_KERNELS
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");
-}
+#else
+    return false;
 #endif
+}
 
 void kernel_run(unsigned kernel, void *const *buffers, const uint *items, uint count)
 {
     assert(kernel < KERNEL_COUNT);
-    KernelLoop *loop = KERNEL_LOOPS[kernel];
-#ifdef HAVE_WIDE_KERNELS
-    if (WIDE_LOOPS[kernel] && processor_wide())
-        loop = WIDE_LOOPS[kernel];
-#endif
-    loop(buffers, items, count);
+    bool plain = (frame_features(buffers[BUFFER_FRAME]) & ~FEATURES_PLAIN) == 0u, wide = processor_wide();
+    const KernelVariant *variant = VARIANTS;
+    while (!variant->loops[kernel] || (variant->plain && !plain) || (variant->wide && !wide))
+        ++variant;
+    variant->loops[kernel](buffers, items, count);
 }

@@ -1,9 +1,4 @@
-/* The kernels of path tracing and of the AOVs, which start with the same kernels. Before any shared header: inlines
- * everything into their loops. */
-#ifdef NDEBUG
-#define PLATFORM_INLINE_ALL
-#endif
-
+/* The kernels of path tracing and of the AOVs, which start with the same kernels. */
 #include "kernel_loop.h"
 
 #include "kernels/aov.cl"

@@ -15,6 +15,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernels_mlt.c \
 	backend_cpu/kernels_others.c \
 	backend_cpu/kernels_pt.c \
+	backend_cpu/plain_kernels.h \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
 libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)
@@ -24,9 +25,18 @@ libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene_double.c
 else
 libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene.c
 endif
+if PLAIN_KERNELS
+libtwinlight_kernels_la_SOURCES += \
+	backend_cpu/kernels_bd_plain.c \
+	backend_cpu/kernels_mlt_plain.c \
+	backend_cpu/kernels_pt_plain.c
+endif
 if WIDE_KERNELS
 noinst_LTLIBRARIES += libtwinlight_wide.la
 libtwinlight_wide_la_SOURCES = backend_cpu/kernels_mlt_wide.c
+if PLAIN_KERNELS
+libtwinlight_wide_la_SOURCES += backend_cpu/kernels_mlt_wide_plain.c
+endif
 libtwinlight_wide_la_CPPFLAGS = $(libtwinlight_kernels_la_CPPFLAGS)
 libtwinlight_wide_la_CFLAGS = $(libtwinlight_kernels_la_CFLAGS) $(WIDE_CFLAGS)
 libtwinlight_kernels_la_LIBADD = libtwinlight_wide.la

@@ -153,6 +153,7 @@ SHARED_FUNCTION Vec3 texture_image_op(const SceneView *scene, __global const Tex
 SHARED_FUNCTION Vec3 texture_run(const SceneView *scene, uint program, const TexturePoint *point, uint as_float)
 {
     Vec3 stack[TEXTURE_STACK];
+    stack[0] = vec3_splat(0.0f); /* every program leaves a value, which compilers do not know */
     uint top = 0u; /* values on the stack */
     for (__global const TextureOp *op = scene->texture_ops + program; op->code != TEXTURE_END; ++op) {
         if (op->code == TEXTURE_CONSTANT) {

@@ -77,6 +77,10 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define FEATURE_SCATTERING FEATURE_BIT(SCATTERING)
 #define FEATURE_MEDIUM_EMISSION FEATURE_BIT(MEDIUM_EMISSION)
 
+/* All but those that few scenes have: the CPU's kernels are also compiled for scenes that have no others. */
+#define FEATURES_PLAIN                                                                                                 \
+    (~(FEATURE_CYLINDER | FEATURE_COATED_CONDUCTOR | FEATURE_PROCEDURAL | FEATURE_PORTAL | FEATURE_MEDIUM |            \
+       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION))
 #define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */

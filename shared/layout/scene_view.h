@@ -36,11 +36,15 @@ typedef struct SceneView {
     __global const uint *texels;
 } SceneView;
 
-/* A device program is built with the scene's feature mask as a constant; C reads it at run time. */
+/* A device program is built with the scene's feature mask as a constant. C reads it at run time, of the features that
+ * FEATURES_KNOWN has: a translation unit may be compiled for scenes without the others. */
+#ifndef FEATURES_KNOWN
+#define FEATURES_KNOWN (~(ulong)0)
+#endif
 #ifdef TWINLIGHT_FEATURES
 #define SCENE_HAS(scene, feature) ((void)(scene), (TWINLIGHT_FEATURES & (feature)) != 0u)
 #else
-#define SCENE_HAS(scene, feature) (((scene)->features & (feature)) != 0u)
+#define SCENE_HAS(scene, feature) (((scene)->features & FEATURES_KNOWN & (feature)) != 0u)
 #endif
 
 /* The floats of `tables`: distributions, filters, coats. */

@@ -1,0 +1,3 @@
+#include "plain_kernels.h"
+
+#include "kernels_bd.c"
