@@ -7,6 +7,7 @@ dist_scenes_DATA = \
 	scenes/fog.pbrt \
 	scenes/glass.pbrt \
 	scenes/glossy.pbrt \
+	scenes/hair.pbrt \
 	scenes/lamp.pbrt \
 	scenes/mirror.pbrt \
 	scenes/pool.pbrt \
@@ -27,6 +28,7 @@ dist_sceneparts_DATA = \
 	scenes/parts/goblet-water.ply \
 	scenes/parts/goblet-wet.ply \
 	scenes/parts/goblet.ply \
+	scenes/parts/hair.pbrt.gz \
 	scenes/parts/hammered.png \
 	scenes/parts/jar.ply \
 	scenes/parts/lemon.ply \
@@ -39,12 +41,14 @@ dist_sceneparts_DATA = \
 	scenes/parts/vase.ply
 
 # `make scene-parts` makes scenes/parts/ in the source folder again; `make scene-references` the pictures to compare with.
-EXTRA_PROGRAMS += scenes/average_images scenes/make_parts
+EXTRA_PROGRAMS += scenes/average_images scenes/make_hair scenes/make_parts
 scenes_average_images_SOURCES = scenes/average_images.c
 scenes_average_images_LDADD = libtwinlight_host.la -lm
+scenes_make_hair_SOURCES = scenes/make_hair.c
+scenes_make_hair_LDADD = -lm
 scenes_make_parts_SOURCES = scenes/make_parts.c
 scenes_make_parts_LDADD = libtwinlight_host.la -lm
-CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_parts$(EXEEXT)
+CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_hair$(EXEEXT) scenes/make_parts$(EXEEXT)
 EXTRA_DIST += \
 	scenes/make_references.sh \
 	scenes/reference/cornell.exr \
@@ -56,8 +60,9 @@ EXTRA_DIST += \
 	scenes/reference/windows.exr
 
 .PHONY: scene-parts scene-references
-scene-parts: scenes/make_parts$(EXEEXT)
+scene-parts: scenes/make_parts$(EXEEXT) scenes/make_hair$(EXEEXT)
 	./scenes/make_parts$(EXEEXT) $(srcdir)/scenes
+	./scenes/make_hair$(EXEEXT) | gzip -9n >$(srcdir)/scenes/parts/hair.pbrt.gz
 scene-references: twinlight$(EXEEXT) scenes/average_images$(EXEEXT)
 	$(srcdir)/scenes/make_references.sh ./twinlight$(EXEEXT) ./scenes/average_images$(EXEEXT) $(srcdir)/scenes/reference
 

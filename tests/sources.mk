@@ -196,6 +196,7 @@ tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \
 	tests/bsdf/test_bsdf_coated_conductor.c \
 	tests/bsdf/test_bsdf_energy.c \
 	tests/bsdf/test_bsdf_formulas.c \
+	tests/bsdf/test_bsdf_hair.c \
 	tests/bsdf/test_bsdf_identities.c \
 	tests/bsdf/test_bsdf_inverse.c \
 	tests/bsdf/test_bsdf_phase.c \
@@ -228,6 +229,7 @@ tests_test_film_SOURCES = tests/film/test_film.c \
 
 tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
 	tests/geometry/test_geometry_backend.c \
+	tests/geometry/test_geometry_curve.c \
 	tests/geometry/test_geometry_cylinder.c \
 	tests/geometry/test_geometry_quadrics.c \
 	tests/geometry/test_geometry_rays.c

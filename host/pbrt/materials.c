@@ -193,6 +193,59 @@ static void diffuse_transmission_read(MaterialReader *r)
                        "reflectance and transmittance add up to more than 1: the material creates energy");
 }
 
+/* Reads a roughness of hair, in (0, 1]. */
+static void hair_roughness_read(MaterialReader *r, const char *name, FloatParam *roughness)
+{
+    *roughness = float_constant(0.3f);
+    value_float_param(r->im, r->list, name, roughness);
+    if (roughness->program == NONE && !(roughness->value > 0.0f && roughness->value <= 1.0f))
+        param_error(r->list, name, "\"%s\" must be above 0 and at most 1", name);
+}
+
+static void melanin_read(MaterialReader *r, const char *name, FloatParam *concentration, bool *given)
+{
+    *given |= value_float_param(r->im, r->list, name, concentration);
+    if (concentration->program == NONE && concentration->value < 0.0f)
+        param_error(r->list, name, "\"%s\" is negative", name);
+}
+
+/* Of sigma_a, reflectance (or color) and the pigments, the first that is given counts, as in pbrt. */
+static void hair_color_read(MaterialReader *r)
+{
+    Material *m = &r->material;
+    ColorParam color = color_constant(0.5f);
+    bool melanin = false;
+    bool absorption = value_color_param(r->im, r->list, "sigma_a", COLOR_INDEX, &m->color0);
+    bool colored = value_color_param(r->im, r->list, "reflectance", COLOR_REFLECTANCE, &color);
+    if (!colored)
+        colored = value_color_param(r->im, r->list, "color", COLOR_REFLECTANCE, &color);
+    else
+        param_ignore(r->list, "color");
+    melanin_read(r, "eumelanin", &m->base_u, &melanin);
+    melanin_read(r, "pheomelanin", &m->base_v, &melanin);
+    if (absorption + colored + melanin > 1)
+        log_message_at(LOG_WARNING, r->list->place, "the hair's %s ignored: its %s given",
+                       absorption && colored ? "reflectance and pigments are" : "pigments are",
+                       absorption ? "sigma_a is" : "reflectance is");
+    if (absorption)
+        return;
+    if (!colored && !melanin)
+        m->base_u.value = 1.3f; /* brown */
+    m->flags |= colored ? MATERIAL_HAIR_COLOR : MATERIAL_HAIR_MELANIN;
+    m->color0 = color;
+}
+
+static void hair_read(MaterialReader *r)
+{
+    Material *m = &r->material;
+    hair_color_read(r);
+    hair_roughness_read(r, "beta_m", &m->roughness_u);
+    hair_roughness_read(r, "beta_n", &m->roughness_v);
+    m->amount = float_constant(2.0f);
+    value_float_param(r->im, r->list, "alpha", &m->amount);
+    m->eta = value_eta(r->im, r->list, "eta", 1.55f);
+}
+
 /* Resolves one of the two materials named by a mix. */
 static uint mix_part(MaterialReader *r, const Param *param, size_t i)
 {
@@ -232,7 +285,8 @@ static const struct {
     void (*read)(MaterialReader *r);
     bool relief; /* takes normalmap and displacement */
 } KINDS[] = {
-#define KIND(NAME, name, text, traits) {text, MATERIAL_##NAME, name##_read, MATERIAL_##NAME != MATERIAL_MIX},
+#define KIND(NAME, name, text, traits)                                                                                 \
+    {text, MATERIAL_##NAME, name##_read, MATERIAL_##NAME != MATERIAL_MIX && MATERIAL_##NAME != MATERIAL_HAIR},
     MATERIAL_LIST(KIND)
 #undef KIND
 };
@@ -249,8 +303,7 @@ static const struct {
     const char *name;
     const char *substitute;
     void (*read)(MaterialReader *r);
-} UNSUPPORTED[] = {{"hair", "diffuse, with its reflectance or 0.5", diffuse_substitute},
-                   {"subsurface", "diffuse, with its reflectance or 0.5", diffuse_substitute},
+} UNSUPPORTED[] = {{"subsurface", "diffuse, with its reflectance or 0.5", diffuse_substitute},
                    {"measured", "diffuse, reflectance 0.5", diffuse_substitute}};
 
 static bool material_unknown(PbrtImport *im, SourcePlace place, const char *kind)
@@ -279,7 +332,7 @@ static bool material_read(MaterialReader *r, const char *kind, SourcePlace place
             snprintf(what, sizeof what, "the material \"%s\"", kind);
             if (!import_unsupported(im, place, what, UNSUPPORTED[i].substitute,
                                     "use diffuse, conductor, dielectric, thindielectric, coateddiffuse, "
-                                    "coatedconductor, diffusetransmission or mix"))
+                                    "coatedconductor, diffusetransmission, hair or mix"))
                 return false;
             UNSUPPORTED[i].read(r);
             return !r->list->failed;

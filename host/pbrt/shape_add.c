@@ -127,6 +127,23 @@ bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, floa
     return mesh_emit(im, kind, &moved, context->shape, context->emits ? &context->emission : NULL);
 }
 
+bool shape_add_curves(PbrtImport *im, const ShapeContext *context, CurveData *data, Curve *curves)
+{
+    float scale = (float)cbrt(fabs(matrix_determinant(&context->ctm)));
+    Box *box = space_box(im);
+    for (size_t i = 0; i < data->count; ++i) {
+        Curve *curve = &curves[i];
+        curve->width[0] *= scale;
+        curve->width[1] *= scale;
+        if (!mesh_transform(im, context, false, &curve->p[0].x, NULL, 4))
+            return false;
+        for (int k = 0; k < 4; ++k)
+            box_add(box, curve->p[k]);
+    }
+    data->curves = curves;
+    return scene_add_curves(im->scene, data, context->shape, im->error);
+}
+
 /* Whether the corners of the quadric's bounding box are in range; an error if not. */
 static bool quadric_fits(PbrtImport *im, const Quadric *quadric, const Matrix *matrix)
 {

@@ -22,6 +22,10 @@ typedef struct ShapeContext {
 bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, float *positions, float *normals,
                     const MeshData *mesh);
 
+/* Adds curves, with control points and widths in the current space, which it overwrites. Widths are multiplied by the
+ * transform's mean scale, the cube root of its determinant. */
+bool shape_add_curves(PbrtImport *im, const ShapeContext *context, CurveData *data, Curve *curves);
+
 /* Adds a sphere, disk or cylinder. */
 bool shape_add_quadric(PbrtImport *im, const ShapeContext *context, uint kind, const Quadric *quadric);
 

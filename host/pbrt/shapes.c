@@ -1,6 +1,7 @@
 /* Shape directives: context of a shape, and quadrics (meshes: mesh.c). */
 #include "base/log.h"
 #include "geometry/medium.h"
+#include "pbrt/curve.h"
 #include "pbrt/errors.h"
 #include "pbrt/mesh.h"
 #include "pbrt/readers.h"
@@ -142,18 +143,15 @@ static const struct ShapeKind {
     const char *name;
     bool (*read)(PbrtImport *im, ParamList *list, const ShapeContext *context);
     bool quadric; /* needs the inverse of the transform */
-} KINDS[] = {{"sphere", sphere_read, true},        {"disk", disk_read, true},
-             {"cylinder", cylinder_read, true},    {"trianglemesh", mesh_kind_read, false},
-             {"plymesh", mesh_kind_read, false},   {"bilinearmesh", mesh_kind_read, false},
-             {"loopsubdiv", mesh_kind_read, false}};
+} KINDS[] = {{"sphere", sphere_read, true},         {"disk", disk_read, true},
+             {"cylinder", cylinder_read, true},     {"trianglemesh", mesh_kind_read, false},
+             {"plymesh", mesh_kind_read, false},    {"bilinearmesh", mesh_kind_read, false},
+             {"loopsubdiv", mesh_kind_read, false}, {"curve", curve_read, false}};
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
 static bool kind_missing(PbrtImport *im, const char *kind)
 {
     const char *known[KIND_COUNT];
-    if (strcmp(kind, "curve") == 0)
-        return import_unsupported(im, im->place, "the shape \"curve\"", "the shape is left out",
-                                  "turn it into a plymesh");
     for (size_t i = 0; i < KIND_COUNT; ++i)
         known[i] = KINDS[i].name;
     return import_unknown(im, im->place, "shape", kind, known, KIND_COUNT);

@@ -1,5 +1,6 @@
 libtwinlight_host_la_SOURCES += \
 	host/pbrt/context.c host/pbrt/context.h \
+	host/pbrt/curve.c host/pbrt/curve.h \
 	host/pbrt/directives.c host/pbrt/directives.h \
 	host/pbrt/errors.c host/pbrt/errors.h \
 	host/pbrt/film_camera.c \
@@ -21,6 +22,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/ply_header.c host/pbrt/ply_header.h \
 	host/pbrt/polygon.c host/pbrt/polygon.h \
 	host/pbrt/readers.h \
+	host/pbrt/ribbon.c host/pbrt/ribbon.h \
 	host/pbrt/shape_add.c host/pbrt/shape_add.h \
 	host/pbrt/shapes.c \
 	host/pbrt/state.c host/pbrt/state.h \

@@ -84,6 +84,19 @@ static void quadrics_move(Scene *scene, Vec3 offset)
     }
 }
 
+static void curves_move(Scene *scene, Vec3 offset)
+{
+    const Object *world = &ARRAY_AT(&scene->objects, Object, 0);
+    for (uint i = 0; i < world->primitive_count; ++i) {
+        const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, world->first_primitive + i);
+        if (p->shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_CURVE || CURVE_INDEX(p->b) != 0)
+            continue;
+        Curve *curve = &ARRAY_AT(&scene->curves, Curve, p->a);
+        for (int k = 0; k < 4; ++k)
+            curve->p[k] = vec3_sub(curve->p[k], offset);
+    }
+}
+
 void camera_move(CameraSettings *camera, Vec3 offset)
 {
     const double c[3] = {(double)offset.x, (double)offset.y, (double)offset.z};
@@ -101,6 +114,7 @@ bool scene_center(Scene *scene, const Box *world)
         return false;
     vertices_move(scene, offset);
     quadrics_move(scene, offset);
+    curves_move(scene, offset);
     for (size_t i = 0; i < scene->instances.count; ++i) {
         Instance *instance = &ARRAY_AT(&scene->instances, Instance, i);
         placement_move(&instance->world_from_object, &instance->object_from_world, offset);

@@ -89,7 +89,8 @@ static SceneView geometry_view(const Scene *scene)
                        .primitives = scene->primitives.data,
                        .shapes = scene->shapes.data,
                        .patches = scene->patches.data,
-                       .quadrics = scene->quadrics.data};
+                       .quadrics = scene->quadrics.data,
+                       .curves = scene->curves.data};
 }
 
 static Box object_box(const Scene *scene, const Object *object)
@@ -248,6 +249,12 @@ bool scene_has_delta(const Scene *scene)
     return false;
 }
 
+/* Of hair, whose frame follows the tangent. */
+static ulong hair_features(const Material *m)
+{
+    return FEATURE_TANGENTS | (m->base_u.program != NONE || m->base_v.program != NONE ? FEATURE_TEXTURE : 0u);
+}
+
 /* Of a coated conductor, whose record is kept with what rough lobes need. */
 static ulong base_features(const Material *m)
 {
@@ -264,6 +271,8 @@ static ulong material_features(const Material *m)
         features |= FEATURE_ROUGH;
     if (m->kind == MATERIAL_COATED_CONDUCTOR)
         features |= base_features(m);
+    if (m->kind == MATERIAL_HAIR)
+        features |= hair_features(m);
     if (m->normal_map != NONE || m->displacement.program != NONE)
         features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
     if (m->roughness_u.program != m->roughness_v.program || m->roughness_u.value != m->roughness_v.value)

@@ -76,6 +76,7 @@ static uint medium_around(const Scene *scene)
                       .shapes = scene->shapes.data,
                       .patches = scene->patches.data,
                       .quadrics = scene->quadrics.data,
+                      .curves = scene->curves.data,
                       .objects = scene->objects.data,
                       .instances = scene->instances.data};
     Ray ray = {vec3((float)camera[3], (float)camera[7], (float)camera[11]), OUTWARDS, FLOAT_MAX};

@@ -42,9 +42,9 @@ static bool tables_pack(Scene *scene, Error *error)
 
 size_t scene_geometry_words(const Scene *scene)
 {
-    const Array *const arrays[] = {&scene->positions,  &scene->normals, &scene->uvs,
-                                   &scene->primitives, &scene->shapes,  &scene->patches,
-                                   &scene->quadrics,   &scene->objects, &scene->instances};
+    const Array *const arrays[] = {&scene->positions, &scene->normals,  &scene->uvs,    &scene->primitives,
+                                   &scene->shapes,    &scene->patches,  &scene->curves, &scene->quadrics,
+                                   &scene->objects,   &scene->instances};
     size_t words = 64;
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         words += arrays[i]->count * arrays[i]->element_size / 4 + 4;
@@ -62,6 +62,7 @@ static bool geometry_pack(Scene *scene, Error *error)
                  {&scene->normals, &layout->normals},
                  {&scene->uvs, &layout->uvs},
                  {&scene->primitives, &layout->primitives},
+                 {&scene->curves, &layout->curves},
                  {&scene->shapes, &layout->shapes},
                  {&scene->patches, &layout->patches},
                  {&scene->quadrics, &layout->quadrics},
@@ -72,7 +73,7 @@ static bool geometry_pack(Scene *scene, Error *error)
     for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
         if (!words_append(&scene->geometry_words, parts[i].array, parts[i].first, error))
             return false;
-        if (i < 4)
+        if (i < 5)
             array_destroy(parts[i].array);
     }
     return true;

@@ -14,6 +14,7 @@
     X(shapes, Shape)                                                                                                   \
     X(patches, Patch)                                                                                                  \
     X(quadrics, Quadric)                                                                                               \
+    X(curves, Curve)                                                                                                   \
     X(objects, Object)                                                                                                 \
     X(instances, Instance)                                                                                             \
     X(materials, Material)                                                                                             \
@@ -356,6 +357,42 @@ bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const
         return true;
     }
     return shape_emit(scene, index, emission, light_flags, error);
+}
+
+/* Whether a curve can be hit: it has a width somewhere, and is not a point. */
+static bool curve_extends(const Curve *curve)
+{
+    bool point = true;
+    for (int i = 1; i < 4; ++i)
+        point = point && vec3_is_zero(vec3_sub(curve->p[i], curve->p[0]));
+    return !point && (curve->width[0] > 0.0f || curve->width[1] > 0.0f);
+}
+
+bool scene_add_curves(Scene *scene, const CurveData *data, Shape shape, Error *error)
+{
+    uint index, pieces = 1u << data->levels;
+    size_t words = (sizeof(Curve) + pieces * sizeof(Primitive)) / 4;
+    MeshData extent = {.triangle_count = data->count};
+    if (!geometry_fits(scene, &extent, words, error) || !shape_add(scene, &extent, &shape, &index, error))
+        return false;
+    for (size_t i = 0; i < data->count; ++i) {
+        if (!curve_extends(&data->curves[i])) {
+            ++scene->counts.degenerate_triangles;
+            continue;
+        }
+        uint curve = (uint)scene->curves.count;
+        Curve *stored = SCENE_GROW(scene, curves, Curve, 1, error);
+        Primitive *primitives = stored ? SCENE_GROW(scene, primitives, Primitive, pieces, error) : NULL;
+        if (!primitives)
+            return false;
+        *stored = data->curves[i];
+        for (uint piece = 0; piece < pieces; ++piece)
+            primitives[piece] = (Primitive){.a = curve,
+                                            .b = CURVE_PIECE(data->levels, piece),
+                                            .c = data->type,
+                                            .shape_and_kind = shape_and_kind(index, PRIMITIVE_CURVE, &shape)};
+    }
+    return true;
 }
 
 bool scene_object_begin(Scene *scene, uint *object, Error *error)

@@ -21,7 +21,7 @@ typedef struct SceneSettings {
 
 /* What was dropped or replaced while reading; for `info`, the log and the statistics. */
 typedef struct SceneCounts {
-    unsigned long degenerate_triangles;
+    unsigned long degenerate_triangles; /* and patches, quadrics and curves */
     unsigned long zero_area_lights;
     unsigned long substitutions; /* replacements made by --lenient */
 } SceneCounts;
@@ -62,6 +62,7 @@ typedef struct Scene {
     Array shapes; /* Shape */
     Array patches; /* Patch */
     Array quadrics; /* Quadric */
+    Array curves; /* Curve */
     Array objects; /* Object; [0] is the world */
     Array instances; /* Instance */
     /* tables */
@@ -127,6 +128,15 @@ typedef struct QuadricData {
 } QuadricData;
 bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const float *emission, uint light_flags,
                        Error *error);
+
+/* Curves in world space (object space in an object definition); each becomes 2^levels primitives, levels <= CURVE_LEVELS_MAX.
+ * type: CURVE_FLAT or CURVE_ROUND. Curves without width or length are dropped and counted. They emit nothing. */
+typedef struct CurveData {
+    const Curve *curves;
+    size_t count;
+    uint levels, type;
+} CurveData;
+bool scene_add_curves(Scene *scene, const CurveData *data, Shape shape, Error *error);
 
 /* Object definitions: shapes added between begin and end belong to the object. *object: its index. */
 bool scene_object_begin(Scene *scene, uint *object, Error *error);

@@ -5,7 +5,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere", "disk", "cylinder"};
+static const char *const PRIMITIVE_NAMES[PRIMITIVE_KINDS] = {"triangle", "bilinear", "sphere",
+                                                             "disk",     "cylinder", "curve"};
 #define TEXT(NAME, name, text, traits) text,
 static const char *const MATERIAL_NAMES[MATERIAL_KINDS] = {MATERIAL_LIST(TEXT)};
 #define LIGHT_TEXT(NAME, name, text, feature, position) text,

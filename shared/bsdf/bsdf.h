@@ -9,6 +9,8 @@
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/diffuse_transmission.h"
+#include "bsdf/fibre.h"
+#include "bsdf/hair.h"
 #include "bsdf/phase.h"
 #include "bsdf/thin_dielectric.h"
 #include "layout/scene_view.h"
@@ -51,12 +53,9 @@ SHARED_FUNCTION bool bsdf_is_phase(const SceneView *scene, const Bsdf *bsdf)
     return SCENE_HAS(scene, FEATURE_SCATTERING) && bsdf->kind == MATERIAL_PHASE;
 }
 
-/* f(wo, wi) |cos wi|, or the phase function, and both densities; delta lobes count as zero. wo and wi: unit, in the
- * shading frame, pointing away from the surface. */
-SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
+/* bsdf_eval at a surface. */
+SHARED_FUNCTION BsdfValue bsdf_eval_kind(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
 {
-    if (bsdf_is_phase(scene, bsdf))
-        return phase_eval(bsdf->color0.x, wi);
     if (!(float_abs(wo.z) > BSDF_COSINE_MIN && float_abs(wi.z) > BSDF_COSINE_MIN))
         return bsdf_value_zero();
 #define EVAL(NAME, name, text, traits)                                                                                 \
@@ -67,10 +66,68 @@ SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Ve
     return bsdf_value_zero();
 }
 
+/* bsdf_eval on a curve. */
+SHARED_FUNCTION_APART BsdfValue bsdf_eval_fibre(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi,
+                                                uint transport)
+{
+    BsdfValue forward = bsdf_eval_kind(scene, bsdf, wo, wi, TRANSPORT_RADIANCE);
+    BsdfValue reverse = bsdf_eval_kind(scene, bsdf, fibre_tilt(wo, wi), fibre_tilt(wi, wo), TRANSPORT_RADIANCE);
+    return fibre_value(forward, reverse, wo, wi, transport);
+}
+
+/* Whether the Bsdf is that of a point on a curve. */
+SHARED_FUNCTION bool bsdf_is_fibre(const SceneView *scene, const Bsdf *bsdf)
+{
+    return SCENE_HAS(scene, FEATURE_CURVE) && (bsdf->flags & BSDF_FIBRE) != 0u;
+}
+
+/* f(wo, wi) |cos wi|, or the phase function, and both densities; delta lobes count as zero. wo and wi: unit, in the
+ * shading frame, pointing away from the surface. */
+SHARED_FUNCTION BsdfValue bsdf_eval(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, Vec3 wi, uint transport)
+{
+    if (bsdf_is_phase(scene, bsdf))
+        return phase_eval(bsdf->color0.x, wi);
+    if (bsdf_is_fibre(scene, bsdf))
+        return bsdf_eval_fibre(scene, bsdf, wo, wi, transport);
+    return bsdf_eval_kind(scene, bsdf, wo, wi, transport);
+}
+
 /* Whether bsdf_sample_base reads draw.u_base. */
 SHARED_FUNCTION bool bsdf_has_base(const Bsdf *bsdf)
 {
     return (bsdf_traits(bsdf->kind) & TRAIT_COSINE) != 0u;
+}
+
+/* bsdf_sample_base at a surface. */
+SHARED_FUNCTION bool bsdf_sample_kind(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                      BsdfSample *sample)
+{
+    if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
+        return false;
+#define SAMPLE(NAME, name, text, traits)                                                                               \
+    if (OF_KIND(scene, bsdf, NAME))                                                                                    \
+        return bsdf_##name##_sample(scene, bsdf, wo, draw, sample);
+    BSDF_LIST(SAMPLE)
+#undef SAMPLE
+    return false;
+}
+
+/* bsdf_sample_base on a curve. */
+SHARED_FUNCTION_APART bool bsdf_sample_fibre(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, BsdfDraw draw,
+                                             BsdfSample *sample)
+{
+    uint transport = draw.transport;
+    draw.transport = TRANSPORT_RADIANCE;
+    if (!bsdf_sample_kind(scene, bsdf, wo, draw, sample))
+        return false;
+    if (sample->delta != 0u)
+        return true;
+    Vec3 wi = sample->wi;
+    BsdfValue reverse = bsdf_eval_kind(scene, bsdf, fibre_tilt(wo, wi), fibre_tilt(wi, wo), TRANSPORT_RADIANCE);
+    sample->pdf_rev_w = reverse.pdf_w;
+    if (transport == TRANSPORT_IMPORTANCE)
+        sample->weight = vec3_scale(reverse.f_cos, fibre_cosine_ratio(wo, wi) / sample->pdf_w);
+    return true;
 }
 
 /* Draws wi. Fills every member of *sample. False: no contribution, since the light is absorbed or the direction lies on
@@ -82,14 +139,9 @@ SHARED_FUNCTION bool bsdf_sample_base(const SceneView *scene, const Bsdf *bsdf, 
         *sample = phase_sample(bsdf->color0.x, draw.u);
         return true;
     }
-    if (!(float_abs(wo.z) > BSDF_COSINE_MIN))
-        return false;
-#define SAMPLE(NAME, name, text, traits)                                                                               \
-    if (OF_KIND(scene, bsdf, NAME))                                                                                    \
-        return bsdf_##name##_sample(scene, bsdf, wo, draw, sample);
-    BSDF_LIST(SAMPLE)
-#undef SAMPLE
-    return false;
+    if (bsdf_is_fibre(scene, bsdf))
+        return bsdf_sample_fibre(scene, bsdf, wo, draw, sample);
+    return bsdf_sample_kind(scene, bsdf, wo, draw, sample);
 }
 
 /* bsdf_sample_base with the same point for all lobes. */

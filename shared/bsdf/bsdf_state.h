@@ -20,10 +20,13 @@
 /* Words of a stored frame: normal and tangent. */
 #define STORED_FRAME_WORDS 6u
 
-/* Materials whose Bsdf has a second colour, and those with an index of refraction. */
+/* Materials whose Bsdf has a second colour, an index of refraction, and roughnesses. */
 #define FEATURES_COLOR1                                                                                                \
-    (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR | FEATURE_DIFFUSE_TRANSMISSION)
-#define FEATURES_ETA (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR)
+    (FEATURE_CONDUCTOR | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR | FEATURE_DIFFUSE_TRANSMISSION |            \
+     FEATURE_HAIR)
+#define FEATURES_ETA                                                                                                   \
+    (FEATURE_DIELECTRIC | FEATURE_THIN_DIELECTRIC | FEATURE_COATED_DIFFUSE | FEATURE_COATED_CONDUCTOR | FEATURE_HAIR)
+#define FEATURES_ALPHA (FEATURE_ROUGH | FEATURE_HAIR)
 
 /* Stores only the members that some material of the scene uses. */
 SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, uint stride, uint base, uint item,
@@ -36,7 +39,7 @@ SHARED_FUNCTION void bsdf_store(const SceneView *scene, __global uint *buffer, u
         state_store_vec3(buffer, stride, base + STORED_BSDF_COLOR1, item, bsdf->color1);
     if (SCENE_HAS(scene, FEATURES_ETA))
         state_store_float(buffer, stride, base + STORED_BSDF_ETA, item, bsdf->eta);
-    if (SCENE_HAS(scene, FEATURE_ROUGH)) {
+    if (SCENE_HAS(scene, FEATURES_ALPHA)) {
         state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_X, item, bsdf->alpha_x);
         state_store_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, item, bsdf->alpha_y);
         state_store(buffer, stride, base + STORED_BSDF_COAT, item, bsdf->coat_table);
@@ -69,7 +72,7 @@ SHARED_FUNCTION Bsdf bsdf_load(const SceneView *scene, __global const uint *buff
         bsdf.color1 = state_load_vec3(buffer, stride, base + STORED_BSDF_COLOR1, item);
     if (SCENE_HAS(scene, FEATURES_ETA))
         bsdf.eta = state_load_float(buffer, stride, base + STORED_BSDF_ETA, item);
-    if (SCENE_HAS(scene, FEATURE_ROUGH)) {
+    if (SCENE_HAS(scene, FEATURES_ALPHA)) {
         bsdf.alpha_x = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_X, item);
         bsdf.alpha_y = state_load_float(buffer, stride, base + STORED_BSDF_ALPHA_Y, item);
         bsdf.coat_table = state_load(buffer, stride, base + STORED_BSDF_COAT, item);

@@ -4,6 +4,7 @@
 #define TWINLIGHT_BSDF_MATERIAL_H
 
 #include "bsdf/bsdf.h"
+#include "geometry/curve.h"
 #include "geometry/texture.h"
 #include "layout/path_types.h"
 #include "layout/scene_view.h"
@@ -111,6 +112,30 @@ SHARED_FUNCTION void coated_conductor_set(const SceneView *scene, __global const
     bsdf->flags |= bsdf_base_pack(alpha_x, alpha_y);
 }
 
+/* Absorption, roughnesses and tilt of hair, and where across it the point lies. As in pbrt-v4, v goes from one side to the
+ * other. */
+SHARED_FUNCTION_APART void hair_set(const SceneView *scene, __global const Material *material,
+                                    const TexturePoint *point, Bsdf *bsdf)
+{
+    float beta_m = float_param_eval(scene, material->roughness_u, point);
+    float beta_n = float_param_eval(scene, material->roughness_v, point);
+    Vec3 color = bsdf->color0;
+    bsdf->alpha_x = float_clamp(beta_m, HAIR_BETA_MIN, 1.0f);
+    bsdf->alpha_y = float_clamp(beta_n, HAIR_BETA_MIN, 1.0f);
+    if ((material->flags & MATERIAL_HAIR_COLOR) != 0u)
+        color = vec3(hair_absorption(color.x, bsdf->alpha_y), hair_absorption(color.y, bsdf->alpha_y),
+                     hair_absorption(color.z, bsdf->alpha_y));
+    if ((material->flags & MATERIAL_HAIR_MELANIN) != 0u) {
+        float eumelanin = float_max(float_param_eval(scene, material->base_u, point), 0.0f);
+        float pheomelanin = float_max(float_param_eval(scene, material->base_v, point), 0.0f);
+        color = hair_melanin(eumelanin, pheomelanin);
+    }
+    bsdf->color0 = vec3_max(color, vec3_splat(0.0f));
+    bsdf->color1.x = float_clamp(2.0f * point->uv.y - 1.0f, -1.0f, 1.0f);
+    bsdf->color1.y = float_param_eval(scene, material->amount, point) * (PI / 180.0f);
+    bsdf->color1.z = 0.0f;
+}
+
 /* Looks up the parameters of a plain material (not a mix). */
 SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const TexturePoint *point)
 {
@@ -136,11 +161,13 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
     } else if (bsdf.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         bsdf.color1 = color_unit(vec3_scale(color_param_eval(scene, material->color1, point), material->scale));
         bsdf.color0 = color_unit(vec3_scale(bsdf.color0, material->scale));
-    } else {
+    } else if (!(SCENE_HAS(scene, FEATURE_HAIR) && bsdf.kind == MATERIAL_HAIR)) {
         bsdf.color0 = color_unit(bsdf.color0);
         bsdf.color1 = material->color1.value;
     }
-    if (SCENE_HAS(scene, FEATURE_ROUGH)) {
+    if (SCENE_HAS(scene, FEATURE_HAIR) && bsdf.kind == MATERIAL_HAIR) {
+        hair_set(scene, material, point, &bsdf);
+    } else if (SCENE_HAS(scene, FEATURE_ROUGH)) {
         bsdf.alpha_x = alpha_from_roughness(material->flags, float_param_eval(scene, material->roughness_u, point));
         bsdf.alpha_y = alpha_from_roughness(material->flags, float_param_eval(scene, material->roughness_v, point));
     }
@@ -149,7 +176,7 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
 }
 
 /* Chooses among mixes with u_mix, applies bump or normal map to `surface`, and fills `bsdf` and the frame in which it
- * is evaluated. An isotropic Bsdf gets a frame from its normal alone, which is continuous over the surface whatever
+ * is evaluated. On curves that has the tangent as x. An isotropic Bsdf gets a frame from its normal alone, which is continuous over the surface whatever
  * the texture coordinates do; an anisotropic one follows dpdu. */
 SHARED_FUNCTION void material_resolve(const SceneView *scene, float u_mix, Surface *surface, Bsdf *bsdf, Frame *frame)
 {
@@ -165,7 +192,11 @@ SHARED_FUNCTION void material_resolve(const SceneView *scene, float u_mix, Surfa
         if (scene->materials[material].displacement.program != NONE)
             bump_apply(scene, scene->materials[material].displacement, surface);
     }
-    if (bsdf->alpha_x != bsdf->alpha_y || bsdf_base_is_anisotropic(bsdf->flags)) {
+    bool fibre = normal_is_fibre(scene, surface->ng);
+    if (fibre)
+        bsdf->flags |= BSDF_FIBRE;
+    bool hair = SCENE_HAS(scene, FEATURE_HAIR) && bsdf->kind == MATERIAL_HAIR;
+    if (fibre || hair || bsdf->alpha_x != bsdf->alpha_y || bsdf_base_is_anisotropic(bsdf->flags)) {
         frame->n = surface->ns;
         frame->t = vec3_normalize(vec3_orthogonal_part(surface->dpdu, surface->ns));
         frame->b = vec3_cross(frame->n, frame->t);

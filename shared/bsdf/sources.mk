@@ -8,7 +8,9 @@ SHARED_FILES += \
 	shared/bsdf/dielectric.h \
 	shared/bsdf/diffuse.h \
 	shared/bsdf/diffuse_transmission.h \
+	shared/bsdf/fibre.h \
 	shared/bsdf/fresnel.h \
+	shared/bsdf/hair.h \
 	shared/bsdf/lobe.h \
 	shared/bsdf/material.h \
 	shared/bsdf/microfacet.h \

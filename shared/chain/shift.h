@@ -13,7 +13,7 @@
  * of directions: Otsu et al., "Fusing state spaces for Markov chain Monte Carlo rendering", 2017; Bitterli et al.,
  * "Reversible jump Metropolis light transport using inverse mappings", 2018.
  *
- * A path can be shifted if it has z_2, and if z_1 and, where z_3 exists, z_2 have lobes that draw all directions near
+ * A path can be shifted if it has z_2, if z_2 and z_3 are not on curves, and if z_1 and, where z_3 exists, z_2 have lobes that draw all directions near
  * theirs. Other paths take an ordinary step of the camera subpath instead; it is rejected if it leads to a path that
  * can be shifted, since no step leads back from there. */
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
@@ -134,7 +134,7 @@ SHARED_FUNCTION bool shift_hit(const SceneView *scene, __global const uint *rest
          point = shift_point(bank, depth);
     float before = depth == 2u ? 1.0f : shift_density(vertices, stride, bank, item), density = 0.0f;
     float pdf_w = state_load_float(paths, stride, BD_SHIFT_DENSITY, item);
-    if (!walk_hit->missed && !walk_hit->scattered) {
+    if (!walk_hit->missed && !walk_hit->scattered && !normal_is_fibre(scene, walk_hit->surface.ng)) {
         density =
             before * pdf_w * solid_angle_to_area(scene, walk_hit->ray.d, walk_hit->surface.ng, walk_hit->distance2);
         state_store_vec3(vertices, stride, point, item, walk_hit->surface.p);

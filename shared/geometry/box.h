@@ -3,6 +3,7 @@
 #ifndef TWINLIGHT_GEOMETRY_BOX_H
 #define TWINLIGHT_GEOMETRY_BOX_H
 
+#include "geometry/curve.h"
 #include "geometry/ray.h"
 #include "layout/scene_view.h"
 
@@ -179,6 +180,18 @@ SHARED_FUNCTION Box quadric_box(__global const Quadric *quadric, uint kind)
     return box_inflate(box, 4.0f * FLOAT_EPSILON * box_largest(&box));
 }
 
+SHARED_FUNCTION Box curve_box(__global const Curve *curve, uint piece)
+{
+    Vec2 interval = curve_interval(piece);
+    Bezier segment = curve_bezier(curve), part = bezier_part(&segment, interval.x, interval.y);
+    Box box = box_empty();
+    for (uint i = 0u; i < 4u; ++i)
+        box_add(&box, part.p[i]);
+    float width = float_max(curve_width(curve, interval.x), curve_width(curve, interval.y));
+    /* Rounding of the control points. */
+    return box_inflate(box, 0.5f * width + 8.0f * FLOAT_EPSILON * box_largest(&box));
+}
+
 SHARED_FUNCTION Box triangle_box(Vec3 a, Vec3 b, Vec3 c)
 {
     Box box = box_empty();
@@ -195,6 +208,8 @@ SHARED_FUNCTION Box primitive_box(const SceneView *scene, uint primitive)
     uint kind = p.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
     if (kind == PRIMITIVE_TRIANGLE)
         return triangle_box(scene->positions[p.a], scene->positions[p.b], scene->positions[p.c]);
+    if (kind == PRIMITIVE_CURVE)
+        return curve_box(&scene->curves[p.a], p.b);
     if (kind != PRIMITIVE_BILINEAR)
         return quadric_box(&scene->quadrics[p.a], kind);
     Box box = box_empty();

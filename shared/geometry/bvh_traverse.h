@@ -227,7 +227,7 @@ SHARED_FUNCTION bool bvh_triangle_query(const SceneView *scene, __global const F
     return triangle_finish(a, b, c, &sheared, query, hit) && primitive_triangle_counts(scene, id, a, b, c, query, hit);
 }
 
-#define BVH_FEATURES_CURVED (FEATURE_BILINEAR | FEATURES_QUADRIC)
+#define BVH_FEATURES_CURVED (FEATURE_BILINEAR | FEATURES_QUADRIC | FEATURE_CURVE)
 
 /* The hit of a primitive's item; *id: the primitive. */
 SHARED_FUNCTION bool bvh_item_query(const SceneView *scene, __global const Float4 *quads, const RayQuery *query,

@@ -5,6 +5,7 @@
 
 #include "geometry/bilinear.h"
 #include "geometry/box.h"
+#include "geometry/curve.h"
 #include "geometry/cylinder.h"
 #include "geometry/disk.h"
 #include "geometry/sphere.h"
@@ -54,6 +55,11 @@ SHARED_FUNCTION bool primitive_is_cylinder(const SceneView *scene, const Primiti
 {
     return SCENE_HAS(scene, FEATURE_CYLINDER) &&
            primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_CYLINDER;
+}
+
+SHARED_FUNCTION bool primitive_is_curve(const SceneView *scene, const Primitive *primitive)
+{
+    return SCENE_HAS(scene, FEATURE_CURVE) && primitive->shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_CURVE;
 }
 
 /* The point of the quadric at o + t d, put back onto it, in object space; *world: in the space around. */
@@ -118,6 +124,8 @@ SHARED_FUNCTION bool primitive_alpha_keeps(const SceneView *scene, const RayQuer
         point.uv = triangle_uv(scene, &shape, primitive, hit->u, hit->v);
     else if (kind == PRIMITIVE_BILINEAR)
         point.uv = patch_uv(scene, &shape, primitive->a, hit->u, hit->v);
+    else if (primitive_is_curve(scene, primitive))
+        point.uv = vec2(hit->u, hit->v);
     else {
         Vec3 world;
         Vec3 p = quadric_point(scene, primitive, query->o, query->d, hit->t, &world);
@@ -156,6 +164,8 @@ SHARED_FUNCTION bool primitive_curved_from(const SceneView *scene, const Primiti
         PatchCorners corners = patch_corners(scene, primitive->a);
         return patch_query(&corners, query, &hit->t, &hit->u, &hit->v);
     }
+    if (primitive_is_curve(scene, primitive))
+        return curve_query(&scene->curves[primitive->a], primitive->b, query, hit);
     if (!SCENE_HAS(scene, FEATURES_QUADRIC))
         return false;
     __global const Quadric *quadric = &scene->quadrics[primitive->a];

@@ -2,6 +2,7 @@ SHARED_FILES += \
 	shared/geometry/bilinear.h \
 	shared/geometry/box.h \
 	shared/geometry/bvh_traverse.h \
+	shared/geometry/curve.h \
 	shared/geometry/cylinder.h \
 	shared/geometry/disk.h \
 	shared/geometry/media_walk.h \

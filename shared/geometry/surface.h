@@ -1,7 +1,9 @@
 /* What lies at a hit: position, normals, tangents and texture coordinates. Orientation follows pbrt-v4:
  * - the geometric normal of a triangle a, b, c is (b-a) x (c-a), that of patches and quadrics dp/du x dp/dv, negated
  *   by SHAPE_FLIP_NORMAL (in the shape's own space: an instance only transforms it);
- * - where a mesh has vertex normals, these decide, and the geometric normal is turned to their side. */
+ * - where a mesh has vertex normals, these decide, and the geometric normal is turned to their side;
+ * - the point at a hit of a curve is on its axis, and has FIBRE_NORMAL times the unit tangent in place of a geometric
+ *   normal (geometry/curve.h). Its shading normal is as in pbrt-v4. */
 #ifndef TWINLIGHT_GEOMETRY_SURFACE_H
 #define TWINLIGHT_GEOMETRY_SURFACE_H
 
@@ -206,7 +208,7 @@ SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *s
     /* the direction of dp/du x dp/dv, which itself loses it near a sphere's poles */
     Vec3 normal = sphere ? p : cylinder ? vec3(p.x, p.y, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
     surface_normals_set(surface, affine_normal(quadric->object_from_world, normal), vec3_splat(0.0f), shape->flags);
-    surface->uv = SCENE_HAS(scene, FEATURE_TEXTURE) ? quadric_uv(scene, primitive, p) : vec2(0.0f, 0.0f);
+    surface->uv = SCENE_HAS(scene, FEATURE_TEXTURE | FEATURE_HAIR) ? quadric_uv(scene, primitive, p) : vec2(0.0f, 0.0f);
     surface->dpdu = surface->dpdv = vec3_splat(0.0f);
     if (!SCENE_HAS(scene, FEATURE_TANGENTS))
         return;
@@ -221,13 +223,46 @@ SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *s
     surface->dpdv = affine_vector(quadric->world_from_object, dpdv);
 }
 
+/* ---- curves ---------------------------------------------------------------------------------------------------- */
+
+/* d: the ray's direction. The shading normal is the part of d across the tangent; on a round curve it is turned about the
+ * tangent by up to a quarter of a turn, towards either side. */
+SHARED_FUNCTION void surface_from_curve(const SceneView *scene, const Shape *shape, const Primitive *primitive, Vec3 d,
+                                        const Hit *hit, Surface *surface)
+{
+    __global const Curve *curve = &scene->curves[primitive->a];
+    Bezier bezier = curve_bezier(curve);
+    surface->p = bezier_blossom(&bezier, hit->u, hit->u, hit->u);
+    surface->uv = vec2(hit->u, hit->v);
+    surface->dpdu = bezier_derivative(&bezier, hit->u);
+    Vec3 tangent = vec3_direction(surface->dpdu, vec3(0.0f, 0.0f, 1.0f));
+    Vec3 across = vec3_direction(vec3_cross(d, tangent), frame_from_normal(tangent).t);
+    Vec3 normal = vec3_cross(tangent, across);
+    if (primitive->c == CURVE_ROUND) {
+        float s, c;
+        Vec3 aside = across;
+        float_sincos(PI * (hit->v - 0.5f), &s, &c);
+        across = vec3_sub(vec3_scale(aside, c), vec3_scale(normal, s));
+        normal = vec3_mad(vec3_scale(normal, c), s, aside);
+    }
+    surface->dpdv = vec3_scale(across, curve_width(curve, hit->u));
+    surface->ns = (shape->flags & SHAPE_FLIP_NORMAL) != 0u ? vec3_negate(normal) : normal;
+    surface->ng = vec3_scale(tangent, FIBRE_NORMAL);
+}
+
 /* ---- all ------------------------------------------------------------------------------------------------------- */
 
-SHARED_FUNCTION void surface_transform(Surface *surface, __global const Instance *instance)
+SHARED_FUNCTION void surface_transform(const SceneView *scene, Surface *surface, __global const Instance *instance)
 {
     surface->p = affine_point(instance->world_from_object, surface->p);
     surface->dpdu = affine_vector(instance->world_from_object, surface->dpdu);
     surface->dpdv = affine_vector(instance->world_from_object, surface->dpdv);
+    if (normal_is_fibre(scene, surface->ng)) {
+        Vec3 tangent = vec3_direction(surface->dpdu, vec3(0.0f, 0.0f, 1.0f));
+        surface->ns = vec3_direction(affine_normal(instance->object_from_world, surface->ns), surface->ns);
+        surface->ng = vec3_scale(tangent, FIBRE_NORMAL);
+        return;
+    }
     surface->ng = vec3_direction(affine_normal(instance->object_from_world, surface->ng), surface->ng);
     surface->ns = vec3_direction(affine_normal(instance->object_from_world, surface->ns), surface->ng);
     surface->ns = vec3_face_forward(surface->ns, surface->ng);
@@ -254,10 +289,12 @@ SHARED_FUNCTION Surface surface_from_hit(const SceneView *scene, const Ray *ray,
         surface_from_triangle(scene, &shape, &primitive, &hit, &surface);
     else if (kind == PRIMITIVE_BILINEAR)
         surface_from_patch(scene, &shape, &primitive, &hit, &surface);
+    else if (primitive_is_curve(scene, &primitive))
+        surface_from_curve(scene, &shape, &primitive, d, &hit, &surface);
     else
         surface_from_quadric(scene, &shape, &primitive, o, d, &hit, &surface);
     if (instanced)
-        surface_transform(&surface, &scene->instances[hit.instance]);
+        surface_transform(scene, &surface, &scene->instances[hit.instance]);
     return surface;
 }
 

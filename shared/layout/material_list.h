@@ -19,7 +19,8 @@
     X(COATED_DIFFUSE, coated_diffuse, "coateddiffuse", TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE)              \
     X(COATED_CONDUCTOR, coated_conductor, "coatedconductor",                                                           \
       TRAIT_COSINE | TRAIT_MICROFACET | TRAIT_INTERFACE | TRAIT_DELTA)                                                 \
-    X(DIFFUSE_TRANSMISSION, diffuse_transmission, "diffusetransmission", TRAIT_COSINE)
+    X(DIFFUSE_TRANSMISSION, diffuse_transmission, "diffusetransmission", TRAIT_COSINE)                                 \
+    X(HAIR, hair, "hair", 0u)
 
 /* All BSDFs, and the materials that are not BSDFs themselves. */
 #define MATERIAL_LIST(X)                                                                                               \

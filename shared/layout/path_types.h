@@ -13,7 +13,7 @@ typedef struct Ray {
 } Ray;
 
 /* The closest intersection is the smallest (t, instance, primitive), in that order. primitive NONE: a miss. u and v:
- * barycentric weights of vertices b and c for a triangle, (u, v) of a patch, 0 for quadrics. */
+ * barycentric weights of vertices b and c for a triangle, (u, v) of a patch or curve, 0 for quadrics. */
 typedef struct Hit {
     float t;
     uint primitive;
@@ -24,10 +24,12 @@ typedef struct Hit {
 /* A point on a surface, in world space. */
 typedef struct Surface {
     Vec3 p;
-    Vec3 ng; /* geometric normal, unit, on the side that pbrt calls outside (an area light shines to this side) */
+    Vec3
+        ng; /* geometric normal, unit, on the side that pbrt calls outside (an area light shines to this side); on a curve
+                FIBRE_NORMAL times the unit tangent (geometry/curve.h) */
     Vec3 ns; /* shading normal, unit; in the hemisphere of ng before bump mapping */
     Vec3 dpdu, dpdv; /* shading tangents; only in scenes with FEATURE_TANGENTS */
-    Vec2 uv; /* texture coordinates; of quadrics only in scenes with FEATURE_TEXTURE */
+    Vec2 uv; /* texture coordinates; of quadrics only in scenes with FEATURE_TEXTURE or FEATURE_HAIR */
     float u, v; /* as in Hit: where on the primitive */
     uint shape;
 } Surface;
@@ -38,7 +40,7 @@ typedef struct Surface {
 #define TRANSPORT_IMPORTANCE 1u
 
 /* A material evaluated at a surface: every texture looked up, mix decided, roughness remapped.
- * kind: MATERIAL_DIFFUSE ... MATERIAL_DIFFUSE_TRANSMISSION. */
+ * kind: MATERIAL_DIFFUSE ... MATERIAL_HAIR, whose members are in bsdf/hair.h. */
 typedef struct Bsdf {
     uint kind;
     uint media; /* on both sides of the vertex (geometry/medium.h); 0 in scenes without media */
@@ -55,6 +57,7 @@ typedef struct Bsdf {
 #define BSDF_REFLECTANCE 0x1u /* conductor given by reflectance at normal incidence */
 #define BSDF_SMOOTH 0x2u /* every lobe is a delta, so lights need not be sampled */
 #define BSDF_ROUGH 0x4u /* the specular lobe is a microfacet lobe, not a delta */
+#define BSDF_FIBRE 0x8u /* of a point on a curve (bsdf/fibre.h) */
 
 #define ALPHA_DELTA 1e-3f
 

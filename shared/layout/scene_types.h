@@ -20,6 +20,7 @@
     X(SPHERE, sphere, "sphere", 0u)                                                                                    \
     X(DISK, disk, "disk", 0u)                                                                                          \
     X(CYLINDER, cylinder, "cylinder", 0u)                                                                              \
+    X(CURVE, curve, "curve", 0u)                                                                                       \
     X(INSTANCE, instance, "instance", 0u)                                                                              \
     X(ALPHA, alpha, "alpha", 0u) /* alpha-textured shapes */                                                           \
     X(NORMALS, normals, "normals", 0u) /* per-vertex normals */                                                        \
@@ -51,6 +52,7 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define FEATURE_SPHERE FEATURE_BIT(SPHERE)
 #define FEATURE_DISK FEATURE_BIT(DISK)
 #define FEATURE_CYLINDER FEATURE_BIT(CYLINDER)
+#define FEATURE_CURVE FEATURE_BIT(CURVE)
 #define FEATURE_INSTANCE FEATURE_BIT(INSTANCE)
 #define FEATURE_ALPHA FEATURE_BIT(ALPHA)
 #define FEATURE_NORMALS FEATURE_BIT(NORMALS)
@@ -64,6 +66,7 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define FEATURE_COATED_DIFFUSE FEATURE_BIT(COATED_DIFFUSE)
 #define FEATURE_COATED_CONDUCTOR FEATURE_BIT(COATED_CONDUCTOR)
 #define FEATURE_DIFFUSE_TRANSMISSION FEATURE_BIT(DIFFUSE_TRANSMISSION)
+#define FEATURE_HAIR FEATURE_BIT(HAIR)
 #define FEATURE_PROCEDURAL FEATURE_BIT(PROCEDURAL)
 #define FEATURE_ROUGH FEATURE_BIT(ROUGH)
 #define FEATURE_AREA_LIGHT FEATURE_BIT(AREA_LIGHT)
@@ -90,9 +93,11 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define PRIMITIVE_SPHERE 2u /* a: index into `quadrics` */
 #define PRIMITIVE_DISK 3u /* a: index into `quadrics` */
 #define PRIMITIVE_CYLINDER 4u /* a: index into `quadrics` */
-#define PRIMITIVE_KINDS 5
+#define PRIMITIVE_CURVE                                                                                                \
+    5u /* a: index into `curves`; b: which of its pieces, as CURVE_PIECE; c: CURVE_FLAT or CURVE_ROUND */
+#define PRIMITIVE_KINDS 6
 
-#define PRIMITIVE_IS_QUADRIC(kind) ((kind) >= PRIMITIVE_SPHERE)
+#define PRIMITIVE_IS_QUADRIC(kind) ((kind) >= PRIMITIVE_SPHERE && (kind) <= PRIMITIVE_CYLINDER)
 
 /* `shape_and_kind`: bits 0-27 the index into `shapes`, bit 28 set when the shape has an alpha texture, bits 29-31 the
  * kind. Kept in the primitive so that the intersection test of an opaque triangle reads no Shape. */
@@ -150,6 +155,24 @@ typedef struct Quadric {
     Vec3 center; /* of a `whole` sphere, in world space */
     float world_radius; /* of a `whole` sphere */
 } Quadric;
+
+/* A cubic Bezier segment with a width that changes linearly with the parameter: 56 bytes. Seen from anywhere it is a band of
+ * that width that faces the ray (geometry/curve.h). */
+typedef struct Curve {
+    Vec3 p[4]; /* control points */
+    float width[2]; /* at parameters 0 and 1 */
+} Curve;
+
+/* A segment is divided into 2^levels primitives over equal intervals of its parameter, whose boxes are smaller. */
+#define CURVE_LEVELS_MAX 6
+#define CURVE_LEVELS_DEFAULT 3 /* as in pbrt-v4 */
+#define CURVE_PIECE_SHIFT 8
+#define CURVE_PIECE(levels, index) ((levels) | (index) << CURVE_PIECE_SHIFT)
+#define CURVE_LEVELS(piece) ((piece)&0xffu)
+#define CURVE_INDEX(piece) ((piece) >> CURVE_PIECE_SHIFT)
+
+#define CURVE_FLAT 0u /* its shading normal faces the ray */
+#define CURVE_ROUND 1u /* pbrt's "cylinder": the normal turns by half a turn across the width */
 
 /* Object 0 is the world's own geometry; the others exist through instances only. */
 typedef struct Object {
@@ -240,10 +263,14 @@ typedef struct FloatParam {
 #define MATERIAL_CONDUCTOR_REFLECTANCE                                                                                 \
     0x2u /* also of a coated one: color0 is reflectance at normal incidence; else eta color0, k color1 */
 
+#define MATERIAL_HAIR_COLOR 0x4u /* hair: color0 is the colour that it is to have */
+#define MATERIAL_HAIR_MELANIN 0x8u /* hair: base_u and base_v are concentrations of eumelanin and pheomelanin */
+
 /* color0: diffuse, coated diffuse, transmission: reflectance. conductor, coated or not: eta or reflectance.
  * color1: conductor: k. diffuse transmission: transmittance. coated diffuse: x the coat's optical thickness along its normal
  * (pbrt's "thickness"), y what scene_finish makes of it: the transmittance of one internal round trip (bsdf/coat.h).
  * roughness_u/v: as given in the scene, of a coat that of its interface, base_u/v that of the conductor below; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
+ * hair: color0: absorption, roughness_u/v: beta_m and beta_n, amount: alpha in degrees.
  * mix: `mix_a` where the random number is >= amount, `mix_b` where it is below. */
 typedef struct Material {
     uint kind;
@@ -421,7 +448,7 @@ typedef struct PixelFilter {
 /* Index of the first word of every array in its buffer. */
 typedef struct SceneLayout {
     /* geometry */
-    uint positions, normals, uvs, primitives, shapes, patches, quadrics, objects, instances;
+    uint positions, normals, uvs, primitives, shapes, patches, quadrics, curves, objects, instances;
     /* tables */
     uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, portals, aims,
         distributions2d, lookup, media;

@@ -18,6 +18,7 @@ typedef struct SceneView {
     __global const Shape *shapes;
     __global const Patch *patches;
     __global const Quadric *quadrics;
+    __global const Curve *curves;
     __global const Object *objects;
     __global const Instance *instances;
     /* tables */
@@ -69,6 +70,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.shapes = (__global const Shape *)(geometry + layout->shapes);
     view.patches = (__global const Patch *)(geometry + layout->patches);
     view.quadrics = (__global const Quadric *)(geometry + layout->quadrics);
+    view.curves = (__global const Curve *)(geometry + layout->curves);
     view.objects = (__global const Object *)(geometry + layout->objects);
     view.instances = (__global const Instance *)(geometry + layout->instances);
     view.materials = (__global const Material *)(tables + layout->materials);

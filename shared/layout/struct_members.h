@@ -44,6 +44,9 @@
     MEMBER(Quadric, whole)                                                                                             \
     MEMBER(Quadric, center)                                                                                            \
     MEMBER(Quadric, world_radius)                                                                                      \
+    STRUCT(Curve)                                                                                                      \
+    MEMBER(Curve, p)                                                                                                   \
+    MEMBER(Curve, width)                                                                                               \
     STRUCT(Object)                                                                                                     \
     MEMBER(Object, first_primitive)                                                                                    \
     MEMBER(Object, primitive_count)                                                                                    \
@@ -163,6 +166,7 @@
     MEMBER(SceneLayout, shapes)                                                                                        \
     MEMBER(SceneLayout, patches)                                                                                       \
     MEMBER(SceneLayout, quadrics)                                                                                      \
+    MEMBER(SceneLayout, curves)                                                                                        \
     MEMBER(SceneLayout, objects)                                                                                       \
     MEMBER(SceneLayout, instances)                                                                                     \
     MEMBER(SceneLayout, materials)                                                                                     \

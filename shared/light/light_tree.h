@@ -5,6 +5,7 @@
 #ifndef TWINLIGHT_LIGHT_LIGHT_TREE_H
 #define TWINLIGHT_LIGHT_LIGHT_TREE_H
 
+#include "geometry/curve.h"
 #include "layout/scene_view.h"
 
 /* The probability of the lamps, if there are distant or infinite lights, too: a share of the estimated irradiance within
@@ -150,7 +151,13 @@ SHARED_FUNCTION bool number_below(ulong *number, float share)
 /* `least` of light_node_importance. */
 SHARED_FUNCTION float light_tree_least(const SceneView *scene, Vec3 n)
 {
-    return SCENE_HAS(scene, FEATURE_SCATTERING) && vec3_is_zero(n) ? 1.0f : 0.0f;
+    return SCENE_HAS(scene, FEATURE_SCATTERING | FEATURE_CURVE) && vec3_is_zero(n) ? 1.0f : 0.0f;
+}
+
+/* The normal for light_node_importance: a curve has none. */
+SHARED_FUNCTION Vec3 light_tree_normal(const SceneView *scene, Vec3 ng)
+{
+    return normal_is_fibre(scene, ng) ? vec3_splat(0.0f) : ng;
 }
 
 /* Chooses a light for p with a number, uniform below 2^64, of which what is left is uniform given the light. *pdf: the
@@ -158,6 +165,7 @@ SHARED_FUNCTION float light_tree_least(const SceneView *scene, Vec3 n)
 SHARED_FUNCTION_APART uint light_tree_choose(const SceneView *scene, Vec3 p, Vec3 n, ulong *number, float *pdf)
 {
     __global const LightNode *node = scene->light_nodes;
+    n = light_tree_normal(scene, n);
     float least = light_tree_least(scene, n);
     *pdf = 1.0f;
     uint link = node->link;
@@ -176,6 +184,7 @@ SHARED_FUNCTION_APART uint light_tree_choose(const SceneView *scene, Vec3 p, Vec
 SHARED_FUNCTION_APART float light_tree_pdf(const SceneView *scene, uint light, Vec3 p, Vec3 n)
 {
     uint leaf = scene->lights[light].leaf, node = 0u;
+    n = light_tree_normal(scene, n);
     float pdf = 1.0f, least = light_tree_least(scene, n);
     if (leaf == NONE)
         return 0.0f;

@@ -28,8 +28,9 @@ SHARED_FUNCTION BsdfValue vertex_eval_light(const SceneView *scene, const Vertex
     Vec3 wi_frame = frame_to_local(vertex->frame, wi);
     BsdfValue value = bsdf_eval(scene, &vertex->bsdf, vertex->wo, wi_frame, TRANSPORT_IMPORTANCE);
     if (!vec3_is_zero(value.f_cos) && !bsdf_is_phase(scene, &vertex->bsdf))
-        value.f_cos = vec3_scale(value.f_cos, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
-                                                             vertex->wo.z, wi_frame.z));
+        value.f_cos =
+            vec3_scale(value.f_cos, adjoint_factor(scene, vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
+                                                   vertex->wo.z, wi_frame.z));
     return value;
 }
 

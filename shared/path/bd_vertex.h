@@ -70,10 +70,11 @@ SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, u
     return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u;
 }
 
-/* |cosine| between the unit direction w and the normal n of a vertex; 1 for a vertex in a medium, whose normal is 0. */
+/* |cosine| between the unit direction w and the normal n of a vertex; 1 for a vertex in a medium, whose normal is 0. A curve
+ * faces w. */
 SHARED_FUNCTION float vertex_cosine(const SceneView *scene, Vec3 w, Vec3 n)
 {
-    float cosine = float_abs(vec3_dot(w, n));
+    float cosine = normal_is_fibre(scene, n) ? fibre_cosine(w, n) : float_abs(vec3_dot(w, n));
     return SCENE_HAS(scene, FEATURE_SCATTERING) && vec3_is_zero(n) ? 1.0f : cosine;
 }
 
@@ -99,9 +100,12 @@ SHARED_FUNCTION float walk_back(const SceneView *scene, Vec3 d, float distance2,
 }
 
 /* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
- * section 5.3.2). Not for vertices in a medium. wo and wi: in world space; cosine_o and cosine_i: their cosines with the shading normal. */
-SHARED_FUNCTION float adjoint_factor(Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
+ * section 5.3.2). Not for vertices in a medium; 1 on a curve, whose BSDF is adjoint as it is (bsdf/fibre.h). wo and wi: in world
+ * space; cosine_o and cosine_i: their cosines with the shading normal. */
+SHARED_FUNCTION float adjoint_factor(const SceneView *scene, Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
 {
+    if (normal_is_fibre(scene, ng))
+        return 1.0f;
     float numerator = float_abs(cosine_o) * float_abs(vec3_dot(wi, ng));
     float denominator = float_abs(vec3_dot(wo, ng)) * float_abs(cosine_i);
     return denominator > 0.0f ? numerator / denominator : 0.0f;

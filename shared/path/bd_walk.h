@@ -123,8 +123,8 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
     Vec3 wi = frame_to_world(vertex->frame, sample.wi);
     step->beta = vec3_mul(vertex->beta, sample.weight);
     if (side == SIDE_LIGHT && !bsdf_is_phase(scene, &vertex->bsdf))
-        step->beta = vec3_scale(step->beta, adjoint_factor(vertex->ng, frame_to_world(vertex->frame, vertex->wo), wi,
-                                                           vertex->wo.z, sample.wi.z));
+        step->beta = vec3_scale(step->beta, adjoint_factor(scene, vertex->ng, frame_to_world(vertex->frame, vertex->wo),
+                                                           wi, vertex->wo.z, sample.wi.z));
     step->roulette_scale = side == SIDE_CAMERA ? roulette.scale * sample.eta * sample.eta : roulette.scale;
     float survival = plays ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
     if (survival > 0.0f) /* rejects NaN */

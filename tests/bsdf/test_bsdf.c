@@ -4,6 +4,7 @@ int main(void)
 {
     Suite *suite = suite_create("bsdf");
     suite_add_tcase(suite, bsdf_formula_tests());
+    suite_add_tcase(suite, bsdf_hair_tests());
     suite_add_tcase(suite, bsdf_identity_tests());
     suite_add_tcase(suite, bsdf_phase_tests());
     suite_add_tcase(suite, bsdf_sampling_tests());

@@ -188,12 +188,12 @@ printf '%s\n' 'Film "rgb"' 'WorldBegin' 'LightSource "point"' 'Material "diffuse
 expect 0 '' info --needs needs.pbrt
 grep -q '^ *2  supported      Shape               sphere$' out && grep -q 'Shape               plymesh$' out
 result 'what a scene uses' $?
-printf '%s\n' 'Film "rgb" "float maxcomponentvalue" 3' 'Camera "realistic"' 'WorldBegin' 'Material "hair"' 'Shape "sphere"' \
-    'Material "hair"' 'Shape "nosuch"' 'Include "missing.pbrt"' 'Shape "sphere" "float radius" -1' \
+printf '%s\n' 'Film "rgb" "float maxcomponentvalue" 3' 'Camera "realistic"' 'WorldBegin' 'Material "measured"' 'Shape "sphere"' \
+    'Material "measured"' 'Shape "nosuch"' 'Include "missing.pbrt"' 'Shape "sphere" "float radius" -1' \
     'TransformTimes 0 1 ActiveTransform EndTime' 'Translate 1 0 0' 'Shape "disk"' 'Shape "disk"' >needs.pbrt
 expect 1 'needs.pbrt needs what is not supported' info --needs needs.pbrt
 for row in '1  approximated   Film                rgb  (needs.pbrt:1:' '1  not supported  Camera              realistic' \
-    '2  not supported  Material            hair  (needs.pbrt:4:1; diffuse' '2  supported      Shape               sphere' \
+    '2  not supported  Material            measured  (needs.pbrt:4:1; diffuse' '2  supported      Shape               sphere' \
     '1  not supported  Shape               nosuch  (needs.pbrt:7:1; use' \
     '1  error          error               cannot read missing.pbrt' \
     '2  not supported  feature             motion (a transform that differs'; do
@@ -207,7 +207,7 @@ printf 'Camera "realistic"\nWorldBegin\nShape "sphere"\n' | "$program" info --ne
 [ $? -eq 1 ]
 result 'a scene that is not supported, without errors, is' $?
 "$program" info --needs --json needs.pbrt >out 2>err
-tr -d ' \n' <out | grep -qF '"kind":"Material","name":"hair","count":2,"status":"notsupported"'
+tr -d ' \n' <out | grep -qF '"kind":"Material","name":"measured","count":2,"status":"notsupported"'
 result 'needs as JSON' $?
 
 # Every error is reported once, in order, but not what follows from another, such as the material that line 5 fails to

@@ -191,12 +191,27 @@ static void make_swarm(TestScene *test)
     test_scene_finish(test);
 }
 
+static void make_curves(TestScene *test)
+{
+    Error error = {0};
+    TestRandom random = {.seed = 13};
+    uint object;
+    test_scene_init(test);
+    ck_assert(scene_object_begin(&test->scene, &object, &error));
+    test_scene_curves_random(test, &random, 20);
+    ck_assert(scene_object_end(&test->scene, &error));
+    add_mesh(test, mesh_star(5, 6, 0.2f, 35), 4.0f, vec3_splat(0.0f));
+    test_scene_curves_random(test, &random, 60);
+    test_scene_instances(test, &random, object, 12, 1.0f);
+    test_scene_finish(test);
+}
+
 const BvhCase BVH_CASES[] = {
     {"star", make_star, 120000, true},         {"huge", make_huge, 140000, false},
     {"slivers", make_slivers, 100000, true},   {"many slivers", make_many_slivers, 50000, false},
     {"coplanar", make_coplanar, 130000, true}, {"far", make_far, 140000, false},
     {"tiny", make_tiny, 90000, true},          {"curved", make_curved, 90000, true},
     {"alpha", make_alpha, 90000, true},        {"instances", make_instances, 70000, true},
-    {"swarm", make_swarm, 50000, false},
+    {"swarm", make_swarm, 50000, false},       {"curves", make_curves, 40000, true},
 };
 const uint BVH_CASE_COUNT = sizeof BVH_CASES / sizeof BVH_CASES[0];

@@ -6,6 +6,7 @@
 
 TCase *geometry_quadrics_tcase(void); /* spheres, disks, patches, surfaces */
 TCase *geometry_cylinder_tcase(void);
+TCase *geometry_curve_tcase(void);
 TCase *geometry_rays_tcase(void); /* Embree against brute force, instances, ties */
 TCase *geometry_backend_tcase(void); /* threads, denormals, counters */
 

@@ -261,6 +261,7 @@ int main(void)
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, geometry_quadrics_tcase());
     suite_add_tcase(suite, geometry_cylinder_tcase());
+    suite_add_tcase(suite, geometry_curve_tcase());
     suite_add_tcase(suite, geometry_rays_tcase());
     suite_add_tcase(suite, geometry_backend_tcase());
     return test_run(suite);

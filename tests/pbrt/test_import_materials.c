@@ -181,6 +181,44 @@ START_TEST(named_and_mixed)
 }
 END_TEST
 
+/* sigma_a counts before reflectance, its older name color, and pigments; pbrt's defaults. */
+START_TEST(hair)
+{
+    Scene scene;
+    Material m = material_of("Material \"hair\"", &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_HAIR);
+    ck_assert_uint_eq(m.flags, MATERIAL_HAIR_MELANIN);
+    ASSERT_FLOAT(m.base_u.value, 1.3f);
+    ASSERT_FLOAT(m.base_v.value, 0.0f);
+    ASSERT_FLOAT(m.eta, 1.55f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.3f);
+    ASSERT_FLOAT(m.roughness_v.value, 0.3f);
+    ASSERT_FLOAT(m.amount.value, 2.0f);
+    scene_destroy(&scene);
+    m = material_of("Material \"hair\" \"float pheomelanin\" 0.4 \"float beta_m\" 0.1 \"float beta_n\" 0.2 "
+                    "\"float alpha\" 3 \"float eta\" 1.4",
+                    &scene);
+    ck_assert_uint_eq(m.flags, MATERIAL_HAIR_MELANIN);
+    ASSERT_FLOAT(m.base_u.value, 0.0f);
+    ASSERT_FLOAT(m.base_v.value, 0.4f);
+    ASSERT_FLOAT(m.roughness_u.value, 0.1f);
+    ASSERT_FLOAT(m.roughness_v.value, 0.2f);
+    ASSERT_FLOAT(m.amount.value, 3.0f);
+    ASSERT_FLOAT(m.eta, 1.4f);
+    scene_destroy(&scene);
+    m = material_of("Material \"hair\" \"rgb color\" [ 0.1 0.2 0.3 ] \"float eumelanin\" 1", &scene);
+    ck_assert_uint_eq(m.flags, MATERIAL_HAIR_COLOR);
+    assert_vec3(m.color0.value, 0.1f, 0.2f, 0.3f, 1e-6f);
+    ck_assert_ptr_nonnull(strstr(import_log(), "the hair's pigments are ignored: its reflectance is given"));
+    scene_destroy(&scene);
+    m = material_of("Material \"hair\" \"rgb sigma_a\" [ 3 2 1 ] \"rgb reflectance\" [ 0.1 0.2 0.3 ]", &scene);
+    ck_assert_uint_eq(m.flags, 0);
+    assert_vec3(m.color0.value, 3, 2, 1, 1e-6f);
+    ck_assert_ptr_nonnull(strstr(import_log(), "are ignored: its sigma_a is given"));
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(scopes)
 {
     Scene scene;
@@ -199,7 +237,7 @@ START_TEST(substitutes)
     static const struct {
         const char *text;
         uint kind;
-    } cases[] = {{"hair", MATERIAL_DIFFUSE}, {"measured", MATERIAL_DIFFUSE}, {"subsurface", MATERIAL_DIFFUSE}};
+    } cases[] = {{"measured", MATERIAL_DIFFUSE}, {"subsurface", MATERIAL_DIFFUSE}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char text[256];
         Scene scene;
@@ -273,6 +311,7 @@ TCase *import_materials_case(void)
     tcase_add_test(tcase, coated_conductor);
     tcase_add_test(tcase, coats_are_shared);
     tcase_add_test(tcase, named_and_mixed);
+    tcase_add_test(tcase, hair);
     tcase_add_test(tcase, scopes);
     tcase_add_test(tcase, substitutes);
     tcase_add_test(tcase, names_are_known_at_the_end);

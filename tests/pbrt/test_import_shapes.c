@@ -1,4 +1,5 @@
 /* Shapes: defaults, orientation, normals, alpha; and objects with their instances. */
+#include "geometry/medium.h"
 #include "pbrt/test_import.h"
 
 #include <string.h>
@@ -188,13 +189,99 @@ START_TEST(interface_shapes_are_invisible)
 }
 END_TEST
 
-START_TEST(unsupported_shapes_are_left_out)
+static Curve curve_of(const Scene *scene, uint i)
+{
+    return ELEMENT(scene, curves, Curve, i);
+}
+
+/* Widths go evenly over all segments; the transform scales them. Bezier segments share their ends. */
+START_TEST(curves)
 {
     Scene scene;
-    import_text_in("WorldBegin Shape \"curve\" \"float width\" 1 Shape \"sphere\"", "", true, &scene);
-    ck_assert_uint_eq(scene.primitives.count, 1);
-    ck_assert_ptr_nonnull(
-        strstr(import_log(), "warning: the shape \"curve\" is not supported; instead: the shape is left out"));
+    import_world("Scale 2 2 2 Shape \"curve\" \"float width0\" 1 \"float width1\" 0 \"point3 P\" "
+                 "[ 0 0 0  1 0 0  2 1 0  3 1 0  4 1 0  5 2 0  6 3 0 ] Shape \"curve\" \"string type\" \"cylinder\" "
+                 "\"integer splitdepth\" 1 \"point3 P\" [ 0 0 0  1 0 0  2 1 0  3 1 0 ] Shape \"curve\" \"point3 P\" "
+                 "[ 1 1 1 1 1 1 1 1 1 1 1 1 ]",
+                 &scene);
+    ck_assert_uint_eq(scene.curves.count, 3);
+    ck_assert_uint_eq(scene.primitives.count, 2 * 8 + 2);
+    ck_assert_uint_eq(scene.counts.degenerate_triangles, 1);
+    Curve first = curve_of(&scene, 0), second = curve_of(&scene, 1), third = curve_of(&scene, 2);
+    assert_vec3(first.p[3], 6, 2, 0, 0.0f);
+    assert_vec3(second.p[0], 6, 2, 0, 0.0f);
+    assert_vec3(second.p[3], 12, 6, 0, 0.0f);
+    ASSERT_NEAR(first.width[0], 2.0f, 1e-6f);
+    ASSERT_NEAR(first.width[1], 1.0f, 1e-6f);
+    ASSERT_NEAR(second.width[0], 1.0f, 1e-6f);
+    ASSERT_FLOAT(second.width[1], 0.0f);
+    ASSERT_NEAR(third.width[1], 2.0f, 1e-6f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* Degree 2 is elevated; B-splines become Bezier segments that meet. */
+START_TEST(curve_bases)
+{
+    Scene scene;
+    import_world("Shape \"curve\" \"integer degree\" 2 \"point3 P\" [ 0 0 0  3 0 0  3 6 0 ]"
+                 "Shape \"curve\" \"string basis\" \"bspline\" \"point3 P\" [ 0 0 0  6 0 0  6 6 0  0 6 0  0 0 6 ]"
+                 "Shape \"curve\" \"string basis\" \"bspline\" \"integer degree\" 2 \"point3 P\" "
+                 "[ 0 0 0  6 0 0  6 6 0  0 6 0 ]",
+                 &scene);
+    ck_assert_uint_eq(scene.curves.count, 5);
+    Curve elevated = curve_of(&scene, 0), a = curve_of(&scene, 1), b = curve_of(&scene, 2), c = curve_of(&scene, 3);
+    assert_vec3(elevated.p[0], 0, 0, 0, 0.0f);
+    assert_vec3(elevated.p[1], 2, 0, 0, 1e-6f);
+    assert_vec3(elevated.p[2], 3, 2, 0, 1e-6f);
+    assert_vec3(elevated.p[3], 3, 6, 0, 0.0f);
+    assert_vec3(a.p[0], 5, 1, 0, 1e-6f);
+    assert_vec3(a.p[1], 6, 2, 0, 1e-6f);
+    assert_vec3(a.p[2], 6, 4, 0, 1e-6f);
+    assert_vec3(a.p[3], 5, 5, 0, 1e-6f);
+    ck_assert(memcmp(&a.p[3], &b.p[0], sizeof b.p[0]) == 0);
+    assert_vec3(c.p[0], 3, 0, 0, 1e-6f);
+    assert_vec3(c.p[1], 5, 0, 0, 1e-6f);
+    assert_vec3(c.p[2], 6, 1, 0, 1e-6f);
+    assert_vec3(c.p[3], 6, 3, 0, 1e-6f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* A ribbon becomes bilinear patches with its normals, and may emit. */
+START_TEST(ribbons)
+{
+    Scene scene;
+    import_world("AreaLightSource \"diffuse\" Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 "
+                 "\"point3 P\" [ 0 0 0  1 0 0  2 0 0  3 0 0 ] \"normal N\" [ 0 0 2  0 2 0 ]",
+                 &scene);
+    ck_assert_uint_eq(scene.curves.count, 0);
+    ck_assert_uint_eq(scene.primitives.count, 16); /* a quarter of a turn */
+    ck_assert_uint_eq(scene.lights.count, 16);
+    ck_assert_uint_eq(scene.patches.count, 16);
+    ck_assert_uint_eq(ELEMENT(&scene, shapes, Shape, 0).flags & (SHAPE_HAS_UV | SHAPE_HAS_NORMALS),
+                      SHAPE_HAS_UV | SHAPE_HAS_NORMALS);
+    double area = 0.0;
+    for (uint i = 0; i < 16; ++i)
+        area += (double)ELEMENT(&scene, lights, Light, i).area;
+    ck_assert_msg(fabs(area - 1.5) < 0.02, "area %g", area);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* Curves emit nothing and do not separate media. */
+START_TEST(curves_without_sides)
+{
+    Scene scene;
+    const char *text = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" WorldBegin AreaLightSource \"diffuse\" "
+                       "MediumInterface \"fog\" \"\" Shape \"curve\" \"point3 P\" [ 0 0 0  1 0 0  2 0 0  3 0 0 ] "
+                       "\"normal N\" [ 0 0 1 0 0 1 ]";
+    import_text_in(text, "", true, &scene);
+    ck_assert_uint_eq(scene.curves.count, 1);
+    ck_assert(!(ELEMENT(&scene, shapes, Shape, 0).flags & MEDIA_BITS));
+    const char *log = import_log();
+    ck_assert_ptr_nonnull(strstr(log, "an area light on a curve is not supported; instead: it emits no light"));
+    ck_assert_ptr_nonnull(strstr(log, "the curve does not separate media: only a ribbon can"));
+    ck_assert_ptr_nonnull(strstr(log, "the normals are ignored: only ribbons have normals"));
     scene_destroy(&scene);
 }
 END_TEST
@@ -213,7 +300,10 @@ TCase *import_shapes_case(void)
     tcase_add_test(tcase, flat_transform_without_normals);
     tcase_add_test(tcase, alpha);
     tcase_add_test(tcase, interface_shapes_are_invisible);
-    tcase_add_test(tcase, unsupported_shapes_are_left_out);
+    tcase_add_test(tcase, curves);
+    tcase_add_test(tcase, curve_bases);
+    tcase_add_test(tcase, ribbons);
+    tcase_add_test(tcase, curves_without_sides);
     return tcase;
 }
 

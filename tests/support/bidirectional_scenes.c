@@ -11,6 +11,14 @@
 #define HOLES "Texture \"holes\" \"float\" \"checkerboard\" \"float tex1\" 1 \"float tex2\" 0.4 \"float uscale\" 3\n"
 #define ROUGH(name, parameters) "Material \"" name "\" " parameters " \"bool remaproughness\" false\n"
 
+#define STRAND(type, points)                                                                                           \
+    "Shape \"curve\" \"string type\" \"" type "\" \"float width\" 0.12 \"float width1\" 0.06 \"point3 P\" [ " points   \
+    " ]\n"
+#define STRANDS(type)                                                                                                  \
+    STRAND(type, "-1.4 -0.6 0.3  -0.5 0.9 0  0.4 -0.5 -0.2  1.3 0.6 0.2")                                              \
+    STRAND(type, "-1.2 0.7 -0.4  -0.4 0.2 0.2  0.3 0.8 0.4  1.2 -0.4 -0.3")                                            \
+    STRAND(type, "0 -1 0  0.4 -0.3 0.3  -0.4 0.5 -0.1  0.1 1.4 0.2")
+
 const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
     {"diffuse", BD_ROOM BD_BALL, SUPPORT_ALL, 5, 4},
     {"glossy",
@@ -137,6 +145,18 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      BD_BEGIN "LightSource \"infinite\" \"rgb L\" [ 0.3 0.4 0.5 ]\n" BD_GREY BD_FLOOR
               "Material \"dielectric\" \"float eta\" 1.5\n" BD_BALL,
      SUPPORT_SUM_ONLY, 5, 2},
+    {"hair", BD_ROOM "Material \"hair\" \"rgb sigma_a\" [ 0.1 0.2 0.4 ] \"float beta_n\" 0.6\n" STRANDS("flat"),
+     SUPPORT_ALL, 4, 3},
+    {"curves",
+     BD_ROOM ROUGH("coateddiffuse", "\"rgb reflectance\" [ 0.8 0.5 0.3 ] \"float roughness\" 0.4") STRANDS("cylinder")
+         AT(0.2, 0.3, -1,
+            "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.2 0.3 0.4 ] \"rgb transmittance\" [ 0.5 0.4 0.3 "
+            "]\n" STRANDS("flat")),
+     SUPPORT_ALL, 4, 3},
+    {"hair on a sphere",
+     BD_ROOM
+     "Material \"hair\" \"float beta_m\" 0.6 \"float beta_n\" 0.8 \"rgb reflectance\" [ 0.7 0.5 0.3 ]\n" BD_BALL,
+     SUPPORT_ALL, 4, 3},
     /* Between vertices in a medium 1 / distance^2 has no finite variance, so only the sums of strategies are compared. */
     {"ink in glass and behind an interface",
      "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.4 0.8 1.6 ] \"float sigma_s\" 0\n"

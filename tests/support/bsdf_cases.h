@@ -22,6 +22,7 @@ TCase *bsdf_coated_tests(void);
 TCase *bsdf_coated_conductor_tests(void);
 TCase *bsdf_energy_tests(void);
 TCase *bsdf_formula_tests(void);
+TCase *bsdf_hair_tests(void);
 TCase *bsdf_identity_tests(void);
 TCase *bsdf_inverse_tests(void);
 TCase *bsdf_phase_tests(void);

@@ -200,6 +200,28 @@ void test_scene_quadrics(TestScene *test, TestRandom *random, uint count)
     }
 }
 
+void test_scene_curves(TestScene *test, const Curve *curves, size_t count, uint levels, uint type)
+{
+    Error error = {0};
+    const CurveData data = {.curves = curves, .count = count, .levels = levels, .type = type};
+    ck_assert_msg(scene_add_curves(&test->scene, &data, shape_plain(0), &error), "%s", error.message);
+}
+
+void test_scene_curves_random(TestScene *test, TestRandom *random, uint count)
+{
+    for (uint i = 0; i < count; ++i) {
+        Vec3 center = vec3_scale(random_direction(random), 0.8f * random_unit(random));
+        Curve curve = {.width = {random_between(random, 0.01f, 0.1f), i % 3 == 0 ? 0.0f : 0.05f}};
+        for (uint k = 0; k < 4; ++k)
+            curve.p[k] = vec3_mad(center, random_between(random, 0.2f, 1.0f), random_direction(random));
+        if (i % 7 == 0)
+            curve.p[1] = curve.p[2];
+        if (i % 11 == 0)
+            curve.p[1] = curve.p[0];
+        test_scene_curves(test, &curve, 1, i % 4, i % 2 == 0 ? CURVE_FLAT : CURVE_ROUND);
+    }
+}
+
 void test_scene_instances(TestScene *test, TestRandom *random, uint object, uint count, float size)
 {
     Error error = {0};

@@ -54,6 +54,10 @@ void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const doubl
 /* Full and clipped spheres, disks and cylinders, `count` at random positions in the unit ball; instances of an object in a larger
  * one, with scales below `size`: some mirrored, all stretched. */
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count);
+/* Curves in 2^levels pieces each. */
+void test_scene_curves(TestScene *test, const Curve *curves, size_t count, uint levels, uint type);
+/* `count` at random places in the unit ball, some with loops and cusps, of both types. */
+void test_scene_curves_random(TestScene *test, TestRandom *random, uint count);
 void test_scene_instances(TestScene *test, TestRandom *random, uint object, uint count, float size);
 void test_scene_finish(TestScene *test);
 void test_scene_destroy(TestScene *test);
