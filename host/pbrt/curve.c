@@ -169,7 +169,7 @@ bool curve_read(PbrtImport *im, ParamList *list, const ShapeContext *context)
     CurveParams params = {0};
     if (!params_read(im, list, &params))
         return false;
-    Curve *segments = malloc(params.segment_count * sizeof *segments);
+    Curve *segments = malloc((params.segment_count + 1) * sizeof *segments);
     if (!segments)
         return error_memory(im->error, params.segment_count * sizeof *segments, "a curve");
     for (size_t i = 0; i < params.segment_count; ++i)

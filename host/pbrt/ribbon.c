@@ -72,10 +72,14 @@ static int segment_levels(const Curve *s, const float *normals)
 /* Point and derivative of the segment. */
 static void segment_point(const Curve *s, double u, double p[3], double d[3])
 {
-    const float *c = &s->p[0].x;
-    double w = 1.0 - u;
+    double w = 1.0 - u, c[4][3];
+    for (int k = 0; k < 4; ++k) {
+        c[k][0] = (double)s->p[k].x;
+        c[k][1] = (double)s->p[k].y;
+        c[k][2] = (double)s->p[k].z;
+    }
     for (int i = 0; i < 3; ++i) {
-        double a = (double)c[i], b = (double)c[3 + i], e = (double)c[6 + i], f = (double)c[9 + i];
+        double a = c[0][i], b = c[1][i], e = c[2][i], f = c[3][i];
         p[i] = w * w * w * a + 3.0 * w * w * u * b + 3.0 * w * u * u * e + u * u * u * f;
         d[i] = w * w * (b - a) + 2.0 * w * u * (e - b) + u * u * (f - e);
         if (w * w * fabs(b - a) + w * u * fabs(e - b) + u * u * fabs(f - e) == 0.0)
@@ -131,15 +135,16 @@ static void ribbon_destroy(Ribbon *ribbon)
 
 static bool ribbon_create(Ribbon *ribbon, size_t patches, size_t segments, Error *error)
 {
-    size_t vertices = 2 * (patches + segments);
+    size_t vertices = 2 * (patches + segments) + 1;
     *ribbon = (Ribbon){.positions = malloc(3 * vertices * sizeof(float)),
                        .normals = malloc(3 * vertices * sizeof(float)),
                        .uvs = malloc(2 * vertices * sizeof(float)),
-                       .indices = malloc(4 * patches * sizeof(uint))};
+                       .indices = malloc((4 * patches + 1) * sizeof(uint))};
     if (ribbon->positions && ribbon->normals && ribbon->uvs && ribbon->indices)
         return true;
     ribbon_destroy(ribbon);
-    return error_memory(error, 8 * vertices * sizeof(float), "a ribbon");
+    error_memory(error, 8 * vertices * sizeof(float), "a ribbon");
+    return false;
 }
 
 bool ribbon_add(PbrtImport *im, const ShapeContext *context, const Curve *segments, size_t count, const float *normals)

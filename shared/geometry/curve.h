@@ -103,6 +103,7 @@ SHARED_FUNCTION CurveRay curve_ray(const RayQuery *query, Vec3 chord)
     float length = vec3_length(d);
     ray.length = length * size;
     ray.end = query->t_max * ray.length;
+    ray.rounding = 0.0f;
     ray.axes.n = vec3_scale(d, 1.0f / length);
     float along = vec3_max_abs(chord);
     Vec3 c = along > 0.0f ? vec3(chord.x / along, chord.y / along, chord.z / along) : chord;

@@ -83,7 +83,7 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 /* All but those that few scenes have: the CPU's kernels are also compiled for scenes that have no others. */
 #define FEATURES_PLAIN                                                                                                 \
     (~(FEATURE_CYLINDER | FEATURE_COATED_CONDUCTOR | FEATURE_PROCEDURAL | FEATURE_PORTAL | FEATURE_MEDIUM |            \
-       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION))
+       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION | FEATURE_CURVE | FEATURE_HAIR))
 #define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */

@@ -271,6 +271,38 @@ START_TEST(test_absorption)
 }
 END_TEST
 
+/* What a material makes of its parameters: colours, bounds of roughness, and h from v. */
+START_TEST(test_material)
+{
+    TestScene scene;
+    TexturePoint point = {.uv = {0.1f, 0.75f}};
+    Material m = {.kind = MATERIAL_HAIR,
+                  .flags = MATERIAL_HAIR_MELANIN,
+                  .color0 = {{0.2f, 0.4f, 0.6f}, NONE},
+                  .roughness_u = {0.001f, NONE},
+                  .roughness_v = {0.4f, NONE},
+                  .amount = {2.0f, NONE},
+                  .base_u = {0.3f, NONE},
+                  .base_v = {-1.0f, NONE},
+                  .eta = 1.55f};
+    test_scene_init(&scene);
+    scene.view.materials = &m;
+    Bsdf bsdf = material_bsdf(&scene.view, 0, &point);
+    REQUIRE(bsdf.kind == MATERIAL_HAIR && bsdf.eta == 1.55f && bsdf.color1.x == 0.5f);
+    REQUIRE(bsdf.alpha_x == HAIR_BETA_MIN && bsdf.alpha_y == 0.4f);
+    REQUIRE(fabsf(bsdf.color1.y - 2.0f * (float)(TEST_PI / 180.0)) < 1e-7f);
+    REQUIRE(fabsf(bsdf.color0.x - 0.3f * 0.419f) < 1e-6f && fabsf(bsdf.color0.z - 0.3f * 1.37f) < 1e-6f);
+    m.flags = MATERIAL_HAIR_COLOR;
+    bsdf = material_bsdf(&scene.view, 0, &point);
+    REQUIRE(bsdf.color0.y == hair_absorption(0.4f, 0.4f));
+    m.flags = 0u;
+    m.color0.value = vec3(-1.0f, 2.0f, 3.0f);
+    bsdf = material_bsdf(&scene.view, 0, &point);
+    REQUIRE(bsdf.color0.x == 0.0f && bsdf.color0.y == 2.0f && bsdf.color0.z == 3.0f);
+    test_scene_destroy(&scene);
+}
+END_TEST
+
 /* ---- paths from the light ------------------------------------------------------------------------------------------ */
 
 /* What a path from the light finds at a surface is what one from the camera finds. */
@@ -289,6 +321,29 @@ START_TEST(test_adjoint_on_surfaces)
         REQUIRE(fabsf(from_light.f_cos.x - scale * from_camera.f_cos.x) <= 1e-4f * from_light.f_cos.x);
         REQUIRE(from_light.pdf_w == from_camera.pdf_rev_w && from_light.pdf_rev_w == from_camera.pdf_w);
     }
+    test_scene_destroy(&scene);
+}
+END_TEST
+
+/* Paths from the light draw by almost what they find: mirrored hair scatters as hair does, seen the other way. */
+START_TEST(test_samples_from_the_light)
+{
+    TestScene scene;
+    TestRandom random = {925};
+    int near = 0, all = 0;
+    test_scene_init(&scene);
+    for (int i = 0; i < 20000; ++i) {
+        BsdfSample sample;
+        Bsdf bsdf = hair_bsdf(0.3f, 0.3f, i % 2 == 0 ? 0.6f : -0.6f, 0.3f, 0u);
+        Vec3 wo = random_direction(&random, 2.0 * random_double(&random) - 1.0);
+        float u_lobe = random_float24(&random);
+        if (!bsdf_sample(&scene.view, &bsdf, wo, u_lobe, random_vec2(&random), TRANSPORT_IMPORTANCE, &sample))
+            continue;
+        float weight = sample.weight.x * fabsf(wo.z / sample.wi.z);
+        ++all;
+        near += weight > 0.3f && weight < 2.0f;
+    }
+    REQUIRE_MSG(near > 0.8 * all, "%d of %d samples weigh 0.3 to 2", near, all);
     test_scene_destroy(&scene);
 }
 END_TEST
@@ -346,7 +401,9 @@ TCase *bsdf_hair_tests(void)
     tcase_add_test(tcase, test_samples);
     tcase_add_test(tcase, test_energy);
     tcase_add_test(tcase, test_absorption);
+    tcase_add_test(tcase, test_material);
     tcase_add_test(tcase, test_adjoint_on_surfaces);
+    tcase_add_test(tcase, test_samples_from_the_light);
     tcase_add_test(tcase, test_adjoint_on_curves);
     return tcase;
 }

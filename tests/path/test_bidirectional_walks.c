@@ -87,6 +87,14 @@ static Vec3 path_direction(const RealPath *path, uint i, uint j, float *distance
     return j < i ? path->ways[i] : vec3_negate(path->ways[j]);
 }
 
+/* The cosine of a vertex for the direction w: a curve faces w, and ng is twice its tangent. */
+static float cosine_at(const Walks *walks, Vec3 w, Vec3 ng)
+{
+    if (normal_is_fibre(&walks->view, ng))
+        return 0.5f * vec3_length(vec3_cross(w, ng));
+    return vec3_is_zero(ng) ? 1.0f : float_abs(vec3_dot(w, ng));
+}
+
 /* Density with which the vertex scatters from direction `back` to `on`. The frame of a vertex on a curve faces the walk that
  * made it: what a walk the other way draws is the reverse of what that one does. */
 static float vertex_density(const Walks *walks, const Vertex *vertex, Vec3 back, Vec3 on, uint transport)
@@ -107,7 +115,7 @@ static float scattered(const Walks *walks, const RealPath *path, uint from, uint
     float pdf = vertex_density(walks, vertex, back, on, transport);
     if (to == path->k && path->infinite)
         return pdf;
-    return pdf * solid_angle_to_area(&walks->view, on, path->vertices[to].ng, distance2);
+    return pdf * cosine_at(walks, on, path->vertices[to].ng) / distance2;
 }
 
 /* Density of x_{k-1} with respect to area when emitted by the light. */
@@ -117,10 +125,10 @@ static float emitted(const Walks *walks, const RealPath *path)
     Vec3 w = path_direction(path, path->k - 1, path->k, &distance2), ng = path->vertices[path->k - 1].ng;
     if (path->infinite)
         return light_aimed_pdf_disc(&walks->view, path->light, path->vertices[path->k - 1].p, vec3_negate(w)) *
-               vertex_cosine(&walks->view, w, ng);
+               cosine_at(walks, w, ng);
     return light_aimed_pdf_w(&walks->view, path->light, path->vertices[path->k].p, path->vertices[path->k].ng,
                              vec3_negate(w)) *
-           solid_angle_to_area(&walks->view, w, ng, distance2);
+           cosine_at(walks, w, ng) / distance2;
 }
 
 /* Density of x_k as sampled on the light. */
@@ -143,7 +151,7 @@ static void path_densities(const Walks *walks, RealPath *path)
     float distance2;
     Vec3 from_lens = path_direction(path, 0, 1, &distance2);
     d->camera[1] = camera_pdf(&walks->frame, path->vertices[0].p, from_lens, float_sqrt(distance2)) *
-                   vertex_cosine(&walks->view, from_lens, path->vertices[1].ng);
+                   cosine_at(walks, from_lens, path->vertices[1].ng);
     for (uint i = 2; i <= k; ++i)
         if (!d->delta[i - 1])
             d->camera[i] = scattered(walks, path, i - 2, i - 1, i, TRANSPORT_RADIANCE);

@@ -206,6 +206,9 @@ START_TEST(curves)
     ck_assert_uint_eq(scene.curves.count, 3);
     ck_assert_uint_eq(scene.primitives.count, 2 * 8 + 2);
     ck_assert_uint_eq(scene.counts.degenerate_triangles, 1);
+    ck_assert_uint_eq(ELEMENT(&scene, primitives, Primitive, 11).a, 1);
+    ck_assert_uint_eq(ELEMENT(&scene, primitives, Primitive, 11).b, CURVE_PIECE(3u, 3u));
+    ck_assert_uint_eq(ELEMENT(&scene, primitives, Primitive, 17).c, CURVE_ROUND);
     Curve first = curve_of(&scene, 0), second = curve_of(&scene, 1), third = curve_of(&scene, 2);
     assert_vec3(first.p[3], 6, 2, 0, 0.0f);
     assert_vec3(second.p[0], 6, 2, 0, 0.0f);
@@ -260,6 +263,10 @@ START_TEST(ribbons)
     ck_assert_uint_eq(scene.patches.count, 16);
     ck_assert_uint_eq(ELEMENT(&scene, shapes, Shape, 0).flags & (SHAPE_HAS_UV | SHAPE_HAS_NORMALS),
                       SHAPE_HAS_UV | SHAPE_HAS_NORMALS);
+    Vec3 corner = ELEMENT(&scene, positions, Vec3, 0), normal = ELEMENT(&scene, normals, Vec3, 0);
+    assert_vec3(corner, 0, -0.25f, 0, 1e-6f);
+    assert_vec3(normal, 0, 0, 1, 1e-6f);
+    ck_assert(ELEMENT(&scene, uvs, Vec2, 0).x == 0.0f && ELEMENT(&scene, uvs, Vec2, 0).y == 1.0f);
     double area = 0.0;
     for (uint i = 0; i < 16; ++i)
         area += (double)ELEMENT(&scene, lights, Light, i).area;
