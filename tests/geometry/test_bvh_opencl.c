@@ -153,7 +153,7 @@ static void walks_compare(const BvhCase *entry, bool specialised)
 }
 
 /* Building a program takes longer than running it; together these scenes need every branch of the kernels. */
-static const char *const CASES[] = {"huge", "coplanar", "instances"};
+static const char *const CASES[] = {"huge", "coplanar", "instances", "curves"};
 #define CASE_COUNT ((int)(sizeof CASES / sizeof CASES[0]))
 
 static const BvhCase *case_named(const char *name)
