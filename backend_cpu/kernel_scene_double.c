@@ -187,6 +187,7 @@ static bool scene_widen(KernelScene *out, const BackendScene *scene, Error *erro
                                   {STRUCT_Vec3, from.normals, &to->normals},
                                   {STRUCT_Vec2, from.uvs, &to->uvs},
                                   {STRUCT_Primitive, from.primitives, &to->primitives},
+                                  {STRUCT_Curve, from.curves, &to->curves},
                                   {STRUCT_Shape, from.shapes, &to->shapes},
                                   {STRUCT_Patch, from.patches, &to->patches},
                                   {STRUCT_Quadric, from.quadrics, &to->quadrics},
