@@ -204,7 +204,8 @@ static bool scene_widen(KernelScene *out, const BackendScene *scene, Error *erro
                                 {STRUCT_Aim, from.aims, &to->aims},
                                 {STRUCT_Distribution2D, from.distributions2d, &to->distributions2d},
                                 {MEMBER_FLOATS, from.lookup, &to->lookup},
-                                {STRUCT_Medium, from.media, &to->media}};
+                                {STRUCT_Medium, from.media, &to->media},
+                                {STRUCT_MediumGrid, from.grids, &to->grids}};
     struct_widen(STRUCT_FrameParams, (const uint *)(const void *)scene->frame, (char *)&out->frame);
     out->geometry = arrays_widen(geometry, sizeof geometry / sizeof *geometry, scene->geometry, scene->geometry_words,
                                  &out->view.geometry_words, error);

@@ -14,6 +14,7 @@ dist_scenes_DATA = \
 	scenes/relief.pbrt \
 	scenes/ring.pbrt \
 	scenes/showcase.pbrt \
+	scenes/smoke.pbrt \
 	scenes/tumbler.pbrt \
 	scenes/windows.pbrt
 scenepartsdir = $(scenesdir)/parts
@@ -33,6 +34,7 @@ dist_sceneparts_DATA = \
 	scenes/parts/jar.ply \
 	scenes/parts/lemon.ply \
 	scenes/parts/pane.ply \
+	scenes/parts/smoke.pbrt \
 	scenes/parts/sun.exr \
 	scenes/parts/torus.ply \
 	scenes/parts/tumbler-water.ply \
@@ -41,14 +43,17 @@ dist_sceneparts_DATA = \
 	scenes/parts/vase.ply
 
 # `make scene-parts` makes scenes/parts/ in the source folder again; `make scene-references` the pictures to compare with.
-EXTRA_PROGRAMS += scenes/average_images scenes/make_hair scenes/make_parts
+EXTRA_PROGRAMS += scenes/average_images scenes/make_hair scenes/make_parts scenes/make_smoke
 scenes_average_images_SOURCES = scenes/average_images.c
 scenes_average_images_LDADD = libtwinlight_host.la -lm
 scenes_make_hair_SOURCES = scenes/make_hair.c
 scenes_make_hair_LDADD = -lm
 scenes_make_parts_SOURCES = scenes/make_parts.c
 scenes_make_parts_LDADD = libtwinlight_host.la -lm
-CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_hair$(EXEEXT) scenes/make_parts$(EXEEXT)
+scenes_make_smoke_SOURCES = scenes/make_smoke.c
+scenes_make_smoke_LDADD = -lm
+CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_hair$(EXEEXT) scenes/make_parts$(EXEEXT) \
+	scenes/make_smoke$(EXEEXT)
 EXTRA_DIST += \
 	scenes/make_references.sh \
 	scenes/reference/cornell.exr \
@@ -60,9 +65,10 @@ EXTRA_DIST += \
 	scenes/reference/windows.exr
 
 .PHONY: scene-parts scene-references
-scene-parts: scenes/make_parts$(EXEEXT) scenes/make_hair$(EXEEXT)
+scene-parts: scenes/make_parts$(EXEEXT) scenes/make_hair$(EXEEXT) scenes/make_smoke$(EXEEXT)
 	./scenes/make_parts$(EXEEXT) $(srcdir)/scenes
 	./scenes/make_hair$(EXEEXT) | gzip -9n >$(srcdir)/scenes/parts/hair.pbrt.gz
+	./scenes/make_smoke$(EXEEXT) $(srcdir)/scenes
 scene-references: twinlight$(EXEEXT) scenes/average_images$(EXEEXT)
 	$(srcdir)/scenes/make_references.sh ./twinlight$(EXEEXT) ./scenes/average_images$(EXEEXT) $(srcdir)/scenes/reference
 

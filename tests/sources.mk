@@ -30,6 +30,7 @@ check_PROGRAMS += \
 	tests/test_layers \
 	tests/test_light \
 	tests/test_math \
+	tests/test_medium_grid \
 	tests/test_metrics \
 	tests/test_mlt_option \
 	tests/test_options \
@@ -151,6 +152,7 @@ tests_test_compare_SOURCES = tests/compare/test_compare.c
 tests_test_error_SOURCES = tests/render/test_error.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
+tests_test_medium_grid_SOURCES = tests/geometry/test_medium_grid.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
 tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c
 tests_test_options_SOURCES = tests/command/test_options.c
@@ -248,6 +250,7 @@ tests_test_import_SOURCES = tests/pbrt/test_import.c \
 	tests/pbrt/test_import_limits.c \
 	tests/pbrt/test_import_materials.c \
 	tests/pbrt/test_import_media.c \
+	tests/pbrt/test_import_nanovdb.c \
 	tests/pbrt/test_import_params.c \
 	tests/pbrt/test_import_ply.c \
 	tests/pbrt/test_import_settings.c \

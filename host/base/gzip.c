@@ -37,11 +37,12 @@ static bool piece_inflate(z_stream *stream, size_t *left, size_t piece, Array *o
     return true;
 }
 
-bool gzip_inflate(const char *data, size_t size, size_t limit, Array *out, Error *error)
+/* window: inflateInit2's, which tells the format as well. */
+static bool data_inflate(const char *data, size_t size, int window, size_t limit, Array *out, Error *error)
 {
     z_stream stream = {.next_in = (Bytef *)data};
     size_t left = size, piece = size < ((size_t)1 << 20) ? PIECE_SMALL : PIECE_LARGE;
-    if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK)
+    if (inflateInit2(&stream, window) != Z_OK)
         return error_memory(error, 65536, "zlib");
     int status = Z_OK;
     bool good = true;
@@ -55,4 +56,14 @@ bool gzip_inflate(const char *data, size_t size, size_t limit, Array *out, Error
         return good;
     error_set(error, "the gzip'd data are damaged or incomplete");
     return error_fix(error, "make the file again");
+}
+
+bool gzip_inflate(const char *data, size_t size, size_t limit, Array *out, Error *error)
+{
+    return data_inflate(data, size, 16 + MAX_WBITS, limit, out, error);
+}
+
+bool zlib_inflate(const char *data, size_t size, size_t limit, Array *out, Error *error)
+{
+    return data_inflate(data, size, MAX_WBITS, limit, out, error);
 }

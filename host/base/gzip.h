@@ -12,4 +12,7 @@ bool gzip_is(const char *data, size_t size);
  * file could take all memory. */
 bool gzip_inflate(const char *data, size_t size, size_t limit, Array *out, Error *error);
 
+/* The same for data in zlib's own format. */
+bool zlib_inflate(const char *data, size_t size, size_t limit, Array *out, Error *error);
+
 #endif

@@ -355,8 +355,9 @@ static bool directive_run(PbrtImport *im, const Directive *directive)
     if (directive->plain)
         return directive->plain(im);
     const char *kind;
+    bool names_kind = directive->named != import_named_medium; /* whose type is a parameter */
     return parser_string(im, "a quoted name", &kind, NULL) && parser_params(im) &&
-           import_use(im, directive->name, kind) && directive->named(im, kind);
+           (!names_kind || import_use(im, directive->name, kind)) && directive->named(im, kind);
 }
 
 static const Directive *directive_find(const Token *token)

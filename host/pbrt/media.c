@@ -1,4 +1,6 @@
 /* MakeNamedMedium, and the media that MediumInterface names. */
+#include "pbrt/media.h"
+
 #include "pbrt/errors.h"
 #include "pbrt/media_presets.h"
 #include "pbrt/readers.h"
@@ -38,10 +40,7 @@ bool media_check(PbrtImport *im)
     return true;
 }
 
-/* ---- homogeneous media ------------------------------------------------------------------------------------------- */
-
-/* pbrt's default, in both coefficients: its preset for whole milk. */
-#define DEFAULT_PRESET "Wholemilk"
+/* ---- coefficients ------------------------------------------------------------------------------------------------ */
 
 static const MediumPreset *preset_find(const char *name)
 {
@@ -78,16 +77,15 @@ static void coefficient_read(PbrtImport *im, ParamList *list, const char *name, 
     }
 }
 
-/* scale * coefficients; an error if that overflows a float. */
-static Vec3 coefficients_scale(ParamList *list, const float c[3], double scale)
+Vec3 medium_coefficients_scale(ParamList *list, Vec3 c, double scale)
 {
-    Vec3 scaled = vec3((float)((double)c[0] * scale), (float)((double)c[1] * scale), (float)((double)c[2] * scale));
+    Vec3 scaled = vec3((float)((double)c.x * scale), (float)((double)c.y * scale), (float)((double)c.z * scale));
     if (!vec3_finite(scaled))
         param_error(list, "scale", "the coefficients of %s overflow", list->owner);
     return scaled;
 }
 
-static float positive_read(ParamList *list, const char *name)
+float medium_factor_read(ParamList *list, const char *name)
 {
     float value = param_float(list, name, 1.0f);
     if (value < 0.0f)
@@ -95,46 +93,77 @@ static float positive_read(ParamList *list, const char *name)
     return value;
 }
 
-static void homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
+void medium_g_read(ParamList *list, Medium *medium)
 {
-    const MediumPreset *preset = preset_read(im, list), *milk = preset_find(DEFAULT_PRESET);
-    float absorption[3], scattering[3], emission[3] = {0.0f, 0.0f, 0.0f};
-    memcpy(absorption, milk->absorption, sizeof absorption);
-    memcpy(scattering, milk->scattering, sizeof scattering);
-    coefficient_read(im, list, "sigma_a", absorption);
-    coefficient_read(im, list, "sigma_s", scattering);
-    value_color(im, list, "Le", COLOR_ILLUMINANT, emission);
-    double scale = (double)positive_read(list, "scale"), brightness = (double)positive_read(list, "Lescale");
     medium->g = param_float(list, "g", 0.0f);
     if (!(medium->g > -1.0f && medium->g < 1.0f))
         param_error(list, "g", "\"g\" of a medium must be above -1 and below 1");
-    Vec3 absorbed = coefficients_scale(list, preset ? preset->absorption : absorption, scale);
-    medium->scattering = coefficients_scale(list, preset ? preset->scattering : scattering, scale);
-    medium->extinction = vec3_add(absorbed, medium->scattering);
-    medium->emission = vec3_mul(absorbed, vec3_scale(vec3(emission[0], emission[1], emission[2]), (float)brightness));
-    if (!vec3_finite(medium->extinction) || !vec3_finite(medium->emission))
-        param_error(list, "scale", "the coefficients of %s overflow", list->owner);
 }
+
+static Vec3 vec3_of(const float v[3])
+{
+    return vec3(v[0], v[1], v[2]);
+}
+
+void medium_coefficients_read(PbrtImport *im, ParamList *list, const float fallback[2][3], Medium *medium,
+                              Vec3 *absorption)
+{
+    const MediumPreset *preset = preset_read(im, list);
+    float absorbed[3], scattered[3];
+    memcpy(absorbed, fallback[0], sizeof absorbed);
+    memcpy(scattered, fallback[1], sizeof scattered);
+    coefficient_read(im, list, "sigma_a", absorbed);
+    coefficient_read(im, list, "sigma_s", scattered);
+    double scale = (double)medium_factor_read(list, "scale");
+    medium_g_read(list, medium);
+    *absorption = medium_coefficients_scale(list, vec3_of(preset ? preset->absorption : absorbed), scale);
+    medium->scattering = medium_coefficients_scale(list, vec3_of(preset ? preset->scattering : scattered), scale);
+    medium->extinction = medium_coefficients_scale(list, vec3_add(*absorption, medium->scattering), 1.0);
+}
+
+/* ---- media ------------------------------------------------------------------------------------------------------- */
+
+static bool homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
+{
+    float milk[2][3], emission[3] = {0.0f, 0.0f, 0.0f}; /* pbrt's default */
+    const MediumPreset *preset = preset_find("Wholemilk");
+    memcpy(milk[0], preset->absorption, sizeof milk[0]);
+    memcpy(milk[1], preset->scattering, sizeof milk[1]);
+    Vec3 absorption;
+    medium_coefficients_read(im, list, milk, medium, &absorption);
+    value_color(im, list, "Le", COLOR_ILLUMINANT, emission);
+    Vec3 radiance = vec3_scale(vec3_of(emission), medium_factor_read(list, "Lescale"));
+    medium->emission = medium_coefficients_scale(list, vec3_mul(absorption, radiance), 1.0);
+    return !list->failed;
+}
+
+typedef struct MediumType {
+    const char *name;
+    bool (*read)(PbrtImport *im, ParamList *list, Medium *medium);
+} MediumType;
+
+static const MediumType TYPES[] = {{"homogeneous", homogeneous_read},
+                                   {"uniformgrid", medium_uniform_grid_read},
+                                   {"rgbgrid", medium_rgb_grid_read},
+                                   {"nanovdb", medium_nanovdb_read},
+                                   {"cloud", medium_cloud_read}};
+enum { TYPE_COUNT = sizeof TYPES / sizeof *TYPES };
 
 static bool medium_read(PbrtImport *im, ParamList *list, Medium *medium)
 {
-    static const char *const UNSUPPORTED[] = {"uniformgrid", "rgbgrid", "cloud", "nanovdb"};
-    static const char *const KNOWN[] = {"homogeneous"};
+    const char *names[TYPE_COUNT];
     const char *type = param_string(list, "type", NULL);
     if (!type) {
         param_error(list, "type", "%s lacks \"string type\"", list->owner);
         return error_fix(im->error, "add \"string type\" \"homogeneous\"");
     }
-    for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)
-        if (strcmp(type, UNSUPPORTED[i]) == 0) {
-            char what[64];
-            snprintf(what, sizeof what, "a medium of type \"%s\"", type);
-            return import_unsupported(im, param_place(list, "type"), what, "empty space", "use \"homogeneous\"");
-        }
-    if (strcmp(type, KNOWN[0]) != 0)
-        return import_unknown(im, param_place(list, "type"), "type of medium", type, KNOWN, 1);
-    homogeneous_read(im, list, medium);
-    return param_list_finish(list, im->options.lenient);
+    for (size_t i = 0; i < TYPE_COUNT; ++i) {
+        names[i] = TYPES[i].name;
+        if (strcmp(type, names[i]) == 0)
+            return import_use(im, "MakeNamedMedium", type) && TYPES[i].read(im, list, medium) &&
+                   param_list_finish(list, im->options.lenient);
+    }
+    return import_unknown(im, param_place(list, "type"), "type of medium", type, names, TYPE_COUNT);
 }
 
 bool import_named_medium(PbrtImport *im, const char *name)

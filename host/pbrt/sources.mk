@@ -10,8 +10,10 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/lexer.c host/pbrt/lexer.h \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \
-	host/pbrt/media.c host/pbrt/media_presets.h \
+	host/pbrt/media.c host/pbrt/media.h host/pbrt/media_presets.h \
+	host/pbrt/media_cloud.c host/pbrt/media_grid.c host/pbrt/media_nanovdb.c \
 	host/pbrt/mesh.c host/pbrt/mesh.h \
+	host/pbrt/nanovdb.c host/pbrt/nanovdb.h \
 	host/pbrt/needs.c host/pbrt/needs.h \
 	host/pbrt/objects.c \
 	host/pbrt/options.c \

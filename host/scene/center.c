@@ -130,6 +130,8 @@ bool scene_center(Scene *scene, const Box *world)
     }
     for (size_t i = 0; i < scene->texture_ops.count; ++i)
         argument_move(&ARRAY_AT(&scene->texture_ops, TextureOp, i).texture_from_world, offset);
+    for (size_t i = 0; i < scene->grids.count; ++i)
+        argument_move(&ARRAY_AT(&scene->grids, MediumGrid, i).grid_from_world, offset);
     camera_move(&scene->camera_settings, offset);
     return true;
 }

@@ -123,6 +123,7 @@ static bool world_box(const Scene *scene, Box *world, float *largest, Error *err
         box_join(world, &placed);
     }
     free(objects);
+    media_box_join(scene, world);
     if (box_is_empty(world)) /* no geometry: an environment alone is a valid scene */
         *world = (Box){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
     *largest = fmaxf(*largest, box_largest(world));

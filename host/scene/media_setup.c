@@ -2,8 +2,10 @@
 
 #include "geometry/media_walk.h"
 #include "light/delta.h"
+#include "scene/grid_build.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Mean free paths of media_reach. */
 #define REACH_PATHS 40.0f
@@ -13,25 +15,47 @@ static const Medium *medium_of(const Scene *scene, uint number)
     return &ARRAY_AT(&scene->media, Medium, number);
 }
 
-static ulong medium_features(const Scene *scene, uint number)
+/* Which media some shape, light or the camera is in. */
+static void media_used(const Scene *scene, bool used[MEDIA_MAX])
 {
-    if (number == 0)
-        return 0u;
-    const Medium *medium = medium_of(scene, number);
-    return FEATURE_MEDIUM | (medium_scatters(medium) ? (uint)FEATURE_SCATTERING : 0u) |
-           (vec3_is_zero(medium->emission) ? 0u : (uint)FEATURE_MEDIUM_EMISSION);
+    memset(used, 0, MEDIA_MAX * sizeof *used);
+    used[scene->camera_settings.medium] = true;
+    for (size_t i = 0; i < scene->shapes.count; ++i) {
+        uint flags = ARRAY_AT(&scene->shapes, Shape, i).flags;
+        used[media_inside(flags)] = used[media_outside(flags)] = true;
+    }
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        used[light_medium(&ARRAY_AT(&scene->lights, Light, i))] = true;
+}
+
+static ulong medium_features(const Medium *medium)
+{
+    return FEATURE_MEDIUM | (medium_scatters(medium) ? FEATURE_SCATTERING : 0u) |
+           (vec3_is_zero(medium->emission) ? 0u : FEATURE_MEDIUM_EMISSION) |
+           (medium->grid != 0u ? FEATURE_MEDIUM_GRID : 0u);
 }
 
 ulong media_features(const Scene *scene)
 {
-    ulong features = medium_features(scene, scene->camera_settings.medium);
-    for (size_t i = 0; i < scene->shapes.count; ++i) {
-        uint flags = ARRAY_AT(&scene->shapes, Shape, i).flags;
-        features |= medium_features(scene, media_inside(flags)) | medium_features(scene, media_outside(flags));
-    }
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        features |= medium_features(scene, light_medium(&ARRAY_AT(&scene->lights, Light, i)));
+    bool used[MEDIA_MAX];
+    ulong features = 0u;
+    media_used(scene, used);
+    for (uint i = 1; i < scene->media.count; ++i)
+        features |= used[i] ? medium_features(medium_of(scene, i)) : 0u;
     return features;
+}
+
+void media_box_join(const Scene *scene, Box *world)
+{
+    bool used[MEDIA_MAX];
+    media_used(scene, used);
+    for (uint i = 1; i < scene->media.count; ++i) {
+        const Medium *medium = medium_of(scene, i);
+        if (!used[i] || medium->grid == 0u)
+            continue;
+        Box box = grid_box(&ARRAY_AT(&scene->grids, MediumGrid, medium->grid - 1u));
+        box_join(world, &box);
+    }
 }
 
 /* ---- the medium around the scene --------------------------------------------------------------------------------- */
@@ -96,7 +120,8 @@ void media_lights_setup(Scene *scene)
     if (!(scene->features & FEATURE_MEDIUM))
         return;
     uint around = medium_around(scene);
-    Vec3 extinction = medium_of(scene, around)->extinction;
+    const Medium *medium = medium_of(scene, around);
+    Vec3 extinction = medium->grid == 0u ? medium->extinction : vec3_splat(0.0f); /* grids end */
     for (size_t i = 0; i < scene->lights.count; ++i) {
         Light *light = &ARRAY_AT(&scene->lights, Light, i);
         if (!light_is_far(light->kind))
@@ -115,7 +140,8 @@ float media_reach(const Scene *scene)
     const Medium *medium = medium_of(scene, medium_around(scene));
     const float extinction[3] = {medium->extinction.x, medium->extinction.y, medium->extinction.z};
     float reach = 0.0f;
-    for (int c = 0; medium_scatters(medium) && c < 3; ++c)
+    bool endless = medium_scatters(medium) && medium->grid == 0u;
+    for (int c = 0; endless && c < 3; ++c)
         if (extinction[c] > 0.0f)
             reach = fmaxf(reach, REACH_PATHS / extinction[c]);
     return reach;

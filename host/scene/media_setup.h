@@ -2,10 +2,14 @@
 #ifndef TWINLIGHT_SCENE_MEDIA_SETUP_H
 #define TWINLIGHT_SCENE_MEDIA_SETUP_H
 
+#include "geometry/box.h"
 #include "scene/scene.h"
 
 /* Features of media that some shape, light or the camera uses. */
 ulong media_features(const Scene *scene);
+
+/* Joins the boxes of the grids of such media to *world: media may be lit outside of all shapes. */
+void media_box_join(const Scene *scene, Box *world);
 
 /* Puts lights at infinity into the medium that fills the space around the scene, and takes the light of the colour
  * channels that it attenuates, of which nothing arrives from infinity. Before lights are weighed. */

@@ -37,7 +37,8 @@ static bool tables_pack(Scene *scene, Error *error)
            words_append(words, &scene->aims, &layout->aims, error) &&
            words_append(words, &scene->distributions2d, &layout->distributions2d, error) &&
            words_append(words, &scene->lookup, &layout->lookup, error) &&
-           words_append(words, &scene->media, &layout->media, error);
+           words_append(words, &scene->media, &layout->media, error) &&
+           words_append(words, &scene->grids, &layout->grids, error);
 }
 
 size_t scene_geometry_words(const Scene *scene)

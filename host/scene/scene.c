@@ -27,6 +27,7 @@
     X(portals, Portal)                                                                                                 \
     X(aims, Aim)                                                                                                       \
     X(media, Medium)                                                                                                   \
+    X(grids, MediumGrid)                                                                                               \
     X(distributions2d, Distribution2D)                                                                                 \
     X(lookup, float)                                                                                                   \
     X(texels, uint)                                                                                                    \

@@ -76,6 +76,7 @@ typedef struct Scene {
     Array portals; /* Portal; scene_finish sets its sums */
     Array aims; /* Aim, set by scene_finish */
     Array media; /* Medium; [0] is empty space; none in scenes that name no medium */
+    Array grids; /* MediumGrid */
     double light_power; /* luminance of the flux of all lights, set by scene_finish */
     Array distributions2d; /* Distribution2D */
     Array lookup; /* float */

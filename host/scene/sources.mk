@@ -1,5 +1,6 @@
 libtwinlight_host_la_SOURCES += \
 	host/scene/warnings.c host/scene/warnings.h \
+	host/scene/grid_build.c host/scene/grid_build.h \
 	host/scene/light_guide_setup.c host/scene/light_guide_setup.h \
 	host/scene/camera_setup.c host/scene/camera_setup.h \
 	host/scene/center.c host/scene/center.h \

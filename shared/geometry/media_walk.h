@@ -127,40 +127,76 @@ SHARED_FUNCTION float emission_part(float emission, float extinction, float dist
     return emission * (1.0f - float_exp(-x)) / extinction;
 }
 
-/* Adds the light that the next `distance` emits; walk->depth is still that before it. */
-SHARED_FUNCTION void media_walk_emission(__global const Medium *medium, float distance, MediaWalk *walk)
+/* Adds the light that the next part of a ray emits; walk->depth is still that before it. lengths: as of optical_depth_add: in
+ * a grid, emission and extinction have the same factor. */
+SHARED_FUNCTION void media_walk_emission(__global const Medium *medium, Vec3 lengths, MediaWalk *walk)
 {
-    Vec3 emission = vec3(emission_part(medium->emission.x, medium->extinction.x, distance),
-                         emission_part(medium->emission.y, medium->extinction.y, distance),
-                         emission_part(medium->emission.z, medium->extinction.z, distance));
+    Vec3 emission = vec3(emission_part(medium->emission.x, medium->extinction.x, lengths.x),
+                         emission_part(medium->emission.y, medium->extinction.y, lengths.y),
+                         emission_part(medium->emission.z, medium->extinction.z, lengths.z));
     walk->emission = vec3_add(walk->emission, vec3_mul(transmittance(walk->depth.all), emission));
 }
 
-/* Scatters the ray in its medium before `distance`, where that is due. length: of the ray's direction. surface: the
- * ray ends at one. */
-SHARED_FUNCTION void media_walk_scatter(const SceneView *scene, const Ray *ray, float length, float distance,
-                                        bool surface, MediaWalk *walk)
+/* A part of a ray that is in a single medium. */
+typedef struct RayPart {
+    const Ray *ray;
+    float length; /* of the ray's direction */
+    float distance; /* up to its end */
+    bool surface; /* which is on one */
+} RayPart;
+
+/* Scatters the ray at the distance `near` from its origin. lengths: as of optical_depth_add, up to the point. */
+SHARED_FUNCTION void media_walk_scatter_at(const SceneView *scene, const RayPart *part, float near, Vec3 lengths,
+                                           MediaWalk *walk)
+{
+    /* Rounding must not move the point through the surface. */
+    float last = part->distance;
+    if (part->surface)
+        last -= RAY_OFFSET_ULPS * FLOAT_EPSILON * (vec3_max_abs(part->ray->o) + part->distance);
+    near = float_min(near, float_max(last, 0.5f * part->distance));
+    walk->scattered = true;
+    walk->point.origin = part->ray->o;
+    walk->point.t = near / part->length;
+    walk->point.travelled = walk->travelled + near;
+    walk->point.medium = walk->medium;
+    walk->point.depth = walk->depth;
+    optical_depth_add(scene, &walk->point.depth, walk->medium, lengths);
+}
+
+/* Scatters the ray in its homogeneous medium, where that is due. */
+SHARED_FUNCTION void media_walk_scatter(const SceneView *scene, const RayPart *part, MediaWalk *walk)
 {
     __global const Medium *medium = scene->media + walk->medium;
     if (walk->scattered || !medium_scatters(medium))
         return;
-    float coefficient = vec3_component(medium->extinction, walk->channel), most = attenuation(coefficient, distance);
+    float coefficient = vec3_component(medium->extinction, walk->channel);
+    float most = attenuation(coefficient, part->distance);
     if (!(walk->target < most)) {
         walk->target -= most;
         return;
     }
-    /* Rounding must not move the point through the surface. */
-    float near = walk->target / coefficient, last = distance;
-    if (surface)
-        last -= RAY_OFFSET_ULPS * FLOAT_EPSILON * (vec3_max_abs(ray->o) + distance);
-    near = float_min(near, float_max(last, 0.5f * distance));
-    walk->scattered = true;
-    walk->point.origin = ray->o;
-    walk->point.t = near / length;
-    walk->point.travelled = walk->travelled + near;
-    walk->point.medium = walk->medium;
-    walk->point.depth = walk->depth;
-    optical_depth_add(scene, &walk->point.depth, walk->medium, near);
+    float near = walk->target / coefficient;
+    media_walk_scatter_at(scene, part, near, vec3_splat(near), walk);
+}
+
+/* Goes through a medium of a grid, which scatters the ray where that is due. Returns the lengths that optical_depth_add
+ * takes, which after scattering matter to emission alone. */
+SHARED_FUNCTION_APART Vec3 media_walk_grid(const SceneView *scene, const RayPart *part, MediaWalk *walk)
+{
+    __global const Medium *medium = scene->media + walk->medium;
+    float coefficient = vec3_component(medium->extinction, walk->channel), target = FLOAT_INFINITY;
+    bool scatters = SCENE_HAS(scene, FEATURE_SCATTERING) && !walk->scattered && medium_scatters(medium);
+    if (scatters && coefficient > 0.0f)
+        target = walk->target / coefficient;
+    Vec3 w = vec3_scale(part->ray->d, 1.0f / part->length);
+    GridColumn column = grid_column(scene, medium->grid - 1u, part->ray->o, w, part->distance, walk->channel, target);
+    if (column.reached)
+        media_walk_scatter_at(scene, part, column.distance, column.sums, walk);
+    else if (scatters)
+        walk->target -= attenuation(coefficient, vec3_component(column.sums, walk->channel));
+    if (column.reached && SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
+        column = grid_column(scene, medium->grid - 1u, part->ray->o, w, part->distance, 0u, FLOAT_INFINITY);
+    return column.sums;
 }
 
 /* Goes on from the ray's origin to its hit, through a single medium. *ray becomes the rest of the ray behind an
@@ -172,13 +208,17 @@ SHARED_FUNCTION bool media_walk_on(const SceneView *scene, Ray *ray, const Hit *
     float length = vec3_length(ray->d), distance = length * (missed ? ray->t_max : hit->t);
     if (missed && ray->t_max == FLOAT_MAX)
         distance = FLOAT_INFINITY;
-    if (SCENE_HAS(scene, FEATURE_SCATTERING))
-        media_walk_scatter(scene, ray, length, distance, !missed, walk);
+    RayPart part = {ray, length, distance, !missed};
+    Vec3 lengths = vec3_splat(distance);
+    if (medium_has_grid(scene, walk->medium))
+        lengths = media_walk_grid(scene, &part, walk);
+    else if (SCENE_HAS(scene, FEATURE_SCATTERING))
+        media_walk_scatter(scene, &part, walk);
     if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
-        media_walk_emission(scene->media + walk->medium, distance, walk);
+        media_walk_emission(scene->media + walk->medium, lengths, walk);
     else if (walk->scattered)
         return false;
-    optical_depth_add(scene, &walk->depth, walk->medium, distance);
+    optical_depth_add(scene, &walk->depth, walk->medium, lengths);
     walk->travelled += distance;
     if (missed)
         return false;

@@ -2,7 +2,7 @@
 #ifndef TWINLIGHT_GEOMETRY_MEDIUM_H
 #define TWINLIGHT_GEOMETRY_MEDIUM_H
 
-#include "layout/scene_view.h"
+#include "geometry/medium_grid.h"
 #include "math/elementary.h"
 
 /* ---- the media at a point ---------------------------------------------------------------------------------------- */
@@ -78,10 +78,33 @@ SHARED_FUNCTION float attenuation(float coefficient, float distance)
     return coefficient > 0.0f ? coefficient * distance : 0.0f;
 }
 
-SHARED_FUNCTION Vec3 attenuations(Vec3 coefficients, float distance)
+SHARED_FUNCTION Vec3 attenuations(Vec3 coefficients, Vec3 distances)
 {
-    return vec3(attenuation(coefficients.x, distance), attenuation(coefficients.y, distance),
-                attenuation(coefficients.z, distance));
+    return vec3(attenuation(coefficients.x, distances.x), attenuation(coefficients.y, distances.y),
+                attenuation(coefficients.z, distances.z));
+}
+
+/* Whether the medium is homogeneous or a grid's. */
+SHARED_FUNCTION bool medium_has_grid(const SceneView *scene, uint medium)
+{
+    return SCENE_HAS(scene, FEATURE_MEDIUM_GRID) && scene->media[medium].grid != 0u;
+}
+
+/* Extinction and scattering coefficients at the point p of a medium. */
+SHARED_FUNCTION Vec3 medium_extinction(const SceneView *scene, uint medium, Vec3 p)
+{
+    Vec3 extinction = scene->media[medium].extinction;
+    if (medium_has_grid(scene, medium))
+        extinction = vec3_mul(extinction, grid_factors(scene, scene->media[medium].grid - 1u, p, false));
+    return extinction;
+}
+
+SHARED_FUNCTION Vec3 medium_scattering(const SceneView *scene, uint medium, Vec3 p)
+{
+    Vec3 scattering = scene->media[medium].scattering;
+    if (medium_has_grid(scene, medium))
+        scattering = vec3_mul(scattering, grid_factors(scene, scene->media[medium].grid - 1u, p, true));
+    return scattering;
 }
 
 /* Whether light can be scattered in the medium. */
@@ -90,10 +113,11 @@ SHARED_FUNCTION bool medium_scatters(__global const Medium *medium)
     return !vec3_is_zero(medium->scattering);
 }
 
-/* Adds what `distance` in a medium contributes. */
-SHARED_FUNCTION void optical_depth_add(const SceneView *scene, OpticalDepth *depth, uint medium, float distance)
+/* Adds what a part of a ray in a medium contributes. lengths: of each colour, its length in a homogeneous medium, of others the
+ * integral of the grid's factor. */
+SHARED_FUNCTION void optical_depth_add(const SceneView *scene, OpticalDepth *depth, uint medium, Vec3 lengths)
 {
-    Vec3 more = attenuations(scene->media[medium].extinction, distance);
+    Vec3 more = attenuations(scene->media[medium].extinction, lengths);
     depth->all = vec3_add(depth->all, more);
     if (SCENE_HAS(scene, FEATURE_SCATTERING) && medium_scatters(scene->media + medium))
         depth->scattering = vec3_add(depth->scattering, more);
@@ -117,10 +141,10 @@ SHARED_FUNCTION float passing_probability(const OpticalDepth *depth)
     return vec3_mean(transmittance(depth->scattering));
 }
 
-/* The density, per length, of being scattered at its end, in `medium`. */
-SHARED_FUNCTION float scattering_density(const SceneView *scene, const OpticalDepth *depth, uint medium)
+/* The density, per length, of being scattered at its end, the point p of `medium`. */
+SHARED_FUNCTION float scattering_density(const SceneView *scene, const OpticalDepth *depth, uint medium, Vec3 p)
 {
-    return vec3_mean(vec3_mul(scene->media[medium].extinction, transmittance(depth->scattering)));
+    return vec3_mean(vec3_mul(medium_extinction(scene, medium, p), transmittance(depth->scattering)));
 }
 
 #endif

@@ -7,6 +7,7 @@ SHARED_FILES += \
 	shared/geometry/disk.h \
 	shared/geometry/media_walk.h \
 	shared/geometry/medium.h \
+	shared/geometry/medium_grid.h \
 	shared/geometry/primitive.h \
 	shared/geometry/ray.h \
 	shared/geometry/sphere.h \

@@ -223,10 +223,10 @@ SHARED_FUNCTION_APART void path_vertex_in_medium(const SceneView *scene, __globa
 
 /* Takes the path through the media before its hit: throughput, density, and the light that they emit. */
 SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint *restrict paths,
-                                           __global const uint *restrict hits, uint item, bool scattered)
+                                           __global const uint *restrict hits, uint item, bool scattered, Vec3 p)
 {
     uint stride = scene->frame->pass.stride;
-    Passage passage = passage_load(scene, hits, stride, item, scattered);
+    Passage passage = passage_load(scene, hits, stride, item, scattered, p);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
         path_add_radiance(scene->frame, paths, item, state_load(paths, stride, PATH_DEPTH, item),
@@ -253,7 +253,7 @@ __kernel void pt_shade_hits(__global const FrameParams *restrict frame, __global
     Hit hit = hit_load(hits, stride, item);
     bool scattered = SCENE_HAS(scene, FEATURE_SCATTERING) && hit.primitive == HIT_SCATTERED;
     if (SCENE_HAS(scene, FEATURE_MEDIUM))
-        path_pass_media(scene, paths, hits, item, scattered);
+        path_pass_media(scene, paths, hits, item, scattered, scatter_position(&ray, hit));
     if (hit.primitive == NONE) {
         if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT))
             path_add_environment(scene, paths, item, &whole);

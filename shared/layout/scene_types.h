@@ -39,7 +39,8 @@
     X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */         \
     X(MEDIUM, medium, "medium", 0u) /* participating media */                                                          \
     X(SCATTERING, scattering, "scattering medium", 0u)                                                                 \
-    X(MEDIUM_EMISSION, medium_emission, "emissive medium", 0u)
+    X(MEDIUM_EMISSION, medium_emission, "emissive medium", 0u)                                                         \
+    X(MEDIUM_GRID, medium_grid, "medium of a grid", 0u)
 #define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
 
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
@@ -79,11 +80,12 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define FEATURE_MEDIUM FEATURE_BIT(MEDIUM)
 #define FEATURE_SCATTERING FEATURE_BIT(SCATTERING)
 #define FEATURE_MEDIUM_EMISSION FEATURE_BIT(MEDIUM_EMISSION)
+#define FEATURE_MEDIUM_GRID FEATURE_BIT(MEDIUM_GRID)
 
 /* All but those that few scenes have: the CPU's kernels are also compiled for scenes that have no others. */
 #define FEATURES_PLAIN                                                                                                 \
     (~(FEATURE_CYLINDER | FEATURE_COATED_CONDUCTOR | FEATURE_PROCEDURAL | FEATURE_PORTAL | FEATURE_MEDIUM |            \
-       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION | FEATURE_CURVE | FEATURE_HAIR))
+       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION | FEATURE_MEDIUM_GRID | FEATURE_CURVE | FEATURE_HAIR))
 #define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
@@ -294,14 +296,25 @@ typedef struct Material {
 
 /* ---- media ----------------------------------------------------------------------------------------------------- */
 
-/* A homogeneous participating medium; coefficients per unit of length of the world. Number 0 is empty space. Scenes
- * without media have no such table. */
+/* A participating medium; coefficients per unit of length of the world, of media with a grid those where its factors are
+ * 1. Number 0 is empty space. Scenes without media have no such table. */
 typedef struct Medium {
     Vec3 extinction; /* sigma_t: absorption and scattering */
     Vec3 scattering; /* sigma_s */
     Vec3 emission; /* emitted radiance per length: sigma_a Le */
     float g; /* of the phase function of Henyey and Greenstein: mean cosine between old and new direction */
+    uint grid; /* 1 + index into `grids`; 0: homogeneous */
 } Medium;
+
+/* Factors of a medium's coefficients, from 0 to 1, on a grid (geometry/medium_grid.h). */
+typedef struct MediumGrid {
+    Affine grid_from_world;
+    uint size_x, size_y, size_z; /* samples */
+    float low; /* its box: along each axis, coordinates from low to low + size */
+    uint words; /* of a sample: GRID_COLORS */
+    uint
+        bricks; /* first word, in texels, of the table of bricks: for each, x fastest, the first word of its samples or NONE */
+} MediumGrid;
 
 /* Numbers of media are below this. */
 #define MEDIA_MAX 4096u
@@ -451,7 +464,7 @@ typedef struct SceneLayout {
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, curves, objects, instances;
     /* tables */
     uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, portals, aims,
-        distributions2d, lookup, media;
+        distributions2d, lookup, media, grids;
 } SceneLayout;
 
 #endif

@@ -34,6 +34,7 @@ typedef struct SceneView {
     __global const Distribution2D *distributions2d;
     __global const float *lookup;
     __global const Medium *media;
+    __global const MediumGrid *grids;
     __global const uint *texels;
 } SceneView;
 
@@ -85,6 +86,7 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.distributions2d = (__global const Distribution2D *)(tables + layout->distributions2d);
     view.lookup = scene_lookup(frame, tables);
     view.media = (__global const Medium *)(tables + layout->media);
+    view.grids = (__global const MediumGrid *)(tables + layout->grids);
     view.texels = texels;
     return view;
 }

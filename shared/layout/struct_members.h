@@ -151,6 +151,15 @@
     MEMBER(Medium, scattering)                                                                                         \
     MEMBER(Medium, emission)                                                                                           \
     MEMBER(Medium, g)                                                                                                  \
+    MEMBER(Medium, grid)                                                                                               \
+    STRUCT(MediumGrid)                                                                                                 \
+    MEMBER(MediumGrid, grid_from_world)                                                                                \
+    MEMBER(MediumGrid, size_x)                                                                                         \
+    MEMBER(MediumGrid, size_y)                                                                                         \
+    MEMBER(MediumGrid, size_z)                                                                                         \
+    MEMBER(MediumGrid, low)                                                                                            \
+    MEMBER(MediumGrid, words)                                                                                          \
+    MEMBER(MediumGrid, bricks)                                                                                         \
     STRUCT(PixelFilter)                                                                                                \
     MEMBER(PixelFilter, kind)                                                                                          \
     MEMBER(PixelFilter, radius_x)                                                                                      \
@@ -181,6 +190,7 @@
     MEMBER(SceneLayout, distributions2d)                                                                               \
     MEMBER(SceneLayout, lookup)                                                                                        \
     MEMBER(SceneLayout, media)                                                                                         \
+    MEMBER(SceneLayout, grids)                                                                                         \
     STRUCT(SceneParams)                                                                                                \
     MEMBER(SceneParams, layout)                                                                                        \
     MEMBER(SceneParams, features)                                                                                      \

@@ -165,8 +165,8 @@ SHARED_FUNCTION bool connection_pass(const SceneView *scene, __global uint *rest
     StrategyEnds *ends = &connection->ends;
     connection->contribution = vec3_mul(connection->contribution, passage.weight);
     if (z)
-        ends->light_z1 *= passage_density(scene, passage, z->ng, media_inside(z->bsdf.media));
-    ends->camera_y1 *= y ? passage_density(scene, passage, y->ng, media_inside(y->bsdf.media)) : passage.pdf;
+        ends->light_z1 *= passage_density(scene, passage, z->p, z->ng, media_inside(z->bsdf.media));
+    ends->camera_y1 *= y ? passage_density(scene, passage, y->p, y->ng, media_inside(y->bsdf.media)) : passage.pdf;
     if (!vec3_is_zero(connection->contribution) && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u)
         return true;
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);

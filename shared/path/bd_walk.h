@@ -203,11 +203,17 @@ SHARED_FUNCTION void walk_hit_pass(const SceneView *scene, __global const uint *
                                    __global const uint *restrict hits, uint stride, uint item, bool end,
                                    WalkHit *walk_hit)
 {
-    walk_hit->passage = passage_load(scene, hits, stride, item, walk_hit->scattered);
+    Vec3 p = vec3_splat(0.0f);
+    if (walk_hit->scattered) {
+        Ray last_part = ray_last_part(scene, hits, stride, item, walk_hit->ray);
+        p = scatter_position(&last_part, hit_load(hits, stride, item));
+    }
+    walk_hit->passage = passage_load(scene, hits, stride, item, walk_hit->scattered, p);
     walk_hit->beta = vec3_mul(walk_hit->beta, walk_hit->passage.weight);
     walk_hit->own *= walk_hit->passage.pdf; /* of a miss; walk_hit_make computes others anew */
     Vec3 ng = end ? walk_hit->ray.d : walk_hit->from_ng;
-    walk_hit->passage_back = passage_density(scene, walk_hit->passage, ng, state_load(rays, stride, RAY_MEDIUM, item));
+    walk_hit->passage_back =
+        passage_density(scene, walk_hit->passage, walk_hit->ray.o, ng, state_load(rays, stride, RAY_MEDIUM, item));
 }
 
 /* Vertex.back at the hit. */

@@ -24,9 +24,9 @@ SHARED_FUNCTION Passage passage_free(void)
     return passage;
 }
 
-/* How the ray of a path has reached its hit. scattered: that is in a medium. */
+/* How the ray of a path has reached its hit. scattered: that is in a medium, at p, which is read only then. */
 SHARED_FUNCTION_APART Passage passage_load(const SceneView *scene, __global const uint *hits, uint stride, uint item,
-                                           bool scattered)
+                                           bool scattered, Vec3 p)
 {
     Passage passage = passage_free();
     if (!SCENE_HAS(scene, FEATURE_MEDIUM))
@@ -37,9 +37,9 @@ SHARED_FUNCTION_APART Passage passage_load(const SceneView *scene, __global cons
     if (!SCENE_HAS(scene, FEATURE_SCATTERING))
         return passage;
     if (scattered)
-        passage.weight = vec3_mul(passage.weight, scene->media[passage.medium].scattering);
+        passage.weight = vec3_mul(passage.weight, medium_scattering(scene, passage.medium, p));
     passage.pdf =
-        scattered ? scattering_density(scene, &passage.depth, passage.medium) : passing_probability(&passage.depth);
+        scattered ? scattering_density(scene, &passage.depth, passage.medium, p) : passing_probability(&passage.depth);
     passage.weight = vec3_scale(passage.weight, passage.pdf > 0.0f ? 1.0f / passage.pdf : 0.0f);
     return passage;
 }
@@ -58,13 +58,14 @@ SHARED_FUNCTION_APART Passage passage_shadow(const SceneView *scene, __global co
     return passage;
 }
 
-/* Density of the distance with which a vertex at either end of the passage is reached from the other. ng and media: of
+/* Density of the distance with which a vertex at either end of the passage is reached from the other. p, ng and medium: of
  * the vertex that is reached; a vertex in a medium has ng 0. */
-SHARED_FUNCTION_APART float passage_density(const SceneView *scene, Passage passage, Vec3 ng, uint medium)
+SHARED_FUNCTION_APART float passage_density(const SceneView *scene, Passage passage, Vec3 p, Vec3 ng, uint medium)
 {
     if (!SCENE_HAS(scene, FEATURE_SCATTERING))
         return 1.0f;
-    return vec3_is_zero(ng) ? scattering_density(scene, &passage.depth, medium) : passing_probability(&passage.depth);
+    return vec3_is_zero(ng) ? scattering_density(scene, &passage.depth, medium, p)
+                            : passing_probability(&passage.depth);
 }
 
 /* The Bsdf of a vertex in a medium. */

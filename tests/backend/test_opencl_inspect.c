@@ -26,6 +26,22 @@ static const char *const MEDIA_SCENE =
     "AttributeEnd MediumInterface \"fire\" \"fog\" Translate 1.2 0 0 Material \"interface\" Shape \"sphere\"\n"
     "MediumInterface \"\" \"fire\" Shape \"sphere\" \"float radius\" 0.4";
 
+/* Grids of one factor, which emits, and of colours, one of them around the camera. */
+static const char *const GRID_SCENE =
+    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+    "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer ny\" 9 \"integer nz\" 1\n"
+    "\"point3 p0\" [ -3 -1 -7 ] \"point3 p1\" [ 3 2 2 ] \"float g\" 0.3 \"rgb sigma_s\" [ 0.2 0.3 0.4 ]\n"
+    "\"float density\" [ 1 0 0.2 1 0.1 2 0 0 0.4 1 0.7 1 0.3 0.2 0.1 0.3 0 0.6 ] \"float sigma_a\" 0.05 \"rgb Le\" [ 1 "
+    "2 3 ]\n"
+    "MakeNamedMedium \"dye\" \"string type\" \"rgbgrid\" \"integer nz\" 3 \"point3 p0\" [ -1 -1 -1 ]\n"
+    "\"point3 p1\" [ 1 1 1 ] \"rgb sigma_a\" [ 0.1 0.2 0.4 0 0.5 0 0.7 0 0.1 ]\n"
+    "\"rgb sigma_s\" [ 2 1 0 0 0.5 3 1.5 4 1 ]\n"
+    "MediumInterface \"smoke\" LookAt 0 1.2 -6  0 -0.2 0  0 1 0 Camera \"perspective\" \"float fov\" 38\nWorldBegin\n"
+    "AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -1 2 -1  1 2 -1  -1 2 1  1 2 1 ] AttributeEnd\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ]\n"
+    "MediumInterface \"dye\" \"smoke\" Material \"interface\" Shape \"sphere\"";
+
 /* Opens the setup on the CPU and on a device. */
 static void pair_open(RenderSetup setup, const BackendInterface *device, VerifyPair *pair)
 {
@@ -51,7 +67,10 @@ START_TEST(test_state_is_the_same)
                  {OPENCL_MATERIALS_SCENE, 0, integrator_bdpt(), 4, 3000},
                  {MEDIA_SCENE, 0, integrator_pt(), 7, 3000},
                  {MEDIA_SCENE, 0, integrator_ibpt(), 5, 3000},
-                 {MEDIA_SCENE, 0, integrator_bdpt(), 4, 3000}};
+                 {MEDIA_SCENE, 0, integrator_bdpt(), 4, 3000},
+                 {GRID_SCENE, 0, integrator_pt(), 7, 3000},
+                 {GRID_SCENE, 0, integrator_ibpt(), 5, 3000},
+                 {GRID_SCENE, 0, integrator_bdpt(), 4, 3000}};
     if (!test_device_promises())
         return;
     RenderSetup setup = {.text = cases[_i].text,

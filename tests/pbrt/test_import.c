@@ -86,6 +86,7 @@ int main(void)
     suite_add_tcase(suite, import_objects_case());
     suite_add_tcase(suite, import_materials_case());
     suite_add_tcase(suite, import_media_case());
+    suite_add_tcase(suite, import_nanovdb_case());
     suite_add_tcase(suite, import_textures_case());
     suite_add_tcase(suite, import_lights_case());
     suite_add_tcase(suite, import_ply_case());

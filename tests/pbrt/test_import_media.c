@@ -2,6 +2,9 @@
 #include "test_import.h"
 
 #include "geometry/medium.h"
+#include "math/noise.h"
+
+#include <string.h>
 
 #define MEDIUM(parameters) "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" " parameters "\n"
 
@@ -43,6 +46,144 @@ START_TEST(presets)
     assert_vec3(m.extinction, 2.41f, 10.4f, 14.8f, 1e-5f);
     m = medium_of("\"rgb sigma_s\" [ 0 0 0 ]");
     assert_vec3(m.extinction, 0.0011f, 0.0024f, 0.014f, 1e-6f);
+}
+END_TEST
+
+/* The sample of a grid's cell, which is in the only brick. */
+static float grid_sample(const Scene *scene, uint x, uint y, uint z, uint word)
+{
+    const MediumGrid *grid = &ELEMENT(scene, grids, MediumGrid, 0);
+    uint first = ELEMENT(scene, texels, uint, grid->bricks), at = (z + 1) * 81 + (y + 1) * 9 + x + 1;
+    return bits_float(ELEMENT(scene, texels, uint, first + at * grid->words + word));
+}
+
+/* A grid's samples are divided by the largest, which multiplies the coefficients; its box is p0, p1 of the medium's space,
+ * before WorldBegin as well as after it. */
+START_TEST(uniform_grid)
+{
+    static const char GRID[] =
+        "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer nz\" 2\n"
+        "\"float density\" [ 1 2 3 4 ] \"point3 p0\" [ 1 0 0 ] \"point3 p1\" [ 0 2 4 ]\n"
+        "\"rgb sigma_a\" [ 1 2 3 ] \"float sigma_s\" 0.5 \"float scale\" 2 \"float g\" 0.25\n";
+    for (int before = 0; before < 2; ++before) {
+        char text[1024];
+        Scene scene;
+        snprintf(text, sizeof text, "Translate 10 0 0 %s WorldBegin Identity Translate 10 0 0 %s", before ? GRID : "",
+                 before ? "" : GRID);
+        import_text(text, &scene);
+        const Medium *m = &ELEMENT(&scene, media, Medium, 1);
+        assert_vec3(m->extinction, 12.0f, 20.0f, 28.0f, 1e-5f);
+        assert_vec3(m->scattering, 4.0f, 4.0f, 4.0f, 1e-5f);
+        ASSERT_FLOAT(m->g, 0.25f);
+        ck_assert_uint_eq(m->grid, 1);
+        ASSERT_FLOAT(grid_sample(&scene, 0, 0, 0, 0), 0.25f);
+        ASSERT_FLOAT(grid_sample(&scene, 1, 0, 0, 0), 0.5f);
+        ASSERT_FLOAT(grid_sample(&scene, 1, 0, 1, 0), 1.0f);
+        ASSERT_FLOAT(grid_sample(&scene, 2, 0, 0, 0), 0.0f);
+        const MediumGrid *grid = &ELEMENT(&scene, grids, MediumGrid, 0);
+        assert_vec3(affine_point(grid->grid_from_world, vec3(10.0f, 0.0f, 0.0f)), 0.5f, 0.5f, 0.5f, 1e-5f);
+        assert_vec3(affine_point(grid->grid_from_world, vec3(11.0f, 2.0f, 4.0f)), 2.5f, 1.5f, 2.5f, 1e-5f);
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
+/* Extinction and scattering of each colour; one that is left out is 1. */
+START_TEST(rgb_grid)
+{
+    Scene scene;
+    import_text("MakeNamedMedium \"m\" \"string type\" \"rgbgrid\" \"integer ny\" 2 \"float scale\" 3\n"
+                "\"rgb sigma_a\" [ 1 2 3  4 6 5 ] \"rgb sigma_s\" [ 0 2 1  4 0 3 ]\n"
+                "MakeNamedMedium \"s\" \"string type\" \"rgbgrid\" \"rgb sigma_s\" [ 1 2 0 ] WorldBegin",
+                &scene);
+    const Medium *m = &ELEMENT(&scene, media, Medium, 1), *s = &ELEMENT(&scene, media, Medium, 2);
+    assert_vec3(m->extinction, 24.0f, 18.0f, 24.0f, 1e-5f);
+    assert_vec3(m->scattering, 12.0f, 6.0f, 9.0f, 1e-5f);
+    ASSERT_FLOAT(grid_sample(&scene, 0, 0, 0, 0), 0.125f);
+    ASSERT_FLOAT(grid_sample(&scene, 0, 1, 0, 5), 1.0f);
+    ASSERT_FLOAT(grid_sample(&scene, 0, 1, 0, 4), 0.0f);
+    assert_vec3(s->extinction, 2.0f, 3.0f, 1.0f, 1e-5f);
+    assert_vec3(s->scattering, 1.0f, 2.0f, 0.0f, 1e-5f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* pbrt's density of clouds, written down from its definition, in double but for the noise. */
+static double cloud_at(const double p[3], double density, double wispiness, double frequency)
+{
+    double at[3], weight = 0.05 * wispiness, scale = 10.0, sum = 0.0, part = 0.5;
+    for (int i = 0; i < 3; ++i)
+        at[i] = frequency * p[i];
+    for (int n = 0; n < 2; ++n) {
+        Vec3 q = vec3((float)(scale * at[0]), (float)(scale * at[1]), (float)(scale * at[2]));
+        double here = (double)noise(q);
+        at[0] += weight * ((double)noise(vec3(q.x + 0.01f, q.y, q.z)) - here) / 0.01;
+        at[1] += weight * ((double)noise(vec3(q.x, q.y + 0.01f, q.z)) - here) / 0.01;
+        at[2] += weight * ((double)noise(vec3(q.x, q.y, q.z + 0.01f)) - here) / 0.01;
+        weight *= 0.5;
+        scale *= 1.99;
+    }
+    scale = 1.0;
+    for (int n = 0; n < 5; ++n) {
+        sum += part * (double)noise(vec3((float)(scale * at[0]), (float)(scale * at[1]), (float)(scale * at[2])));
+        part *= 0.5;
+        scale *= 1.99;
+    }
+    sum = fmin(fmax((1.0 - p[1]) * 4.5 * density * sum, 0.0), 1.0);
+    return fmin(sum + 2.0 * fmax(0.0, 0.5 - p[1]), 1.0);
+}
+
+/* A cloud's grid has its density at the samples, which include the faces of its box. */
+START_TEST(cloud)
+{
+    Scene scene;
+    import_text(
+        "Translate 3 0 0 MakeNamedMedium \"m\" \"string type\" \"cloud\" \"float density\" 2 \"float wispiness\" 0.7\n"
+        "\"float frequency\" 1.5 \"point3 p0\" [ 0 0.25 0 ] \"point3 p1\" [ 1 0.75 1.5 ] \"float sigma_s\" 3 "
+        "WorldBegin",
+        &scene);
+    const MediumGrid *grid = &ELEMENT(&scene, grids, MediumGrid, 0);
+    const SceneView view = {.grids = grid, .texels = scene.texels.data};
+    assert_vec3(ELEMENT(&scene, media, Medium, 1).extinction, 4.0f, 4.0f, 4.0f, 1e-5f);
+    ck_assert_uint_eq(grid->size_x, 48);
+    ck_assert_uint_eq(grid->size_y, 24);
+    ck_assert_uint_eq(grid->size_z, 72);
+    for (int i = 0; i <= 48; i += 4)
+        for (int j = 0; j <= 24; j += 4)
+            for (int k = 0; k <= 72; k += 4) {
+                const double p[3] = {i / 48.0, 0.25 + 0.5 * j / 24.0, 1.5 * k / 72.0};
+                Vec3 factors = grid_factors(&view, 0u, vec3((float)p[0] + 3.0f, (float)p[1], (float)p[2]), true);
+                TEST_NEAR(factors.y, cloud_at(p, 2.0, 0.7, 1.5), 2e-3);
+            }
+    scene_destroy(&scene);
+    import_text("MakeNamedMedium \"m\" \"string type\" \"cloud\" \"float frequency\" 4000\n"
+                "\"point3 p1\" [ 1 0.001 0.001 ] WorldBegin",
+                &scene);
+    ck_assert_ptr_nonnull(strstr(import_log(), "warning: the medium \"m\" has more detail than the 2049 x"));
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* A far world is moved to the origin, and the grids of media with it; the boxes of those that are used belong to it. */
+START_TEST(grid_bounds)
+{
+    static const char TEXT[] =
+        "WorldBegin Translate 1000 0 0 LightSource \"point\"\n"
+        "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 \"point3 p1\" [ 1 1 4 ]\n"
+        "MakeNamedMedium \"n\" \"string type\" \"uniformgrid\" \"float density\" 1 \"point3 p1\" [ 9 9 9 ]\n"
+        "MediumInterface \"m\" \"\" Shape \"sphere\"";
+    Scene scene;
+    Error error = {0};
+    import_text(TEXT, &scene);
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    ck_assert_uint_ne(scene.features & FEATURE_MEDIUM_GRID, 0);
+    ASSERT_FLOAT(scene.bounds_max[0], 1001.0f);
+    ASSERT_FLOAT(scene.bounds_max[2], 4.0f);
+    ck_assert_float_lt(scene.ray_reach, 10.0f);
+    Affine map = ELEMENT(&scene, grids, MediumGrid, 0).grid_from_world;
+    Vec3 center = affine_point(map, vec3(0.0f, 0.5f, 2.0f));
+    ck_assert_float_lt(float_abs(center.x - 1.0f), 1.01f); /* the sphere's middle is about the origin */
+    scene_destroy(&scene);
 }
 END_TEST
 
@@ -124,13 +265,36 @@ START_TEST(medium_around)
 }
 END_TEST
 
+/* A grid ends, so light from infinity reaches a scene in one. */
+START_TEST(grid_around)
+{
+    Scene scene;
+    Error error = {0};
+    import_text("MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"float density\" 1 MediumInterface \"m\"\n"
+                "Camera \"perspective\" WorldBegin LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]",
+                &scene);
+    ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
+    const Light *light = &ELEMENT(&scene, lights, Light, 0);
+    ck_assert_uint_eq(light_medium(light), 1);
+    ASSERT_FLOAT(light->emission.x, 1.0f);
+    ck_assert_float_lt(scene.ray_reach, 10.0f);
+    scene_destroy(&scene);
+}
+END_TEST
+
 TCase *import_media_case(void)
 {
     TCase *tcase = tcase_create("media");
+    tcase_set_timeout(tcase, 120);
     tcase_add_test(tcase, coefficients);
     tcase_add_test(tcase, presets);
+    tcase_add_test(tcase, uniform_grid);
+    tcase_add_test(tcase, rgb_grid);
+    tcase_add_test(tcase, cloud);
+    tcase_add_test(tcase, grid_bounds);
     tcase_add_test(tcase, interfaces);
     tcase_add_test(tcase, features);
     tcase_add_test(tcase, medium_around);
+    tcase_add_test(tcase, grid_around);
     return tcase;
 }

@@ -183,7 +183,7 @@ START_TEST(options_and_color_space)
     import_text("Option \"render-coord_sys\" \"world\" Option \"seed\" 3 ColorSpace \"srgb\" WorldBegin", &scene);
     ck_assert_ptr_nonnull(strstr(import_log(), "info: the option \"seed\" is not used"));
     scene_destroy(&scene);
-    import_text_in("ColorSpace \"rec2020\" MakeNamedMedium \"fog\" \"string type\" \"cloud\" WorldBegin", "", true,
+    import_text_in("ColorSpace \"rec2020\" WorldBegin Material \"measured\" \"string filename\" \"m\"", "", true,
                    &scene);
     ck_assert_uint_eq(scene.counts.substitutions, 2);
     scene_destroy(&scene);

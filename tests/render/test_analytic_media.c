@@ -69,6 +69,67 @@ START_TEST(test_slab)
 }
 END_TEST
 
+/* Slabs of grids, whose samples lie at z = 1/4 and 3/4: absorption that goes from 2 at the first to 6 at the second and,
+ * beyond them, half of the way to 0; and the same with other colours. */
+#define NINE(sample) sample sample sample sample sample sample sample sample sample
+#define GRID_PLACE                                                                                                     \
+    "\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 2 \"point3 p0\" [ -1 -1 0 ] \"point3 p1\" [ 1 1 1 ]\n"
+START_TEST(test_grid_slab)
+{
+    static const double RAMP[3] = {3.5, 3.5, 3.5}, COLORS[3] = {0.875, 1.75, 0.4375};
+    double expected[2][3], mean[3];
+    for (int c = 0; c < 3; ++c) {
+        expected[0][c] = exp(-0.5 * RAMP[c]);
+        expected[1][c] = exp(-COLORS[c]);
+    }
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float scale\" 0.5\n" GRID_PLACE
+                            "\"float sigma_s\" 0 \"float density\" [" NINE(" 2") NINE(" 6") " ]\n") LAMP
+                    "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "slab of a grid", mean, expected[0], 1e-5);
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z("MakeNamedMedium \"grid\" \"string type\" \"rgbgrid\" \"rgb sigma_s\" [" NINE(
+                        " 0 0 0 0 0 0") " ]\n" GRID_PLACE "\"rgb sigma_a\" [" NINE(" 2 1 0") NINE(" 0 3 1") " ]\n") LAMP
+                    "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "slab of a grid of colours", mean, expected[1], 1e-5);
+    }
+}
+END_TEST
+
+/* A sphere in a grid that is the same everywhere but at its border is like one of the homogeneous medium: the same paths
+ * by the same numbers. */
+static void sphere_color(double mean[3], const Integrator *integrator, const char *medium)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             ANALYTIC_FILM "MakeNamedMedium \"fog\" \"string type\" %s\n\"rgb sigma_s\" [ 1.5 1 0.5 ] \"float g\" 0.3\n"
+                           "LookAt 0.3 0 -4  0.3 0 0  0 1 0\n"
+                           "Camera \"perspective\" \"float fov\" 30\nWorldBegin\n"
+                           "AttributeBegin AreaLightSource \"diffuse\" \"bool twosided\" true Translate 0 2 0\n"
+                           "Shape \"sphere\" \"float radius\" 0.7 AttributeEnd\n"
+                           "LightSource \"infinite\" \"rgb L\" [ 0.1 0.1 0.2 ]\n"
+                           "MediumInterface \"fog\" \"\" Material \"interface\" Shape \"sphere\"\n",
+             medium);
+    media_color(mean, integrator, 1024, 8, text);
+}
+
+START_TEST(test_constant_grid)
+{
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        double expected[3], mean[3];
+        sphere_color(expected, CASES[i].integrator(),
+                     "\"homogeneous\" \"rgb sigma_a\" [ 0.1 0.2 0.4 ] \"float scale\" 2");
+        sphere_color(
+            mean, CASES[i].integrator(),
+            "\"uniformgrid\" \"rgb sigma_a\" [ 0.1 0.2 0.4 ] \"point3 p0\" [ -2 -2 -2 ] \"point3 p1\" [ 2 2 2 ]\n"
+            "\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 3\n"
+            "\"float density\" [" NINE(" 2 2 2") " ]");
+        media_check(&CASES[i], "constant grid", mean, expected, i == 0 ? 1e-5 : 5e-3); /* other light subpaths */
+    }
+}
+END_TEST
+
 /* The same slab of clear glass with an absorbing inside: the sum over all internal reflections. */
 START_TEST(test_glass)
 {
@@ -159,6 +220,26 @@ START_TEST(test_furnace)
 }
 END_TEST
 
+/* The same for a grid in another, so that rays go on from one to the other. */
+START_TEST(test_furnace_of_grids)
+{
+    static const double EXPECTED[3] = {1.0, 1.0, 1.0};
+    double mean[3];
+    media_color(
+        mean, integrator_pt(), 4096, 1000,
+        ANALYTIC_FILM
+        "MakeNamedMedium \"outer\" \"string type\" \"uniformgrid\" \"float sigma_a\" 0 \"rgb sigma_s\" [ 1 2 3 ]\n"
+        "\"point3 p0\" [ -1 -1 -1 ] \"integer nx\" 2 \"integer nz\" 2 \"float density\" [ 1 2 0 3 ]\n"
+        "MakeNamedMedium \"inner\" \"string type\" \"rgbgrid\" \"rgb sigma_a\" [ 0 0 0 0 0 0 ]\n"
+        "\"point3 p0\" [ -0.6 -0.6 -0.6 ] \"integer ny\" 2 \"rgb sigma_s\" [ 4 2 1 0 3 5 ] \"float g\" 0.5\n"
+        "LookAt 0.3 0 -4  0.3 0 0  0 1 0\n"
+        "Camera \"perspective\" \"float fov\" 2\nWorldBegin LightSource \"infinite\" Material \"interface\"\n"
+        "MediumInterface \"outer\" \"\" Shape \"sphere\"\n"
+        "MediumInterface \"inner\" \"outer\" Shape \"sphere\" \"float radius\" 0.5\n");
+    media_check(&CASES[0], "furnace of grids", mean, EXPECTED, 0.005);
+}
+END_TEST
+
 /* A slab that absorbs and emits, before a lamp of radiance 1: T + Le (1 - T). */
 START_TEST(test_emission)
 {
@@ -205,6 +286,31 @@ START_TEST(test_emission_behind)
 }
 END_TEST
 
+/* The ramp of test_grid_slab, which emits: T + Le (1 - T); and with scattering, at depth 1, Le sigma_a / sigma_t (1 - T). */
+START_TEST(test_emission_of_grid)
+{
+    static const double LE[3] = {3.0, 2.0, 0.5};
+    double slab[3], fog[3], mean[3], t = exp(-1.75);
+    for (int c = 0; c < 3; ++c) {
+        slab[c] = t + 2.0 * LE[c] * (1.0 - t);
+        fog[c] = 2.0 * LE[c] * 0.5 * (1.0 - t * t);
+    }
+#define FIRE(scattering)                                                                                               \
+    "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float scale\" 0.5 \"rgb Le\" [ 3 2 0.5 ]\n"            \
+    "\"float Lescale\" [" NINE(" 2 2") " ]\n" GRID_PLACE "\"float sigma_s\" " scattering                               \
+                                       " \"float density\" [" NINE(" 2") NINE(" 6") " ]\n"
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 16, 3,
+                    ALONG_Z(FIRE("0")) LAMP "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission of a grid", mean, slab, 1e-5);
+        media_color(mean, CASES[i].integrator(), 16384, 1,
+                    ALONG_Z(FIRE("1")) "LightSource \"point\"\n"
+                                       "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission of a grid that scatters", mean, fog, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
 /* Emission does not depend on where the ray is scattered: a thin medium that emits and scatters, at depth 1. */
 START_TEST(test_emission_of_fog)
 {
@@ -225,13 +331,17 @@ TCase *analytic_media_case(void)
 {
     TCase *tcase = tcase_create("media");
     tcase_add_test(tcase, test_slab);
+    tcase_add_test(tcase, test_grid_slab);
+    tcase_add_test(tcase, test_constant_grid);
     tcase_add_test(tcase, test_glass);
     tcase_add_test(tcase, test_camera_inside);
     tcase_add_test(tcase, test_single_scattering);
     tcase_add_test(tcase, test_furnace);
+    tcase_add_test(tcase, test_furnace_of_grids);
     tcase_add_test(tcase, test_emission);
     tcase_add_test(tcase, test_emission_behind);
     tcase_add_test(tcase, test_emission_of_fog);
+    tcase_add_test(tcase, test_emission_of_grid);
     tcase_set_timeout(tcase, 300);
     return tcase;
 }

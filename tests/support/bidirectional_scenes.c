@@ -193,6 +193,18 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "LightSource \"point\" \"rgb I\" [ 4 3 2 ] \"point3 from\" [ 2 2 -1 ]\n" BD_GREY BD_FLOOR
      "MediumInterface \"fog\" \"\" Material \"interface\"\n" BD_BALL,
      SUPPORT_SUM_ONLY, 4, 2},
+    {"smoke of grids around everything and behind an interface",
+     "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"integer ny\" 3 \"integer nz\" 2\n"
+     "\"point3 p0\" [ -2 -1 -6 ] \"point3 p1\" [ 2 2.5 1 ] \"float density\" [ 1 0 0.2 3 0 1 2 0.1 0 0 1 0.5 ]\n"
+     "\"rgb sigma_a\" [ 0.02 0.03 0.05 ] \"rgb sigma_s\" [ 0.4 0.3 0.5 ] \"float g\" 0.4\n"
+     "MakeNamedMedium \"dye\" \"string type\" \"rgbgrid\" \"integer nz\" 3 \"point3 p0\" [ 0 -1 -1 ] \"point3 p1\" [ 2 "
+     "1 1 ]\n"
+     "\"rgb sigma_a\" [ 0.1 0.2 0.4 0 0.5 0 0.7 0 0.1 ] \"rgb sigma_s\" [ 2 1 0 0 0.5 3 1.5 4 1 ] \"float g\" -0.3\n"
+     "MediumInterface \"smoke\"\n" BD_ROOM "AttributeBegin MediumInterface \"\" \"smoke\" Translate -1 0 0\n"
+     "Material \"dielectric\"\n" BD_BALL "AttributeEnd\n"
+     "AttributeBegin MediumInterface \"dye\" \"smoke\" Translate 1 0 0 Material \"interface\"\n" BD_BALL
+     "AttributeEnd\n",
+     SUPPORT_SUM_ONLY, 4, 2},
 };
 
 const int BIDIRECTIONAL_SCENE_COUNT = (int)(sizeof BIDIRECTIONAL_SCENES / sizeof BIDIRECTIONAL_SCENES[0]);
