@@ -176,6 +176,7 @@ tests_test_analytic_SOURCES = tests/render/test_analytic.c \
 	tests/render/test_analytic_environment.c \
 	tests/render/test_analytic_glass.c \
 	tests/render/test_analytic_instances.c \
+	tests/render/test_analytic_intensity.c \
 	tests/render/test_analytic_lights.c \
 	tests/render/test_analytic_media.c \
 	tests/render/test_analytic_opaque.c \
@@ -217,6 +218,7 @@ tests_test_emit_SOURCES = tests/light/test_emit.c \
 	tests/light/test_emit_aims.c \
 	tests/light/test_emit_area.c \
 	tests/light/test_emit_camera.c \
+	tests/light/test_emit_spherical.c \
 	tests/light/test_emit_direction.c \
 	tests/light/test_emit_distance.c \
 	tests/light/test_emit_image.c \

@@ -86,6 +86,14 @@ static const float *writing_row(void *context, int y)
     return picture_row(&writing->picture, y);
 }
 
+static bool matrix_is_zero(const float m[16])
+{
+    int i = 0;
+    while (i < 16 && m[i] == 0.0f)
+        ++i;
+    return i == 16;
+}
+
 static bool exr_output_write(const RenderOutput *output, const ExrLane *lanes, const Film *film, size_t channel_count,
                              double samples_per_pixel, Error *error)
 {
@@ -99,11 +107,13 @@ static bool exr_output_write(const RenderOutput *output, const ExrLane *lanes, c
         exr_text("scene", path_file_name(output->scene_file)),
         exr_whole("seed", output->seed),
         exr_matrix("worldToCamera", output->world_to_camera),
-        exr_matrix("worldToNDC", output->world_to_ndc),
+        {0},
         {0},
         {0},
     };
-    size_t attribute_count = sizeof attributes / sizeof attributes[0] - 2;
+    size_t attribute_count = sizeof attributes / sizeof attributes[0] - 3;
+    if (!matrix_is_zero(output->world_to_ndc))
+        attributes[attribute_count++] = exr_matrix("worldToNDC", output->world_to_ndc);
     if (layers && (layers->wanted & LAYER_BIT(LAYER_DEPTH)) != 0)
         attributes[attribute_count++] =
             exr_text("depthMeasure", "Z is the distance along the ray from the camera, in units of the world");

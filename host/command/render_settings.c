@@ -152,17 +152,20 @@ static bool depth_check(const RenderCommand *command, const Integrator *integrat
     return error_fix(error, "add --max-depth=%u", segments);
 }
 
-/* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. */
-static bool media_check(const Integrator *integrator, const Scene *scene, Error *error)
+/* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. Path tracing
+ * shows it, if it goes along with them. */
+static bool media_check(const RenderCommand *command, const Integrator *integrator, const Scene *scene, Error *error)
 {
-    if (!(scene->features & FEATURE_MEDIUM_EMISSION) || integrator != integrator_mmlt())
+    bool alone = integrator == integrator_mmlt() && (command->chains.paper || command->chains.chains_only);
+    if (!(scene->features & FEATURE_MEDIUM_EMISSION) || !alone)
         return true;
-    error_set(error, "the scene has a medium that emits light (Le), which mmlt does not support");
-    return error_fix(error, "use --integrator=pt, ibpt or bdpt, or set Le of the medium to 0");
+    error_set(error, "the scene has a medium that emits light (Le), which chains alone do not show");
+    return error_fix(error, "leave --mlt=%s out, or set Le of the medium to 0",
+                     command->chains.paper ? "scheme=paper" : "combine=off");
 }
 
 bool render_settings_apply(const RenderCommand *command, const Integrator *integrator, Scene *scene, Error *error)
 {
-    return media_check(integrator, scene, error) && settings_override(command, scene, error) &&
+    return media_check(command, integrator, scene, error) && settings_override(command, scene, error) &&
            depth_check(command, integrator, scene, error);
 }

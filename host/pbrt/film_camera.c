@@ -284,16 +284,25 @@ static void shutter_read(PbrtImport *im, ParamList *list)
                     "the shutter closes before it opens: the image would be black");
 }
 
-/* Handles cameras of pbrt that are not supported. */
+static const char *const CAMERAS[] = {"perspective", "orthographic", "spherical"};
+#define CAMERA_COUNT (sizeof CAMERAS / sizeof *CAMERAS)
+
+static bool camera_known(const char *kind)
+{
+    size_t i = 0;
+    while (i < CAMERA_COUNT && strcmp(kind, CAMERAS[i]) != 0)
+        ++i;
+    return i < CAMERA_COUNT;
+}
+
+/* Handles cameras that are not supported. */
 static bool camera_other(PbrtImport *im, const char *kind, bool *substitute)
 {
-    static const char *const KNOWN[] = {"perspective", "orthographic"};
-    char what[64];
     *substitute = false;
-    if (strcmp(kind, "realistic") != 0 && strcmp(kind, "spherical") != 0)
-        return import_unknown(im, im->place, "camera", kind, KNOWN, 2);
-    snprintf(what, sizeof what, "the camera \"%s\"", kind);
-    *substitute = import_unsupported(im, im->place, what, "a perspective camera of 90 degrees", NULL);
+    if (strcmp(kind, "realistic") != 0)
+        return import_unknown(im, im->place, "camera", kind, CAMERAS, CAMERA_COUNT);
+    *substitute =
+        import_unsupported(im, im->place, "the camera \"realistic\"", "a perspective camera of 90 degrees", NULL);
     return *substitute;
 }
 
@@ -308,19 +317,34 @@ static bool camera_transform_set(PbrtImport *im, CameraSettings *camera)
     return state_coordinate_system(im, "camera", named);
 }
 
-static void camera_params_read(PbrtImport *im, ParamList *list, CameraSettings *camera)
+static void mapping_read(ParamList *list, CameraSettings *camera)
 {
-    camera->kind = CAMERA_PERSPECTIVE;
-    if (strcmp(list->owner, "the orthographic camera") == 0) {
+    const char *mapping = param_string(list, "mapping", "equalarea");
+    camera->kind = CAMERA_EQUAL_AREA;
+    if (strcmp(mapping, "equirectangular") == 0)
+        camera->kind = CAMERA_EQUIRECTANGULAR;
+    else if (strcmp(mapping, "equalarea") != 0) {
+        param_error(list, "mapping", "unknown mapping \"%s\" of a spherical camera", mapping);
+        error_fix(list->error, "use equalarea or equirectangular");
+    }
+}
+
+static void camera_params_read(PbrtImport *im, const char *kind, ParamList *list, CameraSettings *camera)
+{
+    lens_read(list, camera);
+    screen_window_read(list, camera);
+    shutter_read(im, list);
+    if (strcmp(kind, "orthographic") == 0) {
         camera->kind = CAMERA_ORTHOGRAPHIC;
+    } else if (strcmp(kind, "spherical") == 0) {
+        mapping_read(list, camera);
+        camera->lens_radius = 0.0f; /* as in pbrt, lens and window have no effect */
     } else {
+        camera->kind = CAMERA_PERSPECTIVE;
         camera->fov = param_float(list, "fov", 90.0f);
         if (!(camera->fov > 0.0f && camera->fov < 180.0f))
             param_error(list, "fov", "\"fov\" must be above 0 and below 180 degrees");
     }
-    lens_read(list, camera);
-    screen_window_read(list, camera);
-    shutter_read(im, list);
 }
 
 bool import_camera(PbrtImport *im, const char *kind)
@@ -328,7 +352,7 @@ bool import_camera(PbrtImport *im, const char *kind)
     CameraSettings *camera = &im->scene->camera_settings;
     ParamList list;
     char owner[96];
-    bool known = strcmp(kind, "perspective") == 0 || strcmp(kind, "orthographic") == 0, substitute = false;
+    bool known = camera_known(kind), substitute = false;
     if (!camera_transform_set(im, camera) || (!known && !camera_other(im, kind, &substitute)))
         return false;
     camera->medium = im->state.outside;
@@ -336,7 +360,7 @@ bool import_camera(PbrtImport *im, const char *kind)
         return true;
     snprintf(owner, sizeof owner, "the %s camera", kind);
     import_list(im, &list, owner, -1);
-    camera_params_read(im, &list, camera);
+    camera_params_read(im, kind, &list, camera);
     return list_end(im, &list);
 }
 

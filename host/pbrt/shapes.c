@@ -100,16 +100,14 @@ static bool emission_read(PbrtImport *im, ShapeContext *context)
     return true;
 }
 
-/* pbrt treats an area light of alpha 0 as invisible but emitting. */
-static bool alpha_emission_check(PbrtImport *im, const ParamList *list, const ShapeContext *context)
+/* As in pbrt, an area light whose alpha is the constant 0 is invisible and has its whole emission. */
+static void invisible_light_mark(const PbrtImport *im, ShapeContext *context)
 {
     if (!context->emits || context->shape.alpha == NONE)
-        return true;
+        return;
     const TextureOp *op = &ARRAY_AT(&im->scene->texture_ops, TextureOp, context->shape.alpha);
-    if (op->code != TEXTURE_CONSTANT || op->value.x != 0.0f || op[1].code != TEXTURE_END)
-        return true;
-    return import_unsupported(im, param_place(list, "alpha"), "an invisible area light (alpha 0)", "it emits no light",
-                              "use a point light");
+    if (op->code == TEXTURE_CONSTANT && op->value.x == 0.0f && op[1].code == TEXTURE_END)
+        context->emission.flags |= LIGHT_INVISIBLE;
 }
 
 static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
@@ -130,8 +128,10 @@ static bool context_make(PbrtImport *im, ParamList *list, ShapeContext *context)
     if (interface)
         context->shape.material = NONE;
     context->shape.first_light = NONE;
-    return alpha_read(im, list, &context->shape.alpha) && emission_read(im, context) &&
-           alpha_emission_check(im, list, context);
+    if (!alpha_read(im, list, &context->shape.alpha) || !emission_read(im, context))
+        return false;
+    invisible_light_mark(im, context);
+    return true;
 }
 
 static bool mesh_kind_read(PbrtImport *im, ParamList *list, const ShapeContext *context)

@@ -8,6 +8,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/import_options.h \
 	host/pbrt/late.c host/pbrt/late.h \
 	host/pbrt/lexer.c host/pbrt/lexer.h \
+	host/pbrt/light_images.c host/pbrt/light_reader.h \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \
 	host/pbrt/media.c host/pbrt/media.h host/pbrt/media_presets.h \

@@ -14,6 +14,8 @@ typedef struct PathSteps {
     bool split; /* direct light is splatted apart */
     bool split_depths; /* what each segment brings is splatted apart */
     bool caustics;
+    bool
+        keeps; /* with `split`: direct light is splatted at the end, together with other light that it is summed with */
 } PathSteps;
 
 /* Directions drawn by photons. */
@@ -54,7 +56,7 @@ static void splat_record(Recorder *recorder, const PathSteps *steps)
 /* What is splatted when a path has ended, or the caustics that belong to it. */
 static void end_record(Recorder *recorder, const PathSteps *steps)
 {
-    if (steps->caustics && steps->split) {
+    if (steps->keeps && steps->split) {
         recorder_kernel(recorder, KERNEL_pt_splat_caustics, false);
         recorder_step(recorder, STEP_SPLAT);
     } else if (steps->caustics) {
@@ -76,7 +78,7 @@ static void steps_record(Recorder *recorder, const PathSteps *steps)
         if (skips && steps->caustics && depth > (steps->split ? 2u : 1u))
             recorder_skip(recorder, RECORDER_END);
         recorder_kernel(recorder, KERNEL_pt_shade_hits, true);
-        if (steps->split && depth == 2 && steps->caustics) {
+        if (steps->split && depth == 2 && steps->keeps) {
             recorder_kernel(recorder, KERNEL_pt_keep_direct, false);
         } else if (steps->split && depth == 2) {
             recorder_kernel(recorder, KERNEL_pt_splat_direct, false);
@@ -129,7 +131,7 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_GATHERED, 1, false, "gathered"),
     PATH_FIELD(PATH_RECEIVER, RECEIVER_WORDS, true, "receiver"),
     PATH_FIELD(PATH_DELTA, 1, false, "delta lobes"),
-    PATH_FIELD(PATH_CAUSTIC_RADIANCE, 3, true, "radiance by photons"),
+    PATH_FIELD(PATH_CAUSTIC_RADIANCE, 3, true, "radiance by photons and from media"),
     PATH_FIELD(PATH_CAUSTIC_SEGMENTS, 1, false, "segments of the caustic path"),
     PATH_FIELD(PATH_CAUSTIC_LIGHT, 1, false, "light of its photon"),
     PATH_FIELD(PATH_CAUSTIC_BETA, 3, true, "throughput of the caustic path"),
@@ -148,7 +150,9 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
     const PathSteps steps = {.max_depth = frame->path.max_depth,
                              .split = frame->partition.split_direct != 0,
                              .split_depths = frame->film.split_depths != 0,
-                             .caustics = frame->photons.count > 0};
+                             .caustics = frame->photons.count > 0,
+                             .keeps =
+                                 frame->photons.count > 0 || (frame_features(frame) & FEATURE_MEDIUM_EMISSION) != 0};
     size_t per_segment = 11 + (steps.caustics ? 1 + 3 * (CAUSTIC_VERTICES + 1) : 0);
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;

@@ -1,5 +1,6 @@
 #include "render/photon_lobe.h"
 
+#include "light/delta.h"
 #include "light/infinite.h"
 #include "path/caustic_rest.h"
 
@@ -81,7 +82,7 @@ static void reach_set(PhotonLights *lights)
             reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
         reach = fmin(reach, world);
         lights->step[i] = fmax(POINT_STEP * reach, least);
-        if (light->kind == LIGHT_POINT || light->kind == LIGHT_SPOT)
+        if (light_has_position(light->kind))
             nearest = fmin(nearest, reach);
     }
     lights->params.point_radius = (float)(POINT_RADIUS * nearest);
@@ -186,8 +187,7 @@ static double light_radius(const PhotonLights *lights, const PhotonPath *path)
         return lights->radius[path->light];
     if (kind == LIGHT_DISTANT)
         return (double)params->distant_sine;
-    return kind == LIGHT_POINT || kind == LIGHT_SPOT ? (double)params->point_radius
-                                                     : far_radius(lights, path->light, path->first);
+    return light_has_position(kind) ? (double)params->point_radius : far_radius(lights, path->light, path->first);
 }
 
 bool photon_differences(const PhotonLights *lights, const PhotonPath *path,

@@ -110,7 +110,7 @@ static void missed_warn(const PhotonMap *map, uint count, double missed)
         snprintf(fix, sizeof fix, "render for longer, or with --photons=%u", PHOTONS_MOST_ALLOWED);
     log_message(LOG_WARNING,
                 "%.0f %% of the directions that %u caustic photons predict miss the light: caustics will be noisy, and "
-                "those of point, spot and distant lights incomplete: %s",
+                "those of lights without extent incomplete: %s",
                 100.0 * missed, map->params.count, fix);
 }
 

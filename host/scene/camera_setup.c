@@ -127,6 +127,12 @@ void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 
                  move = matrix_translate(-(double)origin.x, -(double)origin.y, -(double)origin.z);
     memcpy(view.m, settings->camera_from_world, sizeof view.m);
     Matrix world = matrix_multiply(&view, &move);
+    for (int i = 0; i < 16; ++i) {
+        world_to_camera[i] = (float)world.m[i];
+        world_to_ndc[i] = 0.0f;
+    }
+    if (camera->kind >= CAMERA_EQUAL_AREA)
+        return;
     /* an orthographic window is in rescaled units, 2^exponent times the settings'; a perspective one has tangents */
     double unit = camera->kind == CAMERA_PERSPECTIVE ? 1.0 : ldexp(1.0, -unit_exponent(settings->world_from_camera));
     const double left = unit * (double)camera->screen[0], right = unit * (double)camera->screen[1],
@@ -141,8 +147,6 @@ void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 
         to_window.m[11] = to_window.m[14] = 1.0; /* z becomes 1 / z */
     }
     Matrix picture = matrix_multiply(&to_window, &world);
-    for (int i = 0; i < 16; ++i) {
-        world_to_camera[i] = (float)world.m[i];
+    for (int i = 0; i < 16; ++i)
         world_to_ndc[i] = (float)picture.m[i];
-    }
 }

@@ -321,6 +321,8 @@ static ulong scene_features(const Scene *scene)
         features |= ARRAY_AT(&scene->texture_ops, TextureOp, i).code >= TEXTURE_FBM ? FEATURE_PROCEDURAL : 0u;
     if (scene->camera_settings.lens_radius > 0.0f)
         features |= FEATURE_LENS;
+    if (scene->camera_settings.kind >= CAMERA_EQUAL_AREA)
+        features |= FEATURE_SPHERICAL_CAMERA;
     return features | media_features(scene);
 }
 

@@ -107,6 +107,8 @@ void light_guide_setup(Scene *scene)
         const Light *light = &view.lights[i];
         LightGuide guide = {.power = 0.0};
         next = i + 1;
+        if ((light->flags & LIGHT_INVISIBLE) != 0) /* no walk hits it */
+            continue;
         if (light->kind == LIGHT_AREA)
             next = shape_guide(scene, &view, i, &guide);
         else if (light->kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)

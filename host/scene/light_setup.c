@@ -15,9 +15,9 @@ static double luminance(Vec3 c)
     return (double)rgb_luminance(vec3(float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f)));
 }
 
-/* ---- environments ------------------------------------------------------------------------------------------------ */
+/* ---- images of lights -------------------------------------------------------------------------------------------- */
 
-/* The image of an infinite light while its distribution is built. */
+/* The image of an infinite, goniometric or projection light while its distribution is built. */
 typedef struct Environment {
     SceneView view;
     TextureImage image;
@@ -30,7 +30,8 @@ static float texel_luminance(const Environment *e, int x, int y)
     return (float)luminance(vec3_mul(e->light->emission, image_texel_wrapped(&e->view, &e->image, x, y, 0)));
 }
 
-/* The texel (x, y), at most one outside the image, wrapped like environment_image (light/infinite.h). */
+/* The texel (x, y), at most one outside the image, wrapped like environment_image (light/infinite.h). Lights at a point
+ * do not interpolate (light/intensity_image.h). */
 static float texel_at(const Environment *e, int x, int y)
 {
     int width = (int)e->image.width, height = (int)e->image.height;
@@ -54,13 +55,35 @@ static float cell_mean(const Environment *e, int x, int y)
     return 0.125f * rows[0] + 0.75f * rows[1] + 0.125f * rows[2];
 }
 
-/* Fraction of the sphere covered by each cell of row y, times the number of cells. */
+/* Fraction of the sphere covered by each cell of row y, times the number of cells; of projection lights a factor is
+ * missing. */
 static double row_weight(const Environment *e, int y)
 {
     if ((e->light->flags & LIGHT_EQUIRECTANGULAR) == 0)
         return 1.0;
     double height = (double)e->image.height, step = M_PI / height;
     return 0.5 * height * (cos(step * y) - cos(step * (y + 1)));
+}
+
+/* The missing factor, by the midpoint rule with PROJECTION_POINTS or more points per side of the image: projection_place
+ * (light/intensity_image.h) makes it a square of area 4. */
+#define PROJECTION_POINTS 64
+
+static double projection_weight(const Environment *e, int x, int y)
+{
+    int nx = 1 + PROJECTION_POINTS / (int)e->image.width, ny = 1 + PROJECTION_POINTS / (int)e->image.height;
+    double sum = 0.0;
+    if (e->light->kind != LIGHT_PROJECTION)
+        return 1.0;
+    for (int i = 0; i < nx * ny; ++i) {
+        int column = i % nx, row = i / nx;
+        double px = 2.0 * (x + (column + 0.5) / nx) / (double)e->image.width - 1.0;
+        double py = 1.0 - 2.0 * (y + (row + 0.5) / ny) / (double)e->image.height;
+        Vec3 w = affine_vector(e->light->world_from_light, vec3((float)px, (float)py, 1.0f));
+        double length = (double)vec3_length(w);
+        sum += 1.0 / (M_PI * length * length * length);
+    }
+    return sum / (nx * ny);
 }
 
 static bool environment_load(Environment *e, Error *error)
@@ -70,7 +93,7 @@ static bool environment_load(Environment *e, Error *error)
         for (int x = 0; x < width; ++x) {
             float value = texel_luminance(e, x, y);
             if (!float_finite(value)) {
-                error_set(error, "texel (%d, %d) of an infinite light's image is not finite", x, y);
+                error_set(error, "texel (%d, %d) of a light's image is not finite", x, y);
                 return error_fix(error, "repair the image, or clamp its values below 1e30");
             }
             e->texels[(size_t)y * e->image.width + (size_t)x] = value;
@@ -78,7 +101,7 @@ static bool environment_load(Environment *e, Error *error)
     return true;
 }
 
-/* Fills `weights` with each cell's share of the light; *mean: mean luminance of the radiance over the sphere. */
+/* Fills `weights` with each cell's share of the light; *mean: mean of the luminance over the sphere. */
 static void environment_weights(const Environment *e, float *weights, double *mean)
 {
     int width = (int)e->image.width, height = (int)e->image.height;
@@ -86,7 +109,7 @@ static void environment_weights(const Environment *e, float *weights, double *me
     for (int y = 0; y < height; ++y) {
         double weight = row_weight(e, y);
         for (int x = 0; x < width; ++x) {
-            double value = weight * (double)cell_mean(e, x, y);
+            double value = weight * projection_weight(e, x, y) * (double)cell_mean(e, x, y);
             weights[(size_t)y * e->image.width + (size_t)x] = (float)value;
             sum += value;
         }
@@ -94,7 +117,7 @@ static void environment_weights(const Environment *e, float *weights, double *me
     *mean = sum / ((double)width * (double)height);
 }
 
-/* Builds the distribution of an infinite light's image; *mean as above. */
+/* Builds the distribution of a light's image; *mean as above, of its radiance or intensity. */
 static bool environment_setup(Scene *scene, Light *light, double *mean, Error *error)
 {
     Environment e = {.light = light, .image = ARRAY_AT(&scene->images, TextureImage, light->image)};
@@ -102,12 +125,12 @@ static bool environment_setup(Scene *scene, Light *light, double *mean, Error *e
     e.view.texels = scene->texels.data;
     size_t cells = (size_t)e.image.width * e.image.height;
     if (cells == 0) {
-        error_set(error, "an infinite light's image is empty");
+        error_set(error, "a light's image is empty");
         return error_fix(error, "give another image");
     }
     float *weights = malloc(2 * cells * sizeof *weights);
     if (!weights)
-        return error_memory(error, 2 * cells * sizeof *weights, "an infinite light");
+        return error_memory(error, 2 * cells * sizeof *weights, "the image of a light");
     e.texels = weights + cells;
     bool ok = environment_load(&e, error);
     if (ok) {
@@ -142,6 +165,17 @@ static double spot_power(const Light *light, double disk)
     return light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
 }
 
+/* Of the mean over all directions. */
+static double goniometric_power(const Light *light, double disk)
+{
+    return point_power(light, disk);
+}
+
+static double projection_power(const Light *light, double disk)
+{
+    return point_power(light, disk);
+}
+
 static double distant_power(const Light *light, double disk)
 {
     (void)light;
@@ -161,6 +195,9 @@ static bool light_power(Scene *scene, uint index, double *power, Error *error)
 {
     Light *light = &ARRAY_AT(&scene->lights, Light, index);
     double disk = world_disk(scene), mean = luminance(light->emission);
+    bool image = light->kind == LIGHT_INFINITE_IMAGE || light_has_intensity_image(light->kind);
+    if (image && !environment_setup(scene, light, &mean, error))
+        return false;
     switch (light->kind) {
     case LIGHT_AREA:
         *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
@@ -176,8 +213,6 @@ static bool light_power(Scene *scene, uint index, double *power, Error *error)
             return false;
         break;
     default:
-        if (light->kind == LIGHT_INFINITE_IMAGE && !environment_setup(scene, light, &mean, error))
-            return false;
         *power = mean * 4.0 * M_PI * disk;
     }
     if (*power >= 0.0 && isfinite(*power) && vec3_finite(light->emission))

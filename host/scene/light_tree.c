@@ -125,14 +125,27 @@ static Bounds area_bounds(const SceneView *view, uint light, double power)
                     .two_sided = two_sided};
 }
 
-static Bounds position_bounds(const Light *light)
+/* The largest luminance of a point light's intensity in any direction. */
+static double intensity_most(const SceneView *view, const Light *light)
+{
+    if (!light_has_intensity_image(light->kind))
+        return (double)rgb_luminance(light->emission);
+    double most = 0.0;
+    TextureImage image = view->images[light->image];
+    for (uint y = 0; y < image.height; ++y)
+        for (uint x = 0; x < image.width; ++x)
+            most = fmax(most, (double)rgb_luminance(vec3_mul(light->emission, image_texel(view, &image, x, y))));
+    return most;
+}
+
+static Bounds position_bounds(const SceneView *view, const Light *light)
 {
     Bounds bounds = {.box = box_empty(),
                      .normals = {NO_CONE.axis, M_PI},
                      .emission = 0.5 * M_PI,
-                     .intensity = (double)rgb_luminance(light->emission)};
+                     .intensity = intensity_most(view, light)};
     box_add(&bounds.box, light->position);
-    if (light->kind == LIGHT_SPOT) {
+    if (light->kind == LIGHT_SPOT || light->kind == LIGHT_PROJECTION) {
         bounds.normals = (Cone){light->direction, acos((double)light->cos_falloff)};
         bounds.emission = acos((double)light->cos_total) - bounds.normals.angle;
     }
@@ -157,7 +170,7 @@ static Bounds light_bounds(const SceneView *view, uint light, double power, doub
     if (source->kind == LIGHT_AREA)
         return area_bounds(view, light, power);
     if (light_has_position(source->kind))
-        return position_bounds(source);
+        return position_bounds(view, source);
     if (source->kind == LIGHT_PORTAL)
         return portal_bounds(&view->portals[source->portal], power);
     double directions = source->kind >= LIGHT_INFINITE ? 0.25 : 1.0; /* 4 pi sr, of which pi counts at a surface */
@@ -398,6 +411,9 @@ bool light_tree_build(Scene *scene, const double *powers, double disk, Error *er
                       .patches = scene->patches.data,
                       .quadrics = scene->quadrics.data,
                       .lights = scene->lights.data,
+                      .images = scene->images.data,
+                      .lookup = scene->lookup.data,
+                      .texels = scene->texels.data,
                       .portals = scene->portals.data};
     scene->light_nodes.count = 0;
     Leaf *leaves = malloc(light_count * sizeof *leaves);

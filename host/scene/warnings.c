@@ -18,11 +18,23 @@ static void strays_report(const Scene *scene)
                     count, count == 1 ? "reaches" : "reach", (double)strays, (double)others);
 }
 
+static bool has_invisible_light(const Scene *scene)
+{
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        if ((ARRAY_AT(&scene->lights, Light, i).flags & LIGHT_INVISIBLE) != 0)
+            return true;
+    return false;
+}
+
 void scene_advise(const Scene *scene, bool photons)
 {
     if (scene_has_delta(scene) && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
-        log_message(LOG_INFO, "light of point, spot and distant lights that passes smooth glass or mirrors both before "
+        log_message(LOG_INFO, "light of point, spot, distant and other lights without extent that passes smooth glass "
+                              "or mirrors both before "
                               "and after a rough surface is found by photons alone and is missing: render by mmlt, or "
                               "by pt with --photons=1048576");
+    if (scene_has_delta(scene) && has_invisible_light(scene))
+        log_message(LOG_INFO, "light of area lights with alpha 0 that passes smooth glass or mirrors both before and "
+                              "after a rough surface is missing: without alpha it is found");
     strays_report(scene);
 }

@@ -1,4 +1,4 @@
-/* Cameras: from a film position to a ray and back. Conventions of pbrt-v4: camera space is left-handed and looks along
+/* Perspective and orthographic cameras: from a film position to a ray and back. Conventions of pbrt-v4: camera space is left-handed and looks along
  * +z with y up; film positions are in pixels from the upper left corner, y down. */
 #ifndef TWINLIGHT_CAMERA_CAMERA_H
 #define TWINLIGHT_CAMERA_CAMERA_H
@@ -115,6 +115,7 @@ typedef struct CameraConnection {
     Vec3 p; /* on the lens */
     Vec3 wi; /* unit, from the point to the lens */
     float pdf; /* camera_pdf */
+    float copies; /* number of film positions from which the point is seen, of which `film` is one, drawn at random */
 } CameraConnection;
 
 /* Whether the film position is within the pixel filter's reach of the crop window. (A filter narrower than a pixel
@@ -148,6 +149,7 @@ SHARED_FUNCTION bool camera_connect(__global const FrameParams *frame, Vec3 p, V
         screen = vec2(screen.x / q.z, screen.y / q.z);
         o = lens;
     }
+    connection->copies = 1.0f;
     connection->film = camera_film(&camera, screen, (float)frame->film.width, (float)frame->film.height);
     connection->p = affine_point(camera.world_from_camera, vec3(o.x, o.y, 0.0f));
     Vec3 d = vec3_sub(connection->p, p);

@@ -5,4 +5,6 @@ SHARED_FILES += \
 	shared/camera/film_spread.h \
 	shared/camera/film_sum.h \
 	shared/camera/pixel_filter.h \
-	shared/camera/splat_offset.h
+	shared/camera/spherical.h \
+	shared/camera/splat_offset.h \
+	shared/camera/view.h

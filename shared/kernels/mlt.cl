@@ -313,7 +313,9 @@ __kernel void mlt_connect(__global const FrameParams *restrict frame, __global c
     StrategyWeights weights = bd_weights(frame, s, camera, &view, &connection.ends);
     connection_store(paths, shadows, stride, item, &connection, weights.own);
     Vec2 position = camera == 1u ? connection.film : film_position(frame, film.x[0], film.x[1]);
-    chain_place(scene, paths, item, position, vec3_scale(connection.contribution, weights.own), weights.path_tracing);
+    /* Path tracing does not draw one of the film positions from which a path is seen. */
+    chain_place(scene, paths, item, position, vec3_scale(connection.contribution, weights.own),
+                weights.path_tracing * connection.copies);
 }
 
 /* From: the proposal's contribution and visibility. To: the next current path, and one splat. */

@@ -33,6 +33,9 @@ SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed
     Random4 choice = photon_random(scene->frame, number, 0u), random = photon_random(scene->frame, number, 1u);
     LightEmission emission = {0};
     *light = light_select(scene, choice.x[0], choice.x[1]);
+    /* No direction that photons draw would hit it. */
+    if (light_is_invisible(scene, *light))
+        return false;
     /* A light without extent may lie before the end of a ray, for which alone the optical depth is known. */
     if (SCENE_HAS(scene, FEATURE_MEDIUM) && light_has_position(scene->lights[*light].kind))
         return false;

@@ -6,9 +6,9 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/material.h"
-#include "camera/camera.h"
 #include "camera/film_splat.h"
 #include "camera/splat_offset.h"
+#include "camera/view.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
 #include "layout/diagnostics.h"
@@ -70,9 +70,7 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     Vec2 offset = pixel_filter_sample(scene, vec2(random_float(random.x[0]), random_float(random.x[1])), &weight);
     uint row = pixel / frame->film.width, column = pixel % frame->film.width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
-    Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
-                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    Ray ray = view_ray(scene, film, vec2(random_float(random.x[2]), random_float(random.x[3])));
     ray_store(rays, stride, item, ray);
     state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
     state_store(paths, stride, PATH_PIXEL, item, pixel);
@@ -95,13 +93,13 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
         state_store_vec3(paths, stride, PATH_RARE, item, vec3_splat(0.0f));
     }
-    if (frame->photons.count > 0u) {
+    if (frame->photons.count > 0u)
         state_store(paths, stride, PATH_DELTA, item, 0u);
+    if (frame->photons.count > 0u || SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
         state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item, vec3_splat(0.0f));
-    }
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
     if (SCENE_HAS(scene, FEATURE_MEDIUM))
-        path_ray_media(scene, paths, rays, item, camera.medium, 1u);
+        path_ray_media(scene, paths, rays, item, frame->camera.medium, 1u);
     if (!ray_traceable(ray.o, ray.d)) {
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         path_end(paths, rays, stride, item);
@@ -221,6 +219,19 @@ SHARED_FUNCTION_APART void path_vertex_in_medium(const SceneView *scene, __globa
     bsdf_store(scene, paths, scene->frame->pass.stride, PATH_BSDF, item, &phase);
 }
 
+/* Adds what media have emitted along the path's latest segment. With frame->partition.split_direct no estimator but path
+ * tracing shows it, like direct light. */
+SHARED_FUNCTION_APART void path_add_medium_emission(__global const FrameParams *frame, __global uint *restrict paths,
+                                                    uint item, Vec3 light)
+{
+    uint stride = frame->pass.stride;
+    if (frame->partition.split_direct == 0u)
+        path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item), light, 1.0f);
+    else
+        state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item,
+                         vec3_add(state_load_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item), light));
+}
+
 /* Takes the path through the media before its hit: throughput, density, and the light that they emit. */
 SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint *restrict paths,
                                            __global const uint *restrict hits, uint item, bool scattered, Vec3 p)
@@ -229,8 +240,8 @@ SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint
     Passage passage = passage_load(scene, hits, stride, item, scattered, p);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
-        path_add_radiance(scene->frame, paths, item, state_load(paths, stride, PATH_DEPTH, item),
-                          vec3_mul(beta, state_load_vec3(hits, stride, HIT_EMISSION, item)), 1.0f);
+        path_add_medium_emission(scene->frame, paths, item,
+                                 vec3_mul(beta, state_load_vec3(hits, stride, HIT_EMISSION, item)));
     state_store_vec3(paths, stride, PATH_BETA, item, vec3_mul(beta, passage.weight));
     state_store_float(paths, stride, PATH_PDF_W, item, state_load_float(paths, stride, PATH_PDF_W, item) * passage.pdf);
 }
@@ -506,8 +517,9 @@ SHARED_FUNCTION void path_move(__global const FrameParams *frame, __global uint 
     state_store_vec3(paths, stride, from, item, vec3_splat(0.0f));
 }
 
-/* With photons and partition.split_direct: from: paths of two segments. To: their light kept until the end, where
- * pt_splat_caustics splats it together with the caustics. No estimator but path tracing shows either. */
+/* With partition.split_direct and photons or emissive media: from: paths of two segments. To: their light kept until the
+ * end, where pt_splat_caustics splats it together with caustics and what media emit. No estimator but path tracing shows
+ * any of them. */
 __kernel void pt_keep_direct(__global const FrameParams *restrict frame, __global uint *restrict paths)
 {
     uint item = (uint)get_global_id(0);

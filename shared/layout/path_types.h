@@ -93,11 +93,11 @@ typedef struct BsdfValue {
 typedef struct LightSample {
     Vec3 wi; /* unit, from the reference point to the light */
     Vec3 p; /* point on the light; unused when `infinite` */
-    Vec3 ng; /* its geometric normal (area lights) */
-    Vec3 radiance; /* arriving; for delta lights already divided by the squared distance */
-    float pdf_w; /* solid-angle density given the light; 1 for delta lights */
+    Vec3 ng; /* its geometric normal; 0: not an area light */
+    Vec3 radiance; /* arriving; for lights without extent already divided by the squared distance */
+    float pdf_w; /* solid-angle density given the light; 1 for lights without extent */
     float pdf_emit; /* density of light subpaths (light/emit.h): area lights: per area at p; infinite: from wi */
-    uint delta; /* 1: point, spot, distant: no sampled direction can hit it */
+    uint delta; /* 1: lights of LIGHT_LIST_DELTA, invisible area lights: no sampled direction can hit it */
     uint infinite; /* 1: at infinity; trace along wi without end */
 } LightSample;
 

@@ -33,14 +33,16 @@
     X(AREA_LIGHT, area_light, "area light", 0u)                                                                        \
     X(INFINITE_LIGHT, infinite_light, "infinite light", 0u)                                                            \
     X(PORTAL, portal, "portal", 0u) /* an infinite light that is seen through a portal */                              \
-    X(DELTA_LIGHT, delta_light, "delta light", 0u) /* point, spot, distant */                                          \
+    X(DELTA_LIGHT, delta_light, "delta light", 0u) /* those of LIGHT_LIST_DELTA */                                     \
     X(LIGHT_TREE, light_tree, "several lights", 0u) /* in different places or directions */                            \
     X(LENS, lens, "lens", 0u) /* a camera with a lens of non-zero radius */                                            \
     X(TANGENTS, tangents, "tangents", 0u) /* dpdu and dpdv matter: bump, normal maps, anisotropic roughness */         \
     X(MEDIUM, medium, "medium", 0u) /* participating media */                                                          \
     X(SCATTERING, scattering, "scattering medium", 0u)                                                                 \
     X(MEDIUM_EMISSION, medium_emission, "emissive medium", 0u)                                                         \
-    X(MEDIUM_GRID, medium_grid, "medium of a grid", 0u)
+    X(MEDIUM_GRID, medium_grid, "medium of a grid", 0u)                                                                \
+    X(INTENSITY_IMAGE, intensity_image, "image of a light's intensity", 0u) /* goniometric, projection */              \
+    X(SPHERICAL_CAMERA, spherical_camera, "spherical camera", 0u)
 #define FEATURE_LIST(X) FEATURE_LIST_BEFORE(X) BSDF_LIST(X) FEATURE_LIST_AFTER(X)
 
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
@@ -81,11 +83,14 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define FEATURE_SCATTERING FEATURE_BIT(SCATTERING)
 #define FEATURE_MEDIUM_EMISSION FEATURE_BIT(MEDIUM_EMISSION)
 #define FEATURE_MEDIUM_GRID FEATURE_BIT(MEDIUM_GRID)
+#define FEATURE_INTENSITY_IMAGE FEATURE_BIT(INTENSITY_IMAGE)
+#define FEATURE_SPHERICAL_CAMERA FEATURE_BIT(SPHERICAL_CAMERA)
 
 /* All but those that few scenes have: the CPU's kernels are also compiled for scenes that have no others. */
 #define FEATURES_PLAIN                                                                                                 \
     (~(FEATURE_CYLINDER | FEATURE_COATED_CONDUCTOR | FEATURE_PROCEDURAL | FEATURE_PORTAL | FEATURE_MEDIUM |            \
-       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION | FEATURE_MEDIUM_GRID | FEATURE_CURVE | FEATURE_HAIR))
+       FEATURE_SCATTERING | FEATURE_MEDIUM_EMISSION | FEATURE_MEDIUM_GRID | FEATURE_INTENSITY_IMAGE |                  \
+       FEATURE_SPHERICAL_CAMERA | FEATURE_CURVE | FEATURE_HAIR))
 #define FEATURES_QUADRIC (FEATURE_SPHERE | FEATURE_DISK | FEATURE_CYLINDER)
 
 /* ---- geometry -------------------------------------------------------------------------------------------------- */
@@ -153,7 +158,8 @@ typedef struct Quadric {
     float z_min;
     float z_max;
     float phi_max;
-    uint whole; /* 1: a full sphere under a similarity transform, so it is a sphere in world space too */
+    uint whole; /* 1: a full sphere under a similarity transform, so it is a sphere in world space too; not if it is a
+                   light whose far side shines as well (scene_add_quadric) */
     Vec3 center; /* of a `whole` sphere, in world space */
     float world_radius; /* of a `whole` sphere */
 } Quadric;
@@ -328,9 +334,11 @@ typedef struct MediumGrid {
 #define LIGHT_LIST_DELTA(X)                                                                                            \
     X(POINT, point, "point", FEATURE_DELTA_LIGHT, 1u)                                                                  \
     X(SPOT, spot, "spot", FEATURE_DELTA_LIGHT, 1u)                                                                     \
+    X(GONIOMETRIC, goniometric, "goniometric", (FEATURE_DELTA_LIGHT | FEATURE_INTENSITY_IMAGE), 1u)                    \
+    X(PROJECTION, projection, "projection", (FEATURE_DELTA_LIGHT | FEATURE_INTENSITY_IMAGE), 1u)                       \
     X(DISTANT, distant, "distant", FEATURE_DELTA_LIGHT, 0u)
 
-/* All lights. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment, LIGHT_PORTAL one that
+/* All lights. Those at infinity, DISTANT and after, follow those at a point. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment, LIGHT_PORTAL one that
  * is constant or an image, and is seen through a portal alone (light/portal.h). */
 #define LIGHT_LIST(X)                                                                                                  \
     X(AREA, area, "area", FEATURE_AREA_LIGHT, 0u)                                                                      \
@@ -345,25 +353,28 @@ enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
 
 #define LIGHT_TWO_SIDED 0x1u
 #define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
+#define LIGHT_INVISIBLE 0x4u /* area: its shape has alpha 0, so that no ray hits it, and the light its whole emission */
 #define LIGHT_MEDIUM_SHIFT 8 /* from here on: the medium around it; of area lights that of their shape counts */
 
 typedef struct Light {
     uint kind;
     uint flags;
     uint primitive; /* area */
-    uint image; /* infinite image; portal: NONE if its environment is constant */
-    Vec3 emission; /* area, infinite: radiance (an image's scale). point, spot: intensity. distant: irradiance on a
-                      plane facing it */
+    uint image; /* infinite image, goniometric, projection; portal: NONE if its environment is constant */
+    Vec3
+        emission; /* area, infinite: radiance. point, spot, goniometric, projection: intensity. distant: irradiance on a
+                      plane facing it. With an image: its scale */
     float area; /* area: surface area in world space */
-    Vec3 position; /* point, spot */
+    Vec3 position; /* of lights at a point */
     float select_pdf; /* probability of choosing this light (host/scene/light_setup.h) */
-    Vec3 direction; /* spot: axis. distant: direction in which the light travels. unit */
-    float cos_total; /* spot: no light outside this angle */
-    float cos_falloff; /* spot: full intensity inside this angle */
-    uint distribution; /* infinite image, portal (of light subpaths): index into `distributions2d` */
+    Vec3 direction; /* spot, projection: axis. distant: direction in which the light travels. unit */
+    float cos_total; /* spot, projection: no light outside this angle */
+    float cos_falloff; /* spot: full intensity inside this angle; projection: cos_total */
+    uint
+        distribution; /* of light subpaths; infinite image, portal, goniometric, projection: index into `distributions2d` */
     uint portal; /* portal: index into `portals` */
     uint leaf; /* number of leaves before it in the tree of lights; NONE: it has no power */
-    Affine world_from_light; /* infinite: of directions, scaled to a determinant of 1 or -1 */
+    Affine world_from_light; /* infinite, goniometric, projection: of directions, scaled to a determinant of 1 or -1 */
     Affine light_from_world;
 } Light;
 
@@ -423,6 +434,9 @@ typedef struct Aim {
 
 #define CAMERA_PERSPECTIVE 0u
 #define CAMERA_ORTHOGRAPHIC 1u
+#define CAMERA_EQUAL_AREA                                                                                              \
+    2u /* spherical: pbrt's equal-area octahedral map of all directions; FEATURE_SPHERICAL_CAMERA */
+#define CAMERA_EQUIRECTANGULAR 3u /* spherical: longitude and latitude */
 
 /* Camera space as in pbrt: left-handed, looking along +z, y up. The screen window is the part of the plane z = 1
  * (perspective: of the image plane in units of tan(fov/2)) that the whole film shows. */

@@ -79,13 +79,14 @@ SHARED_FUNCTION void aim_from_infinity(const SceneView *scene, Aim aim, Vec2 u, 
 }
 
 /* Turns the ray to pass through the aim, which does not contain its origin; false if the light emits nothing there. */
-SHARED_FUNCTION bool aim_from_point(__global const Light *source, Aim aim, Vec2 u, LightEmission *emission)
+SHARED_FUNCTION bool aim_from_point(const SceneView *scene, __global const Light *source, Aim aim, Vec2 u,
+                                    LightEmission *emission)
 {
     Vec3 axis = vec3_normalize(vec3_sub(aim.center, emission->p));
     Vec3 w = frame_to_world(frame_from_normal(axis), warp_cone(u, aim_versine(aim, emission->p)));
     emission->w = vec3_normalize(w);
     if (source->kind != LIGHT_AREA) {
-        emission->radiance = delta_light_emitted(source, emission->w);
+        emission->radiance = delta_light_emitted(scene, source, emission->w);
         return !vec3_is_zero(emission->radiance);
     }
     float cosine = vec3_dot(emission->ng, emission->w);
@@ -120,7 +121,7 @@ SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float 
         emission->pdf_p = light_aimed_pdf_disc(scene, light, emission->p, emission->w);
         return emission->pdf_p > 0.0f;
     }
-    if (aimed && aim_versine(aim, emission->p) > 0.0f && !aim_from_point(source, aim, u_direction, emission))
+    if (aimed && aim_versine(aim, emission->p) > 0.0f && !aim_from_point(scene, source, aim, u_direction, emission))
         return false;
     emission->pdf_w = light_aimed_pdf_w(scene, light, emission->p, emission->ng, emission->w);
     return emission->pdf_w > 0.0f;

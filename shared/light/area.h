@@ -256,6 +256,12 @@ SHARED_FUNCTION Vec3 light_emitted(const SceneView *scene, uint light, Vec3 ng, 
     return emitter->emission;
 }
 
+/* Whether `light` is an area light of alpha 0, which emits but is hit by no ray. */
+SHARED_FUNCTION bool light_is_invisible(const SceneView *scene, uint light)
+{
+    return SCENE_HAS(scene, FEATURE_ALPHA) && (scene->lights[light].flags & LIGHT_INVISIBLE) != 0u;
+}
+
 /* Solid-angle density from area density; 0 if the direction lies in the surface. */
 SHARED_FUNCTION float area_light_pdf_from_area(float pdf_a, float distance2, float cosine)
 {
@@ -356,11 +362,12 @@ SHARED_FUNCTION bool area_light_sample(const SceneView *scene, uint light, Vec3 
         hit.ng = point.ng;
         sample->pdf_emit = area_light_pdf_a(scene, light, &primitive, &hit);
     }
-    sample->delta = 0u;
+    sample->delta = light_is_invisible(scene, light) ? 1u : 0u;
     sample->infinite = 0u;
     if (!(sample->pdf_w > 0.0f && float_finite(sample->pdf_w)) || vec3_is_zero(sample->radiance))
         return false;
-    sample->radiance = vec3_scale(sample->radiance, area_light_alpha(scene, &primitive, point.p, point.uv));
+    if (sample->delta == 0u)
+        sample->radiance = vec3_scale(sample->radiance, area_light_alpha(scene, &primitive, point.p, point.uv));
     return !vec3_is_zero(sample->radiance);
 }
 

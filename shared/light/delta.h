@@ -6,8 +6,8 @@
 #ifndef TWINLIGHT_LIGHT_DELTA_H
 #define TWINLIGHT_LIGHT_DELTA_H
 
-#include "layout/path_types.h"
-#include "light/emission.h"
+#include "light/intensity_image.h"
+#include "light/position.h"
 
 /* Whether a delta light of this kind is at Light.position; the others are at infinity. */
 SHARED_FUNCTION bool light_has_position(uint kind)
@@ -23,32 +23,12 @@ SHARED_FUNCTION bool light_is_far(uint kind)
     return kind != LIGHT_AREA && kind != LIGHT_PORTAL && !light_has_position(kind);
 }
 
-/* For light_NAME_sample of lights with a position: sets all but radiance. False: ref is that position. */
-SHARED_FUNCTION bool position_light_sample(__global const Light *source, Vec3 ref, LightSample *sample,
-                                           float *distance2)
-{
-    Vec3 d = vec3_sub(source->position, ref);
-    *distance2 = vec3_length_squared(d);
-    if (!(*distance2 > 0.0f))
-        return false;
-    sample->p = source->position;
-    sample->infinite = 0u;
-    sample->wi = vec3_scale(d, 1.0f / float_sqrt(*distance2));
-    return true;
-}
-
-/* For light_NAME_emit: all but w and pdf_w. */
-SHARED_FUNCTION void position_light_emit(__global const Light *source, LightEmission *emission)
-{
-    emission->p = source->position;
-    emission->pdf_p = 1.0f;
-    emission->delta_position = 1u;
-}
-
 /* ---- point ------------------------------------------------------------------------------------------------------- */
 
-SHARED_FUNCTION bool light_point_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+SHARED_FUNCTION bool light_point_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
+                                        LightSample *sample)
 {
+    (void)scene;
     float distance2;
     if (!position_light_sample(source, ref, sample, &distance2))
         return false;
@@ -56,15 +36,17 @@ SHARED_FUNCTION bool light_point_sample(__global const Light *source, Vec3 ref, 
     return true;
 }
 
-SHARED_FUNCTION float light_point_emit_pdf_w(__global const Light *source, Vec3 w)
+SHARED_FUNCTION float light_point_emit_pdf_w(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     (void)source;
     (void)w;
     return INV_4PI;
 }
 
-SHARED_FUNCTION Vec3 light_point_emitted(__global const Light *source, Vec3 w)
+SHARED_FUNCTION Vec3 light_point_emitted(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     (void)w;
     return source->emission;
 }
@@ -94,18 +76,20 @@ SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_fall
     return t * t * (3.0f - 2.0f * t);
 }
 
-SHARED_FUNCTION Vec3 light_spot_emitted(__global const Light *source, Vec3 w)
+SHARED_FUNCTION Vec3 light_spot_emitted(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     float cosine = vec3_dot(source->direction, w);
     return vec3_scale(source->emission, spot_falloff(cosine, source->cos_total, source->cos_falloff));
 }
 
-SHARED_FUNCTION bool light_spot_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+SHARED_FUNCTION bool light_spot_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
+                                       LightSample *sample)
 {
     float distance2;
     if (!position_light_sample(source, ref, sample, &distance2))
         return false;
-    sample->radiance = vec3_scale(light_spot_emitted(source, vec3_negate(sample->wi)), 1.0f / distance2);
+    sample->radiance = vec3_scale(light_spot_emitted(scene, source, vec3_negate(sample->wi)), 1.0f / distance2);
     return true;
 }
 
@@ -145,8 +129,9 @@ SHARED_FUNCTION Vec3 spot_emit_direction(__global const Light *spot, Vec2 u)
     return frame_to_world(frame_from_normal(spot->direction), vec3(d.x * scale, d.y * scale, 1.0f - versine));
 }
 
-SHARED_FUNCTION float light_spot_emit_pdf_w(__global const Light *source, Vec3 w)
+SHARED_FUNCTION float light_spot_emit_pdf_w(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     return spot_emit_pdf_w(source, vec3_dot(source->direction, w));
 }
 
@@ -166,8 +151,10 @@ SHARED_FUNCTION bool light_spot_emit(const SceneView *scene, __global const Ligh
 
 /* ---- distant ----------------------------------------------------------------------------------------------------- */
 
-SHARED_FUNCTION bool light_distant_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+SHARED_FUNCTION bool light_distant_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
+                                          LightSample *sample)
 {
+    (void)scene;
     (void)ref;
     sample->infinite = 1u;
     sample->wi = vec3_negate(source->direction);
@@ -175,15 +162,17 @@ SHARED_FUNCTION bool light_distant_sample(__global const Light *source, Vec3 ref
     return true;
 }
 
-SHARED_FUNCTION float light_distant_emit_pdf_w(__global const Light *source, Vec3 w)
+SHARED_FUNCTION float light_distant_emit_pdf_w(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     (void)source;
     (void)w;
     return 1.0f;
 }
 
-SHARED_FUNCTION Vec3 light_distant_emitted(__global const Light *source, Vec3 w)
+SHARED_FUNCTION Vec3 light_distant_emitted(const SceneView *scene, __global const Light *source, Vec3 w)
 {
+    (void)scene;
     (void)w;
     return source->emission;
 }
@@ -200,16 +189,24 @@ SHARED_FUNCTION bool light_distant_emit(const SceneView *scene, __global const L
 
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
+/* Whether the light is of the kind, which scenes with all of `feature` have. */
+SHARED_FUNCTION bool delta_light_is(const SceneView *scene, __global const Light *source, uint kind, ulong feature)
+{
+    bool used = (feature & FEATURE_INTENSITY_IMAGE) == 0u || SCENE_HAS(scene, FEATURE_INTENSITY_IMAGE);
+    return used && source->kind == kind;
+}
+
 /* sample->radiance is the arriving radiance integrated over solid angle, so pdf_w is 1. */
-SHARED_FUNCTION bool delta_light_sample(__global const Light *source, Vec3 ref, LightSample *sample)
+SHARED_FUNCTION bool delta_light_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
+                                        LightSample *sample)
 {
     bool reached = false;
     sample->ng = vec3_splat(0.0f);
     sample->pdf_w = 1.0f;
     sample->delta = 1u;
 #define SAMPLE(NAME, name, text, feature, position)                                                                    \
-    if (source->kind == LIGHT_##NAME)                                                                                  \
-        reached = light_##name##_sample(source, ref, sample);
+    if (delta_light_is(scene, source, LIGHT_##NAME, feature))                                                          \
+        reached = light_##name##_sample(scene, source, ref, sample);
     LIGHT_LIST_DELTA(SAMPLE)
 #undef SAMPLE
     return reached && !vec3_is_zero(sample->radiance) && vec3_finite(sample->radiance);
@@ -219,9 +216,9 @@ SHARED_FUNCTION bool delta_light_emit(const SceneView *scene, __global const Lig
                                       Vec2 u_direction, LightEmission *emission)
 {
 #define EMIT(NAME, name, text, feature, position)                                                                      \
-    if (source->kind == LIGHT_##NAME) {                                                                                \
+    if (delta_light_is(scene, source, LIGHT_##NAME, feature)) {                                                        \
         bool emits = light_##name##_emit(scene, source, u_point, u_direction, emission);                               \
-        emission->radiance = light_##name##_emitted(source, emission->w);                                              \
+        emission->radiance = light_##name##_emitted(scene, source, emission->w);                                       \
         return emits;                                                                                                  \
     }
     LIGHT_LIST_DELTA(EMIT)
@@ -229,22 +226,22 @@ SHARED_FUNCTION bool delta_light_emit(const SceneView *scene, __global const Lig
     return false;
 }
 
-SHARED_FUNCTION float delta_light_emit_pdf_w(__global const Light *source, Vec3 w)
+SHARED_FUNCTION float delta_light_emit_pdf_w(const SceneView *scene, __global const Light *source, Vec3 w)
 {
 #define PDF(NAME, name, text, feature, position)                                                                       \
-    if (source->kind == LIGHT_##NAME)                                                                                  \
-        return light_##name##_emit_pdf_w(source, w);
+    if (delta_light_is(scene, source, LIGHT_##NAME, feature))                                                          \
+        return light_##name##_emit_pdf_w(scene, source, w);
     LIGHT_LIST_DELTA(PDF)
 #undef PDF
     return 0.0f;
 }
 
 /* Radiance of LightEmission along w. */
-SHARED_FUNCTION Vec3 delta_light_emitted(__global const Light *source, Vec3 w)
+SHARED_FUNCTION Vec3 delta_light_emitted(const SceneView *scene, __global const Light *source, Vec3 w)
 {
 #define EMITTED(NAME, name, text, feature, position)                                                                   \
-    if (source->kind == LIGHT_##NAME)                                                                                  \
-        return light_##name##_emitted(source, w);
+    if (delta_light_is(scene, source, LIGHT_##NAME, feature))                                                          \
+        return light_##name##_emitted(scene, source, w);
     LIGHT_LIST_DELTA(EMITTED)
 #undef EMITTED
     return vec3_splat(0.0f);

@@ -11,11 +11,11 @@ typedef struct LightEmission {
     Vec3 p;
     Vec3 ng; /* area: geometric normal on the side that w leaves. Zero for other lights */
     Vec3 w; /* unit */
-    Vec3 radiance; /* area, infinite: radiance. point, spot: intensity. distant: irradiance on a plane facing it */
-    float pdf_p; /* area: per area of the light. infinite, distant: per area perpendicular to w. point, spot: 1 */
+    Vec3 radiance; /* area, infinite: radiance. at a point: intensity. distant: irradiance on a plane facing it */
+    float pdf_p; /* area: per area of the light. infinite, distant: per area perpendicular to w. at a point: 1 */
     float pdf_w; /* per solid angle; distant: 1 */
     float cosine; /* area: |ng.w|; else 1 */
-    uint delta_position; /* 1: point, spot */
+    uint delta_position; /* 1: a light at a point */
     uint delta_direction; /* 1: distant */
     uint infinite; /* 1: infinite, distant: p is not on the light */
     uint back; /* 1: w leaves the side of a two-sided area light that its shape's normal does not point to */

@@ -82,7 +82,9 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
     emission->w = vec3_normalize(w);
     emission->cosine = vec3_dot(emission->ng, emission->w);
     emission->pdf_w = area_emit_pdf_w(source, emission->ng, emission->w);
-    emission->radiance = vec3_scale(source->emission, area_light_alpha(scene, &primitive, point.p, point.uv));
+    emission->radiance = source->emission;
+    if (!light_is_invisible(scene, light))
+        emission->radiance = vec3_scale(source->emission, area_light_alpha(scene, &primitive, point.p, point.uv));
     return emission->pdf_w > 0.0f && emission->pdf_p > 0.0f && float_finite(emission->pdf_p);
 }
 
@@ -90,7 +92,7 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
 
 /* Draws a ray that leaves `light`. Area lights: the point by area_light_point, even on spheres, which light_sample
  * draws by solid angle; the direction with the cosine, on the side or sides that emit. Point lights: a uniform
- * direction; spots: roughly in proportion to their intensity. Light from infinity: the direction as in light_sample,
+ * direction; spots roughly, goniometric and projection lights exactly in proportion to their intensity. Light from infinity: the direction as in light_sample,
  * the point on a disc that covers the scene, or on the light's portal. False: no emission; *emission is then meaningless. */
 SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                 LightEmission *emission)
@@ -114,7 +116,7 @@ SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point
 
 /* pdf_p of light_emit. Area lights: at their point `hit` (ng, u, v are read), per area; other lights do not read `hit`.
  * Infinite and distant: per area perpendicular to the light's direction, unless the light has a portal
- * (light_emit_pdf_passing). Point and spot: 1. */
+ * (light_emit_pdf_passing). Lights at a point: 1. */
 SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const Surface *hit)
 {
     uint kind = scene->lights[light].kind;
@@ -135,7 +137,7 @@ SHARED_FUNCTION float light_emit_pdf_w(const SceneView *scene, uint light, Vec3 
         return area_emit_pdf_w(source, ng, w);
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && source->kind >= LIGHT_INFINITE)
         return environment_pdf_w(scene, light, vec3_negate(w));
-    return delta_light_emit_pdf_w(source, w);
+    return delta_light_emit_pdf_w(scene, source, w);
 }
 
 #endif

@@ -68,7 +68,7 @@ SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, 
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
         return infinite_light_sample(scene, light, ref, u, sample);
     if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
-        return delta_light_sample(scene->lights + light, ref, sample);
+        return delta_light_sample(scene, scene->lights + light, ref, sample);
     return false;
 }
 
@@ -83,7 +83,7 @@ SHARED_FUNCTION Ray light_shadow_ray(const SceneView *scene, Vec3 p, Vec3 ng, co
 {
     if (sample->infinite != 0u)
         return ray_spawn(p, ng, sample->wi);
-    return connecting_ray(scene, p, ng, sample->p, sample->delta != 0u ? vec3_splat(0.0f) : sample->ng);
+    return connecting_ray(scene, p, ng, sample->p, sample->ng);
 }
 
 /* Solid-angle density at `ref` with which light_sample, given the light, draws the direction `wi` (unit). Area lights:

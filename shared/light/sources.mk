@@ -4,6 +4,8 @@ SHARED_FILES += \
 	shared/light/aim.h \
 	shared/light/area.h \
 	shared/light/delta.h \
+	shared/light/intensity_image.h \
+	shared/light/position.h \
 	shared/light/emission.h \
 	shared/light/emit.h \
 	shared/light/infinite.h \

@@ -2,9 +2,9 @@
 #ifndef TWINLIGHT_PATH_BD_CONNECT_H
 #define TWINLIGHT_PATH_BD_CONNECT_H
 
-#include "camera/camera.h"
 #include "camera/film_splat.h"
 #include "camera/splat_offset.h"
+#include "camera/view.h"
 #include "layout/diagnostics.h"
 #include "path/bd_random.h"
 #include "path/bd_walk.h"
@@ -19,6 +19,7 @@ typedef struct Connection {
     uint target; /* t = 1: pixel of the splat */
     uint target_offset; /* in the filter of that pixel (camera/splat_offset.h) */
     float target_weight; /* of the pixel filter */
+    float copies; /* t = 1: CameraConnection.copies, a factor of the contribution; else 1 */
     StrategyEnds ends;
 } Connection;
 
@@ -40,11 +41,12 @@ SHARED_FUNCTION_CALLED bool connect_camera(const SceneView *scene, const Vertex 
 {
     CameraConnection camera;
     if ((y->bsdf.flags & BSDF_SMOOTH) != 0u ||
-        !camera_connect(scene->frame, y->p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera))
+        !view_connect(scene, y->p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera))
         return false;
     connection->film = camera.film;
+    connection->copies = camera.copies;
     BsdfValue f = vertex_eval_light(scene, y, camera.wi);
-    connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf);
+    connection->contribution = vec3_scale(vec3_mul(y->beta, f.f_cos), camera.pdf * camera.copies);
     connection->shadow = connecting_ray(scene, y->p, y->ng, camera.p, vec3_splat(0.0f));
     connection->medium = medium_leaving(scene, y->bsdf.media, y->ng, camera.wi);
     connection->ends.camera_y1 = camera.pdf * vertex_cosine(scene, camera.wi, y->ng);
@@ -85,7 +87,7 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     }
     float distance2 = vec3_length_squared(vec3_sub(sample.p, z->p));
     ends->light_z1 = light_aimed_pdf_w(scene, light, sample.p, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
-    if (sample.delta != 0u) {
+    if (scene->lights[light].kind != LIGHT_AREA) {
         ends->own_y0 = select;
         ends->camera_y1 = 0.0f; /* cannot be hit */
         return true;
@@ -130,6 +132,7 @@ SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const 
     connection->target = NONE;
     connection->target_offset = 0u;
     connection->ends.connect = 1.0f;
+    connection->copies = 1.0f;
     if (t == 1u)
         return connect_camera(scene, y, random, connection);
     if (s == 1u)

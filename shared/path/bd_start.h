@@ -40,10 +40,10 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __globa
                           vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
         return false;
     float select = scene->lights[light].select_pdf;
-    bool infinite = emission.infinite != 0u;
+    bool infinite = emission.infinite != 0u, invisible = light_is_invisible(scene, light);
     uint flags = (infinite ? EMITTER_INFINITE : 0u) |
-                 (emission.delta_position != 0u || emission.delta_direction != 0u ? EMITTER_DELTA : 0u) |
-                 (SCENE_HAS(scene, FEATURE_MEDIUM) && emission.back != 0u ? EMITTER_BACK : 0u);
+                 (emission.delta_position != 0u || emission.delta_direction != 0u || invisible ? EMITTER_DELTA : 0u) |
+                 (SCENE_HAS(scene, FEATURE_MEDIUM) && emission.back != 0u && !invisible ? EMITTER_BACK : 0u);
     state_store_vec3(vertices, stride, base + VERTEX_POINT, item, infinite ? emission.w : emission.p);
     state_store_vec3(vertices, stride, base + VERTEX_NG, item, emission.ng);
     state_store(paths, stride, BD_EMITTER, item, light);
@@ -89,9 +89,7 @@ SHARED_FUNCTION void walk_start_camera(const SceneView *scene, Walk walk)
     uint pixel = state_load(paths, stride, BD_PIXEL, item);
     uint row = pixel / frame->film.width, column = pixel % frame->film.width;
     Vec2 film = vec2((float)column + 0.5f + offset.x, (float)row + 0.5f + offset.y);
-    Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film, (float)frame->film.width, (float)frame->film.height,
-                         vec2(random_float(random.x[2]), random_float(random.x[3])));
+    Ray ray = view_ray(scene, film, vec2(random_float(random.x[2]), random_float(random.x[3])));
     state_store_float(paths, stride, BD_WEIGHT, item, weight);
     state_store(paths, stride, BD_OFFSET, item, splat_offset(&frame->film, pixel, film));
     walk_begin(walk, SIDE_CAMERA, ray, vec3_splat(1.0f), 1.0f, WALK_DELTA);
@@ -142,9 +140,8 @@ SHARED_FUNCTION uint film_number(float place, float extent, uint rest)
 SHARED_FUNCTION void walk_start_film(const SceneView *scene, Walk walk, Random4 random)
 {
     __global const FrameParams *frame = scene->frame;
-    Camera camera = frame->camera;
-    Ray ray = camera_ray(&camera, film_position(frame, random.x[0], random.x[1]), (float)frame->film.width,
-                         (float)frame->film.height, vec2(random_float(random.x[2]), random_float(random.x[3])));
+    Ray ray = view_ray(scene, film_position(frame, random.x[0], random.x[1]),
+                       vec2(random_float(random.x[2]), random_float(random.x[3])));
     walk_begin(walk, SIDE_CAMERA, ray, vec3_splat(film_reach_factor(frame)), 1.0f, WALK_DELTA);
 }
 

@@ -60,7 +60,7 @@
 
 #define EMITTER_INFINITE 0x1u /* y_0 is a direction */
 #define EMITTER_DELTA 0x2u /* no path can hit it */
-#define EMITTER_BACK 0x4u /* in scenes with media: the path leaves the back of a two-sided light */
+#define EMITTER_BACK 0x4u /* in scenes with media: the path leaves the back of a two-sided light that is a boundary */
 
 #define WALK_PARALLEL 0x1u /* the last ray is one of a bundle of parallel ones */
 #define WALK_DELTA 0x2u /* it came from a delta lobe */

@@ -3,7 +3,7 @@
 #define TWINLIGHT_PATH_BD_VERTEX_H
 
 #include "bsdf/bsdf_state.h"
-#include "camera/camera.h"
+#include "camera/view.h"
 #include "geometry/ray.h"
 #include "geometry/surface.h"
 #include "light/aim.h"
@@ -180,7 +180,7 @@ SHARED_FUNCTION float walk_density(const SceneView *scene, const Ray *ray, Vec3 
                                    uint flags, float pdf)
 {
     if (first)
-        return camera_pdf(scene->frame, ray->o, ray->d, float_sqrt(distance2)) * vertex_cosine(scene, ray->d, ng);
+        return view_pdf(scene, ray->o, ray->d, float_sqrt(distance2)) * vertex_cosine(scene, ray->d, ng);
     if ((flags & WALK_PARALLEL) != 0u)
         return pdf * vertex_cosine(scene, ray->d, ng);
     return pdf * solid_angle_to_area(scene, ray->d, ng, distance2);

@@ -49,13 +49,13 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
 }
 
 /* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other strategy
- * makes such a path. */
+ * makes such a path, and of mmlt's estimators path tracing alone shows it. */
 SHARED_FUNCTION_APART void walk_add_medium_emission(const SceneView *scene, __global uint *restrict paths,
                                                     __global const uint *restrict hits, uint item, uint depth)
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
-    if (!strategy_wanted(frame, 0u, depth + 1u))
+    if (frame->pool.enabled != 0u || !strategy_wanted(frame, 0u, depth + 1u))
         return;
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, item, depth);

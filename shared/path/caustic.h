@@ -86,10 +86,8 @@ SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, 
     Vec3 to_light = vec3_sub(source->position, ray.o);
     float along = vec3_dot(to_light, ray.d), radius2 = params.point_radius * params.point_radius;
     bool seen = along > 0.0f && along < t_max && vec3_length_squared(vec3_cross(to_light, ray.d)) < radius2;
-    float falloff = 1.0f;
-    if (source->kind == LIGHT_SPOT)
-        falloff = spot_falloff(-vec3_dot(source->direction, ray.d), source->cos_total, source->cos_falloff);
-    return vec3_scale(source->emission, seen ? falloff * (INV_PI / radius2) : 0.0f);
+    Vec3 intensity = delta_light_emitted(scene, source, vec3_negate(ray.d));
+    return vec3_scale(intensity, seen ? INV_PI / radius2 : 0.0f);
 }
 
 /* What the ray of a caustic path brings from lights that it hits, or (surface NULL) from infinity. */

@@ -29,7 +29,7 @@
 /* Caustics by photons (path/caustic.h); only with PhotonParams.count */
 #define PATH_RECEIVER 46u /* RECEIVER_WORDS (path/caustic_rest.h) */
 #define PATH_DELTA 53u /* bit i: vertex i scattered by a delta lobe; up to RECEIVER_LAST */
-#define PATH_CAUSTIC_RADIANCE 54u /* gathered by photons, 3 */
+#define PATH_CAUSTIC_RADIANCE 54u /* gathered by photons, or from media; with split_direct also direct light, 3 */
 #define PATH_CAUSTIC_SEGMENTS 57u /* of the caustic path under way, with its last ray */
 #define PATH_CAUSTIC_LIGHT 58u /* PHOTON_LIGHT of the photon that drew it */
 #define PATH_CAUSTIC_BETA 59u /* its throughput, 3 */

@@ -12,6 +12,7 @@ int main(void)
     suite_add_tcase(suite, emit_distance_case());
     suite_add_tcase(suite, emit_aims_case());
     suite_add_tcase(suite, emit_camera_case());
+    suite_add_tcase(suite, emit_spherical_case());
     suite_add_tcase(suite, emit_splat_case());
     suite_add_tcase(suite, emit_image_case());
     return test_run(suite);

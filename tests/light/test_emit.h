@@ -10,6 +10,7 @@ TCase *emit_power_case(void);
 TCase *emit_distance_case(void);
 TCase *emit_aims_case(void);
 TCase *emit_camera_case(void);
+TCase *emit_spherical_case(void);
 TCase *emit_splat_case(void);
 TCase *emit_image_case(void);
 

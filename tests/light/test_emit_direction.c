@@ -1,4 +1,4 @@
-/* Directions of rays leaving point lights, spots and infinite lights, and the origins of the latter. */
+/* Directions of rays leaving lights at a point and infinite lights, and the origins of the latter. */
 #include "light/emit.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -7,10 +7,27 @@ enum { CELLS = 12, SUB = 24, SAMPLES = 40000 };
 
 static const double ROTATION[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6};
 
-enum { POINT, WIDE_SPOT, NARROW_SPOT, HARD_SPOT, CONSTANT, LATLONG, OCTAHEDRAL, STRETCHED, DISTANT, LIGHT_CASES };
+enum {
+    POINT,
+    WIDE_SPOT,
+    NARROW_SPOT,
+    HARD_SPOT,
+    GONIOMETRIC,
+    PROJECTION,
+    STRETCHED_PROJECTION,
+    CONSTANT,
+    LATLONG,
+    OCTAHEDRAL,
+    STRETCHED,
+    DISTANT,
+    LIGHT_CASES
+};
 
-/* Eight chi-square tests of directions, five of points on the disc (Sidak: 1e-3 overall). */
-#define P_MIN (1e-3 / 13.0)
+/* Half extents of a projection at distance 1. */
+static const double EXTENT[2] = {0.9, 0.5};
+
+/* Eleven chi-square tests of directions, five of points on the disc (Sidak: 1e-3 overall). */
+#define P_MIN (1e-3 / 16.0)
 
 static Light spot(double total, double falloff)
 {
@@ -71,7 +88,10 @@ static void setup(LightFixture *f, int which)
     default:
         add_image(f, which == LATLONG ? LIGHT_EQUIRECTANGULAR : 0u);
     }
-    if (which == STRETCHED)
+    if (which >= GONIOMETRIC && which <= STRETCHED_PROJECTION)
+        fixture_to_intensity(f, which == GONIOMETRIC ? LIGHT_GONIOMETRIC : LIGHT_PROJECTION, vec3(1.0f, 2.0f, 3.0f),
+                             EXTENT);
+    if (which == STRETCHED || which == STRETCHED_PROJECTION)
         stretch(f);
     fixture_finish(f);
 }
@@ -89,6 +109,13 @@ static Cells cells_make(const LightFixture *f, int which)
     if (light->kind == LIGHT_SPOT) {
         cells.frame = frame_from_normal(light->direction);
         cells.low = which == WIDE_SPOT ? -1.0 : 2.0 * (double)light->cos_total - 1.0; /* wider than the cone */
+    }
+    if (light->kind == LIGHT_PROJECTION) { /* about its axis, a little further than the corners */
+        cells = (Cells){frame_from_normal(projection_direction(light, vec2(0.5f, 0.5f))), 1.0};
+        for (int i = 0; i < 4; ++i) {
+            Vec3 corner = projection_direction(light, vec2((float)(i & 1), (float)(i >> 1)));
+            cells.low = fmin(cells.low, (double)vec3_dot(corner, cells.frame.n) - 0.02);
+        }
     }
     return cells;
 }

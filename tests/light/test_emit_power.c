@@ -7,7 +7,38 @@
 #define CONE_TOTAL 0.5f
 #define CONE_FALLOFF 0.8f
 
-enum { SQUARE, TRIANGLE, PATCH, SPHERE, PART, DISK, CYLINDER, POINT, SPOT, DISTANT, CONSTANT, IMAGE, LIGHT_CASES };
+enum {
+    SQUARE,
+    TRIANGLE,
+    PATCH,
+    SPHERE,
+    PART,
+    DISK,
+    CYLINDER,
+    POINT,
+    SPOT,
+    GONIOMETRIC,
+    PROJECTION,
+    DISTANT,
+    CONSTANT,
+    IMAGE,
+    LIGHT_CASES
+};
+
+/* A goniometric light, or a white projection downwards; returns the power. */
+static double add_intensity(LightFixture *f, bool projection)
+{
+    static const double down[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1}, extent[2] = {0.9, 0.7};
+    float texels[3 * 16];
+    double mean = 0.0;
+    for (uint i = 0; i < 16; ++i) {
+        texels[3 * i] = texels[3 * i + 1] = texels[3 * i + 2] = projection ? 1.0f : fixture_random(3, i).x;
+        mean += (double)texels[3 * i] / 16.0;
+    }
+    fixture_add_environment(f, texels, 4, 4, 0, down);
+    fixture_to_intensity(f, projection ? LIGHT_PROJECTION : LIGHT_GONIOMETRIC, vec3(0.0f, 0.0f, 0.0f), extent);
+    return projection ? 4.0 * atan(0.63 / sqrt(1.0 + 0.81 + 0.49)) : 4.0 * M_PI * mean;
+}
 
 /* One light that illuminates the receiver from above. Returns its power; 0 if that has no closed form. */
 static double setup(LightFixture *f, int which)
@@ -64,6 +95,10 @@ static double setup(LightFixture *f, int which)
                                      .cos_total = CONE_TOTAL,
                                      .cos_falloff = CONE_FALLOFF});
         power = 2.0 * M_PI * (1.0 - 0.5 * (0.5 + 0.8));
+        break;
+    case GONIOMETRIC:
+    case PROJECTION:
+        power = add_intensity(f, which == PROJECTION);
         break;
     case DISTANT:
         fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {1, 1, 1}, .direction = {0.36f, 0.48f, -0.8f}});
@@ -122,6 +157,7 @@ START_TEST(test_power)
     double sum = 0.0, squares = 0.0, expected = setup_aimed(&f, _i);
     if (!(expected > 0.0))
         expected = 2.0 * M_PI * scene_primitive_area(&f.scene, 0);
+    ck_assert_double_eq_tol(f.scene.light_power / expected, 1.0, 2e-3);
     for (uint i = 0; i < SAMPLES; ++i) {
         LightEmission e;
         if (!light_emit_aimed(&f.view, 0, fixture_random(14, i).x, fixture_random(2, i), fixture_random(9, i), &e))

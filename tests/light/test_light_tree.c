@@ -37,6 +37,24 @@ static void polygon_add(LightFixture *f, unsigned *state, double extent, double 
     fixture_add_polygon(f, positions, vertices, NULL, 0, flags);
 }
 
+/* A goniometric and a projection light. */
+static void intensity_images_add(LightFixture *f, unsigned *state)
+{
+    static const double EXTENT[2] = {0.8, 0.4};
+    const uint kinds[2] = {LIGHT_GONIOMETRIC, LIGHT_PROJECTION};
+    float texels[3 * 16];
+    for (int i = 0; i < 3 * 16; ++i)
+        texels[i] = (float)uniform(state, 0.0, 1.0);
+    for (int i = 0; i < 2; ++i) {
+        Frame frame = frame_from_normal(random_unit(state));
+        const double rotation[9] = {(double)frame.t.x, (double)frame.b.x, (double)frame.n.x,
+                                    (double)frame.t.y, (double)frame.b.y, (double)frame.n.y,
+                                    (double)frame.t.z, (double)frame.b.z, (double)frame.n.z};
+        fixture_add_environment(f, texels, 4, 4, 0, rotation);
+        fixture_to_intensity(f, kinds[i], random_point(state, 2.0), EXTENT);
+    }
+}
+
 /* Lamps of all kinds in a cube of half width 2, among them one without power; `far`: a distant light and a sky, too. */
 static void lights_add(LightFixture *f, unsigned *state, bool far)
 {
@@ -53,6 +71,7 @@ static void lights_add(LightFixture *f, unsigned *state, bool far)
                                      .cos_total = 0.5f,
                                      .cos_falloff = 0.75f});
     }
+    intensity_images_add(f, state);
     if (!far)
         return;
     fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {0.5f, 0.5f, 0.5f}, .direction = {0, 0, 1}});

@@ -17,7 +17,7 @@
 /* The estimators, and path tracing with its own rare light, which needs no chains. */
 #define SHOWN_COUNT (ESTIMATOR_COUNT + 1)
 
-/* One estimator alone plus what it leaves to chains, against path tracing. */
+/* One estimator alone plus what it leaves to chains, or all of them (-1), against path tracing. */
 static void estimator_compare(const char *name, const BidirectionalScene *scene, int estimator,
                               unsigned expected_samples, unsigned samples, unsigned reconstruction)
 {
@@ -92,6 +92,29 @@ START_TEST(test_shown_lights)
 }
 END_TEST
 
+/* ---- media that emit --------------------------------------------------------------------------------------------- */
+
+/* Fire and glowing fog beside a lamp. Path tracing shows what they emit along all segments, in whatever way the other
+ * light is shown. */
+static const BidirectionalScene FIRE = {
+    "fire",
+    "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 1.5 2 ] \"float sigma_s\" 0\n"
+    "\"rgb Le\" [ 3 2 1 ]\n"
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.05 0.05 0.05 ]\n"
+    "\"rgb sigma_s\" [ 0.3 0.2 0.4 ] \"float g\" 0.3 \"rgb Le\" [ 0.5 1 1 ]\n"
+    "MediumInterface \"fog\"\n" BD_ROOM "AttributeBegin MediumInterface \"fire\" \"fog\" Translate 1 0 0\n"
+    "Material \"interface\"\n" BD_BALL "AttributeEnd\n"
+    "AttributeBegin Translate -1 0 0 Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n" BD_BALL
+    "AttributeEnd\n",
+    SUPPORT_SUM_ONLY, 5, 2};
+
+START_TEST(test_shown_emission)
+{
+    if (_i < 0 || !estimator_left_out(_i))
+        estimator_compare(FIRE.name, &FIRE, _i, 512, 512, RECONSTRUCTION_SAMPLE);
+}
+END_TEST
+
 /* ---- signs ------------------------------------------------------------------------------------------------------- */
 
 /* A sky and reflectances that a scene file makes negative: by an image, by a factor of -1, by a mix with an amount
@@ -138,6 +161,7 @@ TCase *mmlt_shown_case(void)
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
     tcase_add_loop_test(tcase, test_shown_filters, 0, BIDIRECTIONAL_FILTER_COUNT * SHOWN_COUNT);
     tcase_add_loop_test(tcase, test_shown_lights, 0, SUNS_COUNT * SHOWN_COUNT);
+    tcase_add_loop_test(tcase, test_shown_emission, -1, SHOWN_COUNT);
     tcase_add_test(tcase, test_signs);
     return tcase;
 }

@@ -11,15 +11,19 @@ static Random4 replay_random(const FrameParams *frame, uint pixel, uint sample, 
 static Vec2 replay_filter(const SceneView *scene, Vec2 u, float *weight);
 static bool replay_scatter(const SceneView *scene, const Bsdf *bsdf, Vec3 wo, float u_lobe, Vec2 u, uint transport,
                            BsdfSample *sample);
+static bool replay_light(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample);
 #include "bsdf/bsdf.h"
 #include "camera/pixel_filter.h"
+#include "light/light.h"
 #define path_random replay_random
 #define pixel_filter_sample replay_filter
 #define bsdf_sample replay_scatter
+#define light_sample replay_light
 #include "kernels/pt.cl"
 #undef path_random
 #undef pixel_filter_sample
 #undef bsdf_sample
+#undef light_sample
 
 static Partition *replayed;
 
@@ -87,6 +91,25 @@ static Vec3 light_point(const Partition *p, uint depth)
 bool emitter_infinite(const Partition *p)
 {
     return (p->pool.paths[BD_EMITTER_FLAGS] & EMITTER_INFINITE) != 0u;
+}
+
+/* Draws the light's point: of an invisible lamp, which the light subpath has left, y_0. */
+static bool replay_light(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
+{
+    const Partition *p = replayed;
+    if (p->s < 2u || !light_is_invisible(scene, light))
+        return light_sample(scene, light, ref, u, sample);
+    uint base = vertex_base(&p->pool_frame, SIDE_LIGHT, 0);
+    Surface at = {.p = light_point(p, p->s + p->t - 1u),
+                  .ng = state_load_vec3(p->pool.vertices, 1, base + VERTEX_NG, 0)};
+    Vec3 wi = vec3_normalize(vec3_sub(at.p, ref));
+    *sample = (LightSample){.wi = wi,
+                            .p = at.p,
+                            .ng = at.ng,
+                            .radiance = light_emitted(scene, light, at.ng, vec3_negate(wi)),
+                            .pdf_w = light_pdf_w(scene, light, ref, wi, &at),
+                            .delta = 1u};
+    return sample->pdf_w > 0.0f && !vec3_is_zero(sample->radiance);
 }
 
 /* The unit vector from `from` to x_depth, a vertex of the light's side. */

@@ -27,6 +27,12 @@
          "Material \"diffuse\"\n"                                                                                      \
          "Shape \"bilinearmesh\" \"point3 P\" [ -5 -5 0  0.5 -5 0  -5 0.33 0  0.5 0.33 0 ]\n"
 
+/* Inside a ball with a lamp beside the camera: everything is lit, also what the film's borders have in common. */
+#define INSIDE(parameters)                                                                                             \
+    FILM "Rotate 40 1 2 3 Camera \"spherical\" " parameters "\nWorldBegin\n"                                           \
+         "LightSource \"point\" \"point3 from\" [ 0.2 0.1 -0.3 ] \"rgb I\" [ 2 2 2 ]\n"                                \
+         "Material \"diffuse\"\nShape \"sphere\"\n"
+
 typedef struct EdgeCase {
     const char *name, *text;
     const Integrator *(*integrator)(void);
@@ -42,6 +48,9 @@ static const EdgeCase EDGES[] = {
     {"bidirectional", EDGE(""), integrator_bdpt, 1, 1024, 0, false, 0.004},
     {"three strategies", EDGE(""), integrator_ibpt, 1, 1024, 0, false, 0.004},
     {"light tracing", SHEET, integrator_bdpt, 2, 4096, 0, true, 0.004},
+    {"light tracing, equal-area", INSIDE(""), integrator_bdpt, 2, 16384, 0, true, 0.008},
+    {"light tracing, equirectangular", INSIDE("\"string mapping\" \"equirectangular\""), integrator_bdpt, 2, 16384, 0,
+     true, 0.008},
     {"mmlt's path tracing", EDGE(PANES), integrator_mmlt, 3, 8192, 1 + ESTIMATOR_PATHS, false, 0.004},
     {"pools", EDGE(PANES), integrator_mmlt, 3, 65536, 1 + ESTIMATOR_POOL, false, 0.02},
 };

@@ -131,12 +131,18 @@ static float emitted(const Walks *walks, const RealPath *path)
            cosine_at(walks, w, ng) / distance2;
 }
 
+/* Whether x_k is on an area light. */
+static bool on_area(const Walks *walks, const RealPath *path)
+{
+    return walks->view.lights[path->light].kind == LIGHT_AREA;
+}
+
 /* Density of x_k as sampled on the light. */
 static float light_point(const Walks *walks, const RealPath *path)
 {
     const SceneView *view = &walks->view;
     float select = view->lights[path->light].select_pdf;
-    if (path->delta_light)
+    if (path->delta_light && !on_area(walks, path))
         return select;
     return select * (path->infinite ? environment_pdf_w(view, path->light, vec3_negate(path->ways[path->k]))
                                     : light_emit_pdf_p(view, path->light, &path->end));
@@ -150,7 +156,7 @@ static void path_densities(const Walks *walks, RealPath *path)
     uint k = path->k;
     float distance2;
     Vec3 from_lens = path_direction(path, 0, 1, &distance2);
-    d->camera[1] = camera_pdf(&walks->frame, path->vertices[0].p, from_lens, float_sqrt(distance2)) *
+    d->camera[1] = view_pdf(&walks->view, path->vertices[0].p, from_lens, float_sqrt(distance2)) *
                    cosine_at(walks, from_lens, path->vertices[1].ng);
     for (uint i = 2; i <= k; ++i)
         if (!d->delta[i - 1])
@@ -166,7 +172,7 @@ static void path_densities(const Walks *walks, RealPath *path)
     if (path->infinite && !path->delta_light)
         d->connect *=
             environment_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, vec3_negate(path->ways[k]));
-    if (!path->infinite && !path->delta_light) {
+    if (on_area(walks, path)) {
         Vec3 w = path_direction(path, k - 1, k, &distance2);
         d->connect *= light_connect_ratio(&walks->view, path->light, path->vertices[k - 1].p, w, distance2, &path->end);
     }
@@ -179,6 +185,8 @@ static void path_densities(const Walks *walks, RealPath *path)
 static Vec3 lens_point(const Walks *walks, Vec3 p, Vec3 back)
 {
     const Camera *camera = &walks->frame.camera;
+    if (camera->kind >= CAMERA_EQUAL_AREA)
+        return affine_point(camera->world_from_camera, vec3_splat(0.0f));
     float depth = affine_point(camera->camera_from_world, p).z;
     return vec3_mad(p, -depth / affine_vector(camera->camera_from_world, back).z, back);
 }
@@ -252,7 +260,7 @@ static Vec3 lens_drawn(const Walks *walks, uint item, uint s, Vec3 p)
 {
     CameraConnection camera;
     Random4 random = bd_random_connection(&walks->frame, walks->words[BUFFER_PATHS], item, s, 1);
-    TEST_TRUE(camera_connect(&walks->frame, p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera));
+    TEST_TRUE(view_connect(&walks->view, p, vec2(random_float(random.x[0]), random_float(random.x[1])), &camera));
     return camera.p;
 }
 

@@ -135,6 +135,31 @@ START_TEST(area_lights)
 }
 END_TEST
 
+static bool invisible(const char *shape)
+{
+    char text[384];
+    Scene scene;
+    snprintf(text, sizeof text,
+             "Texture \"none\" \"float\" \"constant\" \"float value\" 0\n"
+             "Texture \"holes\" \"float\" \"checkerboard\" AreaLightSource \"diffuse\" \"bool twosided\" true %s",
+             shape);
+    Light light = light_of(text, &scene);
+    ck_assert_uint_eq(light.flags & ~(uint)LIGHT_INVISIBLE, LIGHT_TWO_SIDED);
+    scene_destroy(&scene);
+    return (light.flags & LIGHT_INVISIBLE) != 0;
+}
+
+START_TEST(lights_of_alpha_0_are_invisible)
+{
+    ck_assert(invisible(TRIANGLE "\"float alpha\" 0"));
+    ck_assert(invisible(TRIANGLE "\"texture alpha\" \"none\""));
+    ck_assert(invisible("ObjectBegin \"o\" " TRIANGLE "\"float alpha\" 0 ObjectEnd ObjectInstance \"o\""));
+    ck_assert(!invisible(TRIANGLE));
+    ck_assert(!invisible(TRIANGLE "\"float alpha\" 0.1"));
+    ck_assert(!invisible(TRIANGLE "\"texture alpha\" \"holes\""));
+}
+END_TEST
+
 START_TEST(light_attributes)
 {
     Scene scene;
@@ -296,6 +321,7 @@ TCase *import_lights_case(void)
     tcase_add_test(tcase, power_is_that_of_each_primitive);
     tcase_add_test(tcase, places_and_directions);
     tcase_add_test(tcase, area_lights);
+    tcase_add_test(tcase, lights_of_alpha_0_are_invisible);
     tcase_add_test(tcase, light_attributes);
     tcase_add_test(tcase, environment_maps);
     tcase_add_test(tcase, latitude_longitude_maps);

@@ -148,6 +148,13 @@ START_TEST(cameras)
     ASSERT_FLOAT(c->screen_window[3], 1.0f);
     ASSERT_FLOAT(c->focal_distance, 1e6f);
     scene_destroy(&scene);
+    import_text("Camera \"spherical\" \"float lensradius\" 0.1 WorldBegin", &scene);
+    ck_assert_uint_eq(c->kind, CAMERA_EQUAL_AREA);
+    ASSERT_FLOAT(c->lens_radius, 0.0f);
+    scene_destroy(&scene);
+    import_text("Camera \"spherical\" \"string mapping\" \"equirectangular\" WorldBegin", &scene);
+    ck_assert_uint_eq(c->kind, CAMERA_EQUIRECTANGULAR);
+    scene_destroy(&scene);
 }
 END_TEST
 

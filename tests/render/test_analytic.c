@@ -7,6 +7,7 @@ int main(void)
     suite_add_tcase(suite, analytic_area_case());
     suite_add_tcase(suite, analytic_glass_case());
     suite_add_tcase(suite, analytic_opaque_case());
+    suite_add_tcase(suite, analytic_intensity_case());
     suite_add_tcase(suite, analytic_lights_case());
     suite_add_tcase(suite, analytic_media_case());
     suite_add_tcase(suite, analytic_environment_case());

@@ -174,6 +174,32 @@ START_TEST(test_alpha)
 }
 END_TEST
 
+/* Lamps of alpha 0 are not seen, and light what they would without alpha. */
+START_TEST(test_invisible)
+{
+    analytic_check("disk of alpha 0",
+                   analytic_mean(4096, 2,
+                                 ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE
+                                 "AreaLightSource \"diffuse\" Translate 0 0 1 ReverseOrientation "
+                                 "Shape \"disk\" \"float radius\" 0.5 \"float alpha\" 0"),
+                   0.5 * 0.25 / 1.25, ANALYTIC_TOLERANCE);
+    analytic_check("disk of alpha 0, seen from the front",
+                   analytic_mean(64, 1, VEIL_VIEW "AreaLightSource \"diffuse\" Shape \"disk\" \"float alpha\" 0"), 0.0,
+                   ANALYTIC_TOLERANCE);
+    /* Through its invisible near side, a sphere that shines inwards sends light outwards as one that shines there. */
+    for (int inwards = 0; inwards < 2; ++inwards) {
+        char text[1024];
+        snprintf(
+            text, sizeof text,
+            ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE
+            "AreaLightSource \"diffuse\" Translate 0 0 2 %s Shape \"sphere\" \"float radius\" 0.5 \"float alpha\" 0",
+            inwards ? "ReverseOrientation" : "");
+        analytic_check(inwards ? "inward sphere of alpha 0" : "sphere of alpha 0", analytic_mean(4096, 2, text),
+                       0.5 * 0.25 / 4.0, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
 /* ---- coated diffuse ------------------------------------------------------------------------------------------------ */
 
 /* The cosine inside for a direction of cosine c outside. */
@@ -260,6 +286,7 @@ TCase *analytic_opaque_case(void)
     tcase_add_test(tcase, test_mix);
     tcase_add_test(tcase, test_interface);
     tcase_add_test(tcase, test_alpha);
+    tcase_add_test(tcase, test_invisible);
     tcase_add_test(tcase, test_coats_in_environment);
     tcase_add_test(tcase, test_coat_under_distant_light);
     return tcase;

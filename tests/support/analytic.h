@@ -87,6 +87,7 @@ TCase *analytic_camera_case(void);
 TCase *analytic_environment_case(void);
 TCase *analytic_glass_case(void);
 TCase *analytic_instances_case(void);
+TCase *analytic_intensity_case(void);
 TCase *analytic_lights_case(void);
 TCase *analytic_media_case(void);
 TCase *analytic_opaque_case(void);

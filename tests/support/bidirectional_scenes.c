@@ -97,6 +97,14 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
               "\"float coneangle\" 30 \"float conedeltaangle\" 12\n"
               "LightSource \"point\" \"rgb I\" [ 3 3 6 ] \"point3 from\" [ -1 2 -2 ]\n" BD_GREY BD_FLOOR BD_BALL,
      SUPPORT_NO_HIT, 4, 3},
+    {"goniometric and projection",
+     BD_BEGIN
+     "AttributeBegin Translate -1 2 -2 Rotate 50 1 2 0 LightSource \"goniometric\" \"rgb I\" [ 3 4 6 ] "
+     "\"string filename\" \"$FILES/sky.pfm\" AttributeEnd\n"
+     "AttributeBegin Translate 1 3 -2 Rotate 50 1 0 0 Rotate -20 0 1 0 LightSource \"projection\" "
+     "\"float scale\" 20 \"float fov\" 60 \"string filename\" \"$FILES/sky.pfm\" AttributeEnd\n" BD_GREY BD_FLOOR
+         BD_BALL,
+     SUPPORT_NO_HIT, 4, 3},
     {"instances",
      BD_ROOM "ObjectBegin \"o\" " BD_BALL "Translate 0 1.5 0 " CARD
              "ObjectEnd\nAttributeBegin Translate -1.2 -0.4 0.5 Scale 0.5 0.3 0.5 ObjectInstance \"o\" AttributeEnd\n"
@@ -110,6 +118,16 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      BD_FILM "Scale -1 1 1 LookAt 0 1.2 -6  0 -0.2 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" "
              "[ -2 2 -1.5 2 ] \"float lensradius\" 0.2 \"float focaldistance\" 5\nWorldBegin\n" BD_LAMP BD_GREY BD_FLOOR
                  BD_BALL,
+     SUPPORT_ALL, 4, 3},
+    {"equal-area camera",
+     BD_FILM "PixelFilter \"triangle\"\nLookAt 0 1.2 -3  0 -0.2 0  0 1 0\nCamera "
+             "\"spherical\"\nWorldBegin\n" BD_LAMP BD_GREY BD_FLOOR BD_BALL "Shape \"sphere\" \"float radius\" 6\n",
+     SUPPORT_ALL, 4, 3},
+    {"equirectangular camera",
+     BD_FILM
+     "PixelFilter \"triangle\"\nLookAt 0 1.2 -3  0 -0.2 0  0 1 0\n"
+     "Camera \"spherical\" \"string mapping\" \"equirectangular\"\nWorldBegin\n" BD_LAMP BD_GREY BD_FLOOR BD_BALL
+     "Shape \"sphere\" \"float radius\" 6\n",
      SUPPORT_ALL, 4, 3},
     {"sphere light",
      BD_BEGIN BD_GREY BD_FLOOR BD_BALL "AttributeBegin Translate 0.4 2.3 -0.8 AreaLightSource \"diffuse\" \"rgb L\" "
@@ -133,6 +151,17 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
                                 "\"bool twosided\" true\n"
                                 "Shape \"sphere\" \"float radius\" 0.9 \"texture alpha\" \"holes\" AttributeEnd\n",
      SUPPORT_NO_DRAW, 4, 3},
+    {"invisible lights",
+     BD_BEGIN BD_GREY BD_FLOOR AT(
+         0, -0.2, 0.8,
+         BD_BALL) "AreaLightSource \"diffuse\" \"rgb L\" [ 4 4 4 ] \"bool twosided\" true\n"
+                  "Shape \"trianglemesh\" \"point3 P\" [ -1 2 0  1 2.2 0  0 1.8 1 ] \"float alpha\" 0\n" AT(
+                      0.9, 0.4, -1, "Shape \"sphere\" \"float radius\" 0.4 \"float alpha\" 0\n")
+                      AT(-1, 0.6, -1,
+                         "AreaLightSource \"diffuse\" \"rgb L\" [ 3 6 3 ]\n"
+                         "Rotate 60 1 0 0 Shape \"disk\" \"float radius\" 0.5 \"float alpha\" 0\n"
+                         "Translate 0 -0.9 0.4 Shape \"sphere\" \"float radius\" 0.2 \"float alpha\" 0\n"),
+     SUPPORT_NO_HIT, 4, 3},
     {"normal map",
      BD_BEGIN BD_LAMP
      "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.6 0.5 ] \"string normalmap\" \"$FILES/normals.pfm\"\n"
@@ -181,6 +210,17 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.02 0.01 0.005 ]\n"
      "\"rgb sigma_s\" [ 0.2 0.3 0.4 ] \"float g\" 0.5\nMediumInterface \"fog\"\n" BD_FILM
      "LookAt 0 1 -3.9  0 1 0  0 1 0 Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+     "AttributeBegin Translate 0 1.98 0 AreaLightSource \"diffuse\" \"rgb L\" [ 8 8 8 ]\n"
+     "Shape \"bilinearmesh\" \"point3 P\" [ -.5 0 -.5  .5 0 -.5  -.5 0 .5  .5 0 .5 ] AttributeEnd\n"
+     "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.7 0.7 ]\n"
+     "Shape \"trianglemesh\" \"point3 P\" [ -1 0 -4  1 0 -4  1 0 1  -1 0 1  -1 2 -4  1 2 -4  1 2 1  -1 2 1 ]\n"
+     "\"integer indices\" [ 0 1 2 0 2 3 4 6 5 4 7 6 3 2 6 3 6 7 0 3 7 0 7 4 1 5 6 1 6 2 0 4 5 0 5 1 ]",
+     SUPPORT_SUM_ONLY, 5, 2},
+    /* Distances far from 1: a direction that is not a unit vector, or a missing power of a distance, changes much. */
+    {"a large closed room full of fog",
+     "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.001 0.001 0.001 ]\n"
+     "\"rgb sigma_s\" [ 0.03 0.04 0.05 ]\nMediumInterface \"fog\"\n" BD_FILM
+     "LookAt 0 10 -39  0 10 0  0 1 0 Camera \"perspective\" \"float fov\" 40\nWorldBegin\nScale 10 10 10\n"
      "AttributeBegin Translate 0 1.98 0 AreaLightSource \"diffuse\" \"rgb L\" [ 8 8 8 ]\n"
      "Shape \"bilinearmesh\" \"point3 P\" [ -.5 0 -.5  .5 0 -.5  -.5 0 .5  .5 0 .5 ] AttributeEnd\n"
      "Material \"diffuse\" \"rgb reflectance\" [ 0.7 0.7 0.7 ]\n"

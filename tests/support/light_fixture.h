@@ -136,6 +136,27 @@ static inline void fixture_add_environment(LightFixture *f, const float *texels,
     fixture_add_light(f, light);
 }
 
+/* Makes the light that fixture_add_environment added last one at a point with that image: goniometric, or a projection
+ * whose half extents at distance 1 are `extent`. */
+static inline void fixture_to_intensity(LightFixture *f, uint kind, Vec3 position, const double extent[2])
+{
+    Light *light = &ARRAY_AT(&f->scene.lights, Light, f->scene.lights.count - 1);
+    TextureImage *image = &ARRAY_AT(&f->scene.images, TextureImage, light->image);
+    const double shape[3] = {extent[0], extent[1], 1.0}, scale = cbrt(extent[0] * extent[1]);
+    light->kind = kind;
+    light->position = position;
+    image->wrap = WRAP_CLAMP;
+    image->filter = FILTER_POINT;
+    light->direction = vec3(light->world_from_light.m[2], light->world_from_light.m[6], light->world_from_light.m[10]);
+    light->cos_total = (float)(1.0 / sqrt(1.0 + extent[0] * extent[0] + extent[1] * extent[1]));
+    light->cos_falloff = light->cos_total;
+    for (int i = 0; kind == LIGHT_PROJECTION && i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            light->world_from_light.m[4 * i + j] *= (float)(shape[j] / scale);
+            light->light_from_world.m[4 * j + i] *= (float)(scale / shape[j]);
+        }
+}
+
 /* Point `i` of the stream `stream`. */
 static inline Vec2 fixture_random(uint stream, uint i)
 {
