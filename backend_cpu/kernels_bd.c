@@ -1,5 +1,6 @@
 /* The kernels of bidirectional paths. They evaluate BSDFs in so many places that the compiler would need a gigabyte and
- * minutes to inline everything, as in kernels_pt_plain.c; options from configure make it inline more than it would by itself. */
+ * minutes to inline everything, as in kernels_pt_plain.c; options from configure make it inline more than it would by
+ * itself. */
 #include "kernel_loop.h"
 
 #include "kernels/bd_connect.cl"

@@ -1,5 +1,5 @@
-/* Path tracing of most scenes: everything is inlined into the loops, which takes the compiler a minute and makes them 5 %
- * faster. */
+/* Path tracing of most scenes: everything is inlined into the loops, which takes the compiler a minute and makes them 5
+ * % faster. */
 #ifdef NDEBUG
 #define PLATFORM_INLINE_ALL
 #endif

@@ -219,8 +219,8 @@ static bool batches_run(Backend *backend, const FrameParams *frame, const StepLi
     return true;
 }
 
-/* For a GPU: estimated, not measured, that the sums of a pass cost as much to clear, copy and merge as that many splats to
- * copy and add. */
+/* For a GPU: estimated, not measured, that the sums of a pass cost as much to clear, copy and merge as that many splats
+ * to copy and add. */
 static bool film_is_on_device(const Backend *backend, const FrameParams *frame, const StepList *list,
                               const SplatSink *sink)
 {

@@ -1,5 +1,5 @@
-/* Writes scenes/parts/smoke.pbrt: the medium of smoke.pbrt, a plume that rises in a box of 1.2 x 2.4 x 1.2, as a grid of
- * densities from 0 to 99. */
+/* Writes scenes/parts/smoke.pbrt: the medium of smoke.pbrt, a plume that rises in a box of 1.2 x 2.4 x 1.2, as a grid
+ * of densities from 0 to 99. */
 #include "math/noise.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 
 enum { ACROSS = 24, UP = 48 };
 
-/* The plume is a tube around a line that wanders more the higher it is, frayed by noise that is stretched upwards. x and z
- * are from -1 to 1, height from 0 to 1. */
+/* The plume is a tube around a line that wanders more the higher it is, frayed by noise that is stretched upwards. x
+ * and z are from -1 to 1, height from 0 to 1. */
 static double smoke_density(double x, double height, double z)
 {
     Vec3 curl = vec3((float)(3.0 * x), (float)(4.0 * height), (float)(3.0 * z));

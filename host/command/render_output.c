@@ -46,8 +46,8 @@ void render_output_release(RenderOutput *output)
     picture_memory_destroy(&output->memory);
 }
 
-/* Resolving, compressing and writing a value takes a thread about so long (2 cores, 1920 x 1080 and 3840 x 2160, default
- * layers). */
+/* Resolving, compressing and writing a value takes a thread about so long (2 cores, 1920 x 1080 and 3840 x 2160,
+ * default layers). */
 #define SECONDS_PER_VALUE 4e-8
 
 double render_output_seconds(const RenderOutput *output)

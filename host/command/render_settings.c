@@ -152,8 +152,8 @@ static bool depth_check(const RenderCommand *command, const Integrator *integrat
     return error_fix(error, "add --max-depth=%u", segments);
 }
 
-/* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. Path tracing
- * shows it, if it goes along with them. */
+/* Chains target paths that end at one light; light from all along a ray has no place among their coordinates. Path
+ * tracing shows it, if it goes along with them. */
 static bool media_check(const RenderCommand *command, const Integrator *integrator, const Scene *scene, Error *error)
 {
     bool alone = integrator == integrator_mmlt() && (command->chains.paper || command->chains.chains_only);

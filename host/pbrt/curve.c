@@ -112,8 +112,8 @@ static bool params_read(PbrtImport *im, ParamList *list, CurveParams *params)
 
 /* ---- segments ---------------------------------------------------------------------------------------------------- */
 
-/* Coefficients of the control points in those of a cubic Bezier segment, and their common divisor. In a B-spline the last
- * row is the first of the next segment, so that segments meet. */
+/* Coefficients of the control points in those of a cubic Bezier segment, and their common divisor. In a B-spline the
+ * last row is the first of the next segment, so that segments meet. */
 typedef struct Conversion {
     double row[4][4], divisor;
 } Conversion;

@@ -78,8 +78,8 @@ static void directions_set(LightReader *r, Matrix to_world, Matrix to_light)
 /* ---- infinite ---------------------------------------------------------------------------------------------------- */
 
 /* Illuminance of an upward-facing plane by the upper half of a map: 4 pi times the mean of luminance times cosine over
- * directions. Texels of an octahedral map have equal solid angles, those of the other are smaller by the sine of the angle
- * from the pole: their mean sine is 2 / pi. */
+ * directions. Texels of an octahedral map have equal solid angles, those of the other are smaller by the sine of the
+ * angle from the pole: their mean sine is 2 / pi. */
 static double map_illuminance(const Image *image, const float *rgb, bool equirectangular)
 {
     double sum = 0.0;
@@ -361,7 +361,8 @@ static void projection_load(LightReader *r, const Image *image, const char *path
     free(rgb);
 }
 
-/* Projects along the z axis of the current space, y up, x to the right in its left-handed sense, as a camera there sees. */
+/* Projects along the z axis of the current space, y up, x to the right in its left-handed sense, as a camera there
+ * sees. */
 void projection_read(LightReader *r)
 {
     static const float ORIGIN[3] = {0.0f, 0.0f, 0.0f};

@@ -32,14 +32,14 @@ typedef struct MediumBox {
 /* The box with the corners p0 and p1. */
 bool medium_box_read(ParamList *list, MediumBox *box);
 
-/* Sets source->grid_from_world: from the box that the grid fills, or from the map from the medium's space to the grid. name: the
- * parameter to blame. */
+/* Sets source->grid_from_world: from the box that the grid fills, or from the map from the medium's space to the grid.
+ * name: the parameter to blame. */
 bool medium_box_place(PbrtImport *im, ParamList *list, const MediumBox *box, GridSource *source);
 bool medium_grid_place(PbrtImport *im, ParamList *list, const char *name, const Matrix *grid_from_medium,
                        GridSource *source);
 
-/* Adds the grid to the scene and the medium, unless only the scene's needs are wanted; multiplies the medium's coefficients
- * by the largest of its factors. */
+/* Adds the grid to the scene and the medium, unless only the scene's needs are wanted; multiplies the medium's
+ * coefficients by the largest of its factors. */
 bool medium_grid_add(PbrtImport *im, ParamList *list, const GridSource *source, Medium *medium);
 
 bool medium_uniform_grid_read(PbrtImport *im, ParamList *list, Medium *medium);

@@ -33,8 +33,8 @@ static Vec3 noise_gradient_at(Vec3 p)
                 (noise(vec3(p.x, p.y, p.z + step)) - here) / step);
 }
 
-/* pbrt's density at p of the medium's space: five octaves at a point that two octaves of gradients have moved, less with
- * height, and a layer below y = 1/2. */
+/* pbrt's density at p of the medium's space: five octaves at a point that two octaves of gradients have moved, less
+ * with height, and a layer below y = 1/2. */
 static float cloud_density(const Cloud *cloud, Vec3 p)
 {
     Vec3 at = vec3_scale(p, cloud->frequency);

@@ -137,8 +137,8 @@ static void rgb_sample(const void *context, const uint index[3], float *out)
 
 /* ---- media ------------------------------------------------------------------------------------------------------- */
 
-/* Emission that differs from place to place is refused, or left out: by temperatures or, with `colors`, a colour for each
- * sample. */
+/* Emission that differs from place to place is refused, or left out: by temperatures or, with `colors`, a colour for
+ * each sample. */
 static bool emission_refuse(PbrtImport *im, ParamList *list, bool colors)
 {
     static const char *const WITH_IT[] = {"Lescale", "temperatureoffset", "temperaturecutoff", "temperaturescale"};

@@ -1,9 +1,9 @@
 /* NanoVDB files: sparse grids of floats.
  *
- * The format, as of version 32: segments of a header (16 bytes: magic number, version, number of grids, codec) with, for each of
- * its grids, metadata (176 bytes and a name) and then the grid itself, as it is in memory or compressed. A grid is a tree:
- * a root with a table of 32-byte tiles, upper nodes of 32^3 children, lower nodes of 16^3, and leaves of 8^3 floats; what is
- * not in a leaf has the value of a tile. */
+ * The format, as of version 32: segments of a header (16 bytes: magic number, version, number of grids, codec) with,
+ * for each of its grids, metadata (176 bytes and a name) and then the grid itself, as it is in memory or compressed. A
+ * grid is a tree: a root with a table of 32-byte tiles, upper nodes of 32^3 children, lower nodes of 16^3, and leaves
+ * of 8^3 floats; what is not in a leaf has the value of a tile. */
 #ifndef TWINLIGHT_PBRT_NANOVDB_H
 #define TWINLIGHT_PBRT_NANOVDB_H
 
@@ -19,8 +19,8 @@ typedef struct NanoVdb {
     float background;
 } NanoVdb;
 
-/* Reads the grid of that name, whose values must be floats and no distances to a surface. *found: there is one; else nothing is
- * to be destroyed. Uncompressed files and those compressed by zlib. Errors name the file but no place. */
+/* Reads the grid of that name, whose values must be floats and no distances to a surface. *found: there is one; else
+ * nothing is to be destroyed. Uncompressed files and those compressed by zlib. Errors name the file but no place. */
 bool nanovdb_read(const char *path, const char *name, NanoVdb *grid, bool *found, Error *error);
 void nanovdb_destroy(NanoVdb *grid);
 

@@ -8,7 +8,8 @@
 /* Patches per segment: at most 2^this. */
 #define RIBBON_LEVELS_MAX 6
 
-/* Deviation of patches from the ribbon, relative to its width, and by how much the normal may turn within one (radians). */
+/* Deviation of patches from the ribbon, relative to its width, and by how much the normal may turn within one
+ * (radians). */
 #define RIBBON_FLATNESS 0.05
 #define RIBBON_TURN 0.1
 
@@ -52,8 +53,8 @@ static void normal_between(const float *normals, double u, double out[3])
     vector_unit(out);
 }
 
-/* Levels of division of a segment. The deviation of a cubic from its chord is below 3/4 of the second differences of its
- * control points, and each level divides it by four. */
+/* Levels of division of a segment. The deviation of a cubic from its chord is below 3/4 of the second differences of
+ * its control points, and each level divides it by four. */
 static int segment_levels(const Curve *s, const float *normals)
 {
     double a[3], b[3], bend = 0.0;

@@ -7,8 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Steps between neighbouring subpaths: small beside the shapes that light passes, large beside rounding. Relative to the
- * reach of the light (reach_set), and in radians; at least so many times the spacing of floats as large as the scene. */
+/* Steps between neighbouring subpaths: small beside the shapes that light passes, large beside rounding. Relative to
+ * the reach of the light (reach_set), and in radians; at least so many times the spacing of floats as large as the
+ * scene. */
 #define POINT_STEP 3e-4
 #define POINT_STEP_ULPS 32.0
 #define DIRECTION_STEP 3e-4

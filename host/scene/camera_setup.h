@@ -10,8 +10,8 @@
 bool camera_setup(const CameraSettings *settings, int width, int height, Camera *out, Error *error);
 
 /* Matrices from the world of the scene file, in which the scene's origin is at `origin`, to camera space and to the
- * image: x and y from (0, 0) in its upper left corner to (1, 1), after division by w; zero for spherical cameras, which no matrix describes. Row-major, for column vectors.
- * `camera` must come from the same settings. */
+ * image: x and y from (0, 0) in its upper left corner to (1, 1), after division by w; zero for spherical cameras, which
+ * no matrix describes. Row-major, for column vectors. `camera` must come from the same settings. */
 void camera_matrices(const CameraSettings *settings, const Camera *camera, Vec3 origin, float world_to_camera[16],
                      float world_to_ndc[16]);
 

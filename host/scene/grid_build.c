@@ -54,8 +54,8 @@ static bool samples_equal(const float *samples, size_t words)
     return true;
 }
 
-/* Reads the brick whose lowest cell is `corner`, and appends it to texels. *first: its first word there, NONE if it is 0
- * throughout. Neighbours that have the same constant samples share them. */
+/* Reads the brick whose lowest cell is `corner`, and appends it to texels. *first: its first word there, NONE if it is
+ * 0 throughout. Neighbours that have the same constant samples share them. */
 static bool brick_add(Builder *builder, const uint corner[3], uint *first, Error *error)
 {
     Array *texels = &builder->scene->texels;

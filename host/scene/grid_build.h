@@ -23,9 +23,10 @@ typedef struct GridSource {
     const void *context;
 } GridSource;
 
-/* Appends a grid to scene->grids, and its bricks to scene->texels: 4 bytes for each 512 samples, and 2916 times `words` for
- * each of these bricks that is not 0 throughout. *number: what Medium.grid is to be. The factors of each word are divided by the largest,
- * which is left in largest[0 ... words - 1]. Fails if memory or indices of 32 bits do not suffice. */
+/* Appends a grid to scene->grids, and its bricks to scene->texels: 4 bytes for each 512 samples, and 2916 times `words`
+ * for each of these bricks that is not 0 throughout. *number: what Medium.grid is to be. The factors of each word are
+ * divided by the largest, which is left in largest[0 ... words - 1]. Fails if memory or indices of 32 bits do not
+ * suffice. */
 bool grid_add(Scene *scene, const GridSource *source, uint *number, float *largest, Error *error);
 
 /* The bounds of a grid's box in the world. */

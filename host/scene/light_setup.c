@@ -65,8 +65,8 @@ static double row_weight(const Environment *e, int y)
     return 0.5 * height * (cos(step * y) - cos(step * (y + 1)));
 }
 
-/* The missing factor, by the midpoint rule with PROJECTION_POINTS or more points per side of the image: projection_place
- * (light/intensity_image.h) makes it a square of area 4. */
+/* The missing factor, by the midpoint rule with PROJECTION_POINTS or more points per side of the image:
+ * projection_place (light/intensity_image.h) makes it a square of area 4. */
 #define PROJECTION_POINTS 64
 
 static double projection_weight(const Environment *e, int x, int y)
@@ -231,7 +231,8 @@ static bool no_light(size_t count, Error *error)
 }
 
 /* Scales the powers of far lights, which grow with the square of the scene's radius, so that together they have no more
- * than all others, if there are others. Most of what they send into a wide scene arrives where no lamp does, and of its lamps' light hardly any sample would be left. */
+ * than all others, if there are others. Most of what they send into a wide scene arrives where no lamp does, and of its
+ * lamps' light hardly any sample would be left. */
 static void far_lights_bound(const Scene *scene, double *powers)
 {
     double far = 0.0, near = 0.0;
@@ -242,7 +243,8 @@ static void far_lights_bound(const Scene *scene, double *powers)
             powers[i] *= near / far;
 }
 
-/* Fills `powers` with those by which lights are chosen, sets select_pdf of every light, and lists the infinite lights. */
+/* Fills `powers` with those by which lights are chosen, sets select_pdf of every light, and lists the infinite
+ * lights. */
 static bool lights_weigh(Scene *scene, double *powers, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;

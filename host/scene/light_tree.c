@@ -104,8 +104,8 @@ static Cone area_normals(const SceneView *view, uint light)
     return cone.angle > 0.5 * M_PI ? (Cone){NO_CONE.axis, M_PI} : cone;
 }
 
-/* The largest part of a surface's area that is seen from one direction, with its cosine: of a sphere, that of its disc; of
- * a cylinder, that of its silhouette, also where it is flattened to almost two sides. */
+/* The largest part of a surface's area that is seen from one direction, with its cosine: of a sphere, that of its disc;
+ * of a cylinder, that of its silhouette, also where it is flattened to almost two sides. */
 static double area_shown(uint kind)
 {
     return kind == PRIMITIVE_SPHERE ? 0.25 : kind == PRIMITIVE_CYLINDER ? 0.5 : 1.0;

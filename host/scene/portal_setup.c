@@ -13,8 +13,8 @@
 #define CONSTANT_SIDE 128u
 #define SIDE_MIN 16u
 
-/* The light is evaluated at this many points of a cell per side: closer together than the texels that it is interpolated
- * between, so that none is missed. */
+/* The light is evaluated at this many points of a cell per side: closer together than the texels that it is
+ * interpolated between, so that none is missed. */
 #define CELL_POINTS 2u
 
 /* Part of light subpaths that comes from all directions alike, however dark the points seem that were evaluated. */
@@ -22,8 +22,8 @@
 
 /* ---- the rectangle ----------------------------------------------------------------------------------------------- */
 
-/* Largest cosine between neighbouring sides, and the largest difference of opposite ones relative to their length; pbrt's
- * bounds. */
+/* Largest cosine between neighbouring sides, and the largest difference of opposite ones relative to their length;
+ * pbrt's bounds. */
 #define SKEW_MAX 1e-3
 
 static double dot3(const double a[3], const double b[3])

@@ -335,7 +335,8 @@ bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const
     double scale = similarity_scale(data->world_from_object);
     bool full = kind == PRIMITIVE_SPHERE && quadric.z_min <= -quadric.radius && quadric.z_max >= quadric.radius &&
                 quadric.phi_max >= 6.2831850f;
-    /* The cone in which a sphere is sampled from outside has only the near side; of an invisible light both may shine. */
+    /* The cone in which a sphere is sampled from outside has only the near side; of an invisible light both may
+     * shine. */
     bool both_shine = (light_flags & LIGHT_INVISIBLE) != 0 &&
                       ((light_flags & LIGHT_TWO_SIDED) != 0 || (shape.flags & SHAPE_FLIP_NORMAL) != 0);
     quadric.whole = full && scale > 0.0 && !both_shine;

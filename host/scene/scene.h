@@ -130,8 +130,9 @@ typedef struct QuadricData {
 bool scene_add_quadric(Scene *scene, const QuadricData *data, Shape shape, const float *emission, uint light_flags,
                        Error *error);
 
-/* Curves in world space (object space in an object definition); each becomes 2^levels primitives, levels <= CURVE_LEVELS_MAX.
- * type: CURVE_FLAT or CURVE_ROUND. Curves without width or length are dropped and counted. They emit nothing. */
+/* Curves in world space (object space in an object definition); each becomes 2^levels primitives, levels <=
+ * CURVE_LEVELS_MAX. type: CURVE_FLAT or CURVE_ROUND. Curves without width or length are dropped and counted. They emit
+ * nothing. */
 typedef struct CurveData {
     const Curve *curves;
     size_t count;
@@ -168,8 +169,8 @@ bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Erro
 /* Whether a conductor, dielectric or coat may have a microfacet lobe: a textured roughness counts as rough. */
 bool scene_material_is_rough(const Material *m);
 
-/* Whether a material, or one that it mixes, may have a delta lobe: a mirror, glass or coat that is not rough; whether any
- * of the scene may. */
+/* Whether a material, or one that it mixes, may have a delta lobe: a mirror, glass or coat that is not rough; whether
+ * any of the scene may. */
 bool scene_material_has_delta(const Scene *scene, uint material);
 bool scene_has_delta(const Scene *scene);
 

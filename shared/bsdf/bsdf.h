@@ -27,8 +27,8 @@ SHARED_FUNCTION uint bsdf_traits(uint kind)
 #undef TRAITS_OF
 }
 
-/* To be called after kind, alphas, eta, coat_table and the alphas of a base (BSDF_BASE_SHIFT) are set: derives BSDF_SMOOTH
- * and BSDF_ROUGH, and clamps the alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
+/* To be called after kind, alphas, eta, coat_table and the alphas of a base (BSDF_BASE_SHIFT) are set: derives
+ * BSDF_SMOOTH and BSDF_ROUGH, and clamps the alphas of a rough lobe (ALPHA_MIN as in pbrt-v4). Keeps other flags. */
 SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 {
     uint traits = bsdf_traits(bsdf->kind);

@@ -1,15 +1,15 @@
-/* Hair (Chiang, Bitterli, Tappan and Burley, "A practical and controllable hair and fur model for production path tracing",
- * 2016, in the form of pbrt-v4): a rough dielectric cylinder that absorbs inside. Light leaves it after p = 0, 1, 2 or more
- * internal segments (R, TT, TRT and the rest).
+/* Hair (Chiang, Bitterli, Tappan and Burley, "A practical and controllable hair and fur model for production path
+ * tracing", 2016, in the form of pbrt-v4): a rough dielectric cylinder that absorbs inside. Light leaves it after p =
+ * 0, 1, 2 or more internal segments (R, TT, TRT and the rest).
  *
- * The frame has the tangent as x. theta is the angle to the plane across the hair, phi the one around it; h, from -1 to 1,
- * is where across the hair wo meets it. What is evaluated is a density of wi,
- *     S(wo, wi) = sum over p of A_p M_p(theta_o, theta_i) N_p(phi_i - phi_o),
- * whose parts M_p cos(theta_i) and N_p integrate to 1 over theta_i and phi_i: f(wo, wi) |cos wi| is S. S depends on where wo
- * meets the hair, so it is not symmetric; TRANSPORT_IMPORTANCE exchanges the two directions.
+ * The frame has the tangent as x. theta is the angle to the plane across the hair, phi the one around it; h, from -1 to
+ * 1, is where across the hair wo meets it. What is evaluated is a density of wi, S(wo, wi) = sum over p of A_p
+ * M_p(theta_o, theta_i) N_p(phi_i - phi_o), whose parts M_p cos(theta_i) and N_p integrate to 1 over theta_i and phi_i:
+ * f(wo, wi) |cos wi| is S. S depends on where wo meets the hair, so it is not symmetric; TRANSPORT_IMPORTANCE exchanges
+ * the two directions.
  *
- * Members of the Bsdf: color0 the absorption per radius, color1.x h, color1.y the tilt of the scales in radians, alpha_x and
- * alpha_y the roughnesses beta_m and beta_n, eta. */
+ * Members of the Bsdf: color0 the absorption per radius, color1.x h, color1.y the tilt of the scales in radians,
+ * alpha_x and alpha_y the roughnesses beta_m and beta_n, eta. */
 #ifndef TWINLIGHT_BSDF_HAIR_H
 #define TWINLIGHT_BSDF_HAIR_H
 
@@ -58,7 +58,8 @@ SHARED_FUNCTION float hair_absorption(float c, float beta_n)
     return root * root;
 }
 
-/* Absorption of the two pigments of human hair, by their concentrations (d'Eon et al. 2011, as linear sRGB in pbrt-v4). */
+/* Absorption of the two pigments of human hair, by their concentrations (d'Eon et al. 2011, as linear sRGB in
+ * pbrt-v4). */
 SHARED_FUNCTION Vec3 hair_melanin(float eumelanin, float pheomelanin)
 {
     return vec3_mad(vec3_scale(vec3(0.419f, 0.697f, 1.37f), eumelanin), pheomelanin, vec3(0.187f, 0.4f, 1.05f));
@@ -100,9 +101,9 @@ SHARED_FUNCTION HairAngle hair_angle(Vec3 w)
     return theta;
 }
 
-/* csch(1/v) / (2 v) exp(-sin i sin o / v) I_0(cos i cos o / v), with all exponentials in one, whose argument -(1 - cos(i + o)) /
- * v is a sum of squares: small v neither overflow nor cancel. (d'Eon et al., "An energy-conserving hair reflectance model",
- * 2011.) */
+/* csch(1/v) / (2 v) exp(-sin i sin o / v) I_0(cos i cos o / v), with all exponentials in one, whose argument -(1 -
+ * cos(i + o)) / v is a sum of squares: small v neither overflow nor cancel. (d'Eon et al., "An energy-conserving hair
+ * reflectance model", 2011.) */
 SHARED_FUNCTION float hair_longitudinal(HairAngle i, HairAngle o, float v)
 {
     float across = i.cosine - o.cosine, along = i.sine + o.sine;

@@ -112,8 +112,8 @@ SHARED_FUNCTION void coated_conductor_set(const SceneView *scene, __global const
     bsdf->flags |= bsdf_base_pack(alpha_x, alpha_y);
 }
 
-/* Absorption, roughnesses and tilt of hair, and where across it the point lies. As in pbrt-v4, v goes from one side to the
- * other. */
+/* Absorption, roughnesses and tilt of hair, and where across it the point lies. As in pbrt-v4, v goes from one side to
+ * the other. */
 SHARED_FUNCTION_APART void hair_set(const SceneView *scene, __global const Material *material,
                                     const TexturePoint *point, Bsdf *bsdf)
 {
@@ -176,8 +176,8 @@ SHARED_FUNCTION Bsdf material_bsdf(const SceneView *scene, uint index, const Tex
 }
 
 /* Chooses among mixes with u_mix, applies bump or normal map to `surface`, and fills `bsdf` and the frame in which it
- * is evaluated. On curves that has the tangent as x. An isotropic Bsdf gets a frame from its normal alone, which is continuous over the surface whatever
- * the texture coordinates do; an anisotropic one follows dpdu. */
+ * is evaluated. On curves that has the tangent as x. An isotropic Bsdf gets a frame from its normal alone, which is
+ * continuous over the surface whatever the texture coordinates do; an anisotropic one follows dpdu. */
 SHARED_FUNCTION void material_resolve(const SceneView *scene, float u_mix, Surface *surface, Bsdf *bsdf, Frame *frame)
 {
     TexturePoint point = texture_point(surface);

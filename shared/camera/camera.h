@@ -1,5 +1,5 @@
-/* Perspective and orthographic cameras: from a film position to a ray and back. Conventions of pbrt-v4: camera space is left-handed and looks along
- * +z with y up; film positions are in pixels from the upper left corner, y down. */
+/* Perspective and orthographic cameras: from a film position to a ray and back. Conventions of pbrt-v4: camera space is
+ * left-handed and looks along +z with y up; film positions are in pixels from the upper left corner, y down. */
 #ifndef TWINLIGHT_CAMERA_CAMERA_H
 #define TWINLIGHT_CAMERA_CAMERA_H
 

@@ -1,13 +1,14 @@
-/* Cameras that see all directions: pbrt-v4's spherical camera, of both mappings. The plane of film positions is covered by
- * copies of the film: past its border a picture goes on with what is inside at another place, and so do pixel filters. */
+/* Cameras that see all directions: pbrt-v4's spherical camera, of both mappings. The plane of film positions is covered
+ * by copies of the film: past its border a picture goes on with what is inside at another place, and so do pixel
+ * filters. */
 #ifndef TWINLIGHT_CAMERA_SPHERICAL_H
 #define TWINLIGHT_CAMERA_SPHERICAL_H
 
 #include "camera/camera.h"
 
-/* Where the place `in` of a copy is on the film itself, both in [0, 1)^2, or the other way round. column and row: of the
- * copy; the film is (0, 0). The equal-area map is turned by 180 degrees from copy to copy; past the poles of the other
- * mapping, which repeats from left to right, is the opposite longitude. */
+/* Where the place `in` of a copy is on the film itself, both in [0, 1)^2, or the other way round. column and row: of
+ * the copy; the film is (0, 0). The equal-area map is turned by 180 degrees from copy to copy; past the poles of the
+ * other mapping, which repeats from left to right, is the opposite longitude. */
 SHARED_FUNCTION Vec2 spherical_copy(uint kind, float column, float row, Vec2 in)
 {
     bool odd_row = row - 2.0f * float_floor(0.5f * row) != 0.0f;
@@ -33,9 +34,10 @@ SHARED_FUNCTION_APART Ray spherical_ray(const Camera *camera, Vec2 film, float w
     return ray;
 }
 
-/* camera_pdf of these cameras. The mapping gives the density of a camera-space direction l per solid angle, 1 / (4 pi) or
- * 1 / (2 pi^2 sin) with the sine of the angle from y, for a film of area 1. If q is the camera-space vector of the unit
- * vector d and M the transform to the world, solid angles in the world are |det M| |q|^3 times those of l = q / |q|. */
+/* camera_pdf of these cameras. The mapping gives the density of a camera-space direction l per solid angle, 1 / (4 pi)
+ * or 1 / (2 pi^2 sin) with the sine of the angle from y, for a film of area 1. If q is the camera-space vector of the
+ * unit vector d and M the transform to the world, solid angles in the world are |det M| |q|^3 times those of l = q /
+ * |q|. */
 SHARED_FUNCTION_APART float spherical_pdf(__global const FrameParams *frame, Vec3 d, float distance)
 {
     __global const Camera *camera = &frame->camera;

@@ -13,9 +13,9 @@
  * of directions: Otsu et al., "Fusing state spaces for Markov chain Monte Carlo rendering", 2017; Bitterli et al.,
  * "Reversible jump Metropolis light transport using inverse mappings", 2018.
  *
- * A path can be shifted if it has z_2, if z_2 and z_3 are not on curves, and if z_1 and, where z_3 exists, z_2 have lobes that draw all directions near
- * theirs. Other paths take an ordinary step of the camera subpath instead; it is rejected if it leads to a path that
- * can be shifted, since no step leads back from there. */
+ * A path can be shifted if it has z_2, if z_2 and z_3 are not on curves, and if z_1 and, where z_3 exists, z_2 have
+ * lobes that draw all directions near theirs. Other paths take an ordinary step of the camera subpath instead; it is
+ * rejected if it leads to a path that can be shifted, since no step leads back from there. */
 #ifndef TWINLIGHT_CHAIN_SHIFT_H
 #define TWINLIGHT_CHAIN_SHIFT_H
 

@@ -1,14 +1,14 @@
-/* Curves: cubic Bezier segments that look from everywhere like a band of their width which faces the ray, as pbrt-v4's curves
- * of the types flat and cylinder. Parameters: u along the segment, v across it, 0.5 on the axis.
+/* Curves: cubic Bezier segments that look from everywhere like a band of their width which faces the ray, as pbrt-v4's
+ * curves of the types flat and cylinder. Parameters: u along the segment, v across it, 0.5 on the axis.
  *
- * The test of a ray goes down a binary tree of intervals of u until the segment is almost straight there, seen along the
- * ray; a hit is where the axis comes closest to the ray, if that is within half the width (Nakamaru and Ohno, "Ray tracing
- * for curves primitive", WSCG 2002).
+ * The test of a ray goes down a binary tree of intervals of u until the segment is almost straight there, seen along
+ * the ray; a hit is where the axis comes closest to the ray, if that is within half the width (Nakamaru and Ohno, "Ray
+ * tracing for curves primitive", WSCG 2002).
  *
- * A band that faces every ray has no normal. So paths that hit a curve go on from its axis, and what they need of a normal
- * is in surface.h. A ray does not hit a curve that contains one of its ends: where the axis comes closest, the ends must
- * be further from it than half the width. That holds for either direction of a ray, and keeps a ray from hitting the
- * curve that it leaves or goes to. */
+ * A band that faces every ray has no normal. So paths that hit a curve go on from its axis, and what they need of a
+ * normal is in surface.h. A ray does not hit a curve that contains one of its ends: where the axis comes closest, the
+ * ends must be further from it than half the width. That holds for either direction of a ray, and keeps a ray from
+ * hitting the curve that it leaves or goes to. */
 #ifndef TWINLIGHT_GEOMETRY_CURVE_H
 #define TWINLIGHT_GEOMETRY_CURVE_H
 
@@ -22,8 +22,8 @@
 /* Levels of the subdivision of one primitive. */
 #define CURVE_DEPTH_MAX 8u
 
-/* By how much an interval may be left at its ends, relative to half the width: neighbours overlap by that much, so that no
- * ray slips through between them by rounding. */
+/* By how much an interval may be left at its ends, relative to half the width: neighbours overlap by that much, so that
+ * no ray slips through between them by rounding. */
 #define CURVE_OVERLAP 1e-3f
 
 /* How far rays must start from the axis, relative to half the width, to hit the curve there. */
@@ -136,8 +136,8 @@ SHARED_FUNCTION bool curve_near(const Bezier *b, float radius, float end)
            low.z <= end + radius;
 }
 
-/* Levels of subdivision after which parts deviate from their chords by no more than CURVE_FLATNESS width, seen along the ray
- * (Wang 1984, as cited by pbrt-v4). */
+/* Levels of subdivision after which parts deviate from their chords by no more than CURVE_FLATNESS width, seen along
+ * the ray (Wang 1984, as cited by pbrt-v4). */
 SHARED_FUNCTION uint curve_depth(const Bezier *b, float width)
 {
     float bend = 0.0f;
@@ -154,8 +154,8 @@ SHARED_FUNCTION uint curve_depth(const Bezier *b, float width)
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
 
-/* Whether the origin of the ray's space lies within the end of the part at `from`, whose tangent leads to `to`; it may be
- * outside by `overlap`. */
+/* Whether the origin of the ray's space lies within the end of the part at `from`, whose tangent leads to `to`; it may
+ * be outside by `overlap`. */
 SHARED_FUNCTION bool curve_end_keeps(Vec3 from, Vec3 to, float overlap)
 {
     float x = to.x - from.x, y = to.y - from.y, inward = -(from.x * x + from.y * y);
@@ -179,7 +179,8 @@ SHARED_FUNCTION bool curve_clear(Vec3 p, float square, float radius, float end)
     return p.z > 0.0f && left > 0.0f && square + p.z * p.z > radius * radius && square + left * left > radius * radius;
 }
 
-/* Replaces *hit, at the distance *nearest, by the hit of the part b of the curve between u0 and u1, if that is nearer. */
+/* Replaces *hit, at the distance *nearest, by the hit of the part b of the curve between u0 and u1, if that is
+ * nearer. */
 SHARED_FUNCTION void curve_part_hit(__global const Curve *curve, const CurveRay *ray, const Bezier *b, float u0,
                                     float u1, float *nearest, Hit *hit)
 {

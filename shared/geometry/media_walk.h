@@ -127,8 +127,8 @@ SHARED_FUNCTION float emission_part(float emission, float extinction, float dist
     return emission * (1.0f - float_exp(-x)) / extinction;
 }
 
-/* Adds the light that the next part of a ray emits; walk->depth is still that before it. lengths: as of optical_depth_add: in
- * a grid, emission and extinction have the same factor. */
+/* Adds the light that the next part of a ray emits; walk->depth is still that before it. lengths: as of
+ * optical_depth_add: in a grid, emission and extinction have the same factor. */
 SHARED_FUNCTION void media_walk_emission(__global const Medium *medium, Vec3 lengths, MediaWalk *walk)
 {
     Vec3 emission = vec3(emission_part(medium->emission.x, medium->extinction.x, lengths.x),

@@ -113,8 +113,8 @@ SHARED_FUNCTION bool medium_scatters(__global const Medium *medium)
     return !vec3_is_zero(medium->scattering);
 }
 
-/* Adds what a part of a ray in a medium contributes. lengths: of each colour, its length in a homogeneous medium, of others the
- * integral of the grid's factor. */
+/* Adds what a part of a ray in a medium contributes. lengths: of each colour, its length in a homogeneous medium, of
+ * others the integral of the grid's factor. */
 SHARED_FUNCTION void optical_depth_add(const SceneView *scene, OpticalDepth *depth, uint medium, Vec3 lengths)
 {
     Vec3 more = attenuations(scene->media[medium].extinction, lengths);
@@ -131,9 +131,9 @@ SHARED_FUNCTION Vec3 transmittance(Vec3 depth)
 
 /* ---- distances --------------------------------------------------------------------------------------------------- */
 
-/* A ray's distance is drawn with one number: a colour channel, and the optical depth of that channel at which the ray is
- * scattered. (Chiang, Kutz and Burley, "Practical and controllable subsurface scattering for production path tracing",
- * 2016, section 2.) So a distance has the mean density of the three channels. */
+/* A ray's distance is drawn with one number: a colour channel, and the optical depth of that channel at which the ray
+ * is scattered. (Chiang, Kutz and Burley, "Practical and controllable subsurface scattering for production path
+ * tracing", 2016, section 2.) So a distance has the mean density of the three channels. */
 
 /* The probability of reaching the end of a ray unscattered. */
 SHARED_FUNCTION float passing_probability(const OpticalDepth *depth)

@@ -2,9 +2,9 @@
  *
  * In a grid's own coordinates, sample i of an axis lies at i + 1. Between samples factors are interpolated trilinearly,
  * and beyond the outermost they fall to 0 within one unit; outside of the grid's box, which is as pbrt has it
- * (MediumGrid), there is no medium. Along a ray a factor is a cubic in each cell between eight samples, which Gauss's rule
- * with two points integrates exactly. So an optical depth has no error but that of rounding, and the distance at which
- * it has a given value is found by inverting the integral in a single cell: no other random numbers are needed.
+ * (MediumGrid), there is no medium. Along a ray a factor is a cubic in each cell between eight samples, which Gauss's
+ * rule with two points integrates exactly. So an optical depth has no error but that of rounding, and the distance at
+ * which it has a given value is found by inverting the integral in a single cell: no other random numbers are needed.
  *
  * Cells are stored in bricks of 8 x 8 x 8, each with the 9 x 9 x 9 samples at their corners: words of `texels`. Bricks
  * whose samples are all 0 are not stored, and a ray crosses one in a single step. */
@@ -18,7 +18,8 @@
 #define GRID_EDGE 9 /* samples along it */
 #define GRID_BRICK_SAMPLES 729
 
-/* Words of a sample: 1, a factor of all coefficients; or 6: of extinction and of scattering, each red, green and blue. */
+/* Words of a sample: 1, a factor of all coefficients; or 6: of extinction and of scattering, each red, green and
+ * blue. */
 #define GRID_COLORS(grid) ((grid)->words == 1u ? 1u : 3u)
 
 /* A cell, by its lower corner. */
@@ -76,7 +77,8 @@ SHARED_FUNCTION GridCell grid_cell(__global const MediumGrid *grid, Vec3 p)
     return cell;
 }
 
-/* The factors of extinction at a point of the world or, with `scattering`, of scattering. A point outside of the grid's box is moved to it. */
+/* The factors of extinction at a point of the world or, with `scattering`, of scattering. A point outside of the grid's
+ * box is moved to it. */
 SHARED_FUNCTION_APART Vec3 grid_factors(const SceneView *scene, uint number, Vec3 point, bool scattering)
 {
     __global const MediumGrid *grid = scene->grids + number;
@@ -279,8 +281,8 @@ typedef struct GridColumn {
     bool reached; /* if it has */
 } GridColumn;
 
-/* Of the ray from o along w (unit) up to `distance`, which may be infinite, or to where the integral of colour `channel`
- * reaches `target`. */
+/* Of the ray from o along w (unit) up to `distance`, which may be infinite, or to where the integral of colour
+ * `channel` reaches `target`. */
 SHARED_FUNCTION_APART GridColumn grid_column(const SceneView *scene, uint number, Vec3 o, Vec3 w, float distance,
                                              uint channel, float target)
 {

@@ -184,8 +184,8 @@ SHARED_FUNCTION bool primitive_curved_counts(const SceneView *scene, uint id, ui
     return box_admits_hit(&box, query, &hit->t) && primitive_keeps(scene, query, id, asked, hit);
 }
 
-/* primitive_query for all but triangles. A hole in the near side of a sphere or cylinder shows its far side; otherwise rays from
- * inside would escape where rays from outside hit nothing. Each side has a hash of its own. */
+/* primitive_query for all but triangles. A hole in the near side of a sphere or cylinder shows its far side; otherwise
+ * rays from inside would escape where rays from outside hit nothing. Each side has a hash of its own. */
 SHARED_FUNCTION bool primitive_query_curved(const SceneView *scene, uint id, const RayQuery *query, Hit *hit)
 {
     Primitive primitive = scene->primitives[id];

@@ -225,8 +225,8 @@ SHARED_FUNCTION void surface_from_quadric(const SceneView *scene, const Shape *s
 
 /* ---- curves ---------------------------------------------------------------------------------------------------- */
 
-/* d: the ray's direction. The shading normal is the part of d across the tangent; on a round curve it is turned about the
- * tangent by up to a quarter of a turn, towards either side. */
+/* d: the ray's direction. The shading normal is the part of d across the tangent; on a round curve it is turned about
+ * the tangent by up to a quarter of a turn, towards either side. */
 SHARED_FUNCTION void surface_from_curve(const SceneView *scene, const Shape *shape, const Primitive *primitive, Vec3 d,
                                         const Hit *hit, Surface *surface)
 {

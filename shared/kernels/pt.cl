@@ -106,7 +106,8 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
     }
 }
 
-/* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold (path_shown). */
+/* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold
+ * (path_shown). */
 SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                        uint segments, Vec3 radiance, float shown)
 {
@@ -219,8 +220,8 @@ SHARED_FUNCTION_APART void path_vertex_in_medium(const SceneView *scene, __globa
     bsdf_store(scene, paths, scene->frame->pass.stride, PATH_BSDF, item, &phase);
 }
 
-/* Adds what media have emitted along the path's latest segment. With frame->partition.split_direct no estimator but path
- * tracing shows it, like direct light. */
+/* Adds what media have emitted along the path's latest segment. With frame->partition.split_direct no estimator but
+ * path tracing shows it, like direct light. */
 SHARED_FUNCTION_APART void path_add_medium_emission(__global const FrameParams *frame, __global uint *restrict paths,
                                                     uint item, Vec3 light)
 {
@@ -517,9 +518,9 @@ SHARED_FUNCTION void path_move(__global const FrameParams *frame, __global uint 
     state_store_vec3(paths, stride, from, item, vec3_splat(0.0f));
 }
 
-/* With partition.split_direct and photons or emissive media: from: paths of two segments. To: their light kept until the
- * end, where pt_splat_caustics splats it together with caustics and what media emit. No estimator but path tracing shows
- * any of them. */
+/* With partition.split_direct and photons or emissive media: from: paths of two segments. To: their light kept until
+ * the end, where pt_splat_caustics splats it together with caustics and what media emit. No estimator but path tracing
+ * shows any of them. */
 __kernel void pt_keep_direct(__global const FrameParams *restrict frame, __global uint *restrict paths)
 {
     uint item = (uint)get_global_id(0);
@@ -551,8 +552,8 @@ SHARED_FUNCTION uint path_splat_depth(__global const FrameParams *frame, __globa
     return splat_depth(frame->film.split_depths, state_load(paths, frame->pass.stride, PATH_GATHERED, item));
 }
 
-/* Only with frame->partition.split_direct. From: the finished path, or with frame->film.split_depths one under way. To: a
- * splat of its rare light, if it has any. */
+/* Only with frame->partition.split_direct. From: the finished path, or with frame->film.split_depths one under way. To:
+ * a splat of its rare light, if it has any. */
 __kernel void pt_splat_rare(__global const FrameParams *restrict frame, __global uint *restrict paths,
                             __global uint *restrict splats, __global uint *restrict diagnostics)
 {

@@ -100,8 +100,7 @@ enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #define PRIMITIVE_SPHERE 2u /* a: index into `quadrics` */
 #define PRIMITIVE_DISK 3u /* a: index into `quadrics` */
 #define PRIMITIVE_CYLINDER 4u /* a: index into `quadrics` */
-#define PRIMITIVE_CURVE                                                                                                \
-    5u /* a: index into `curves`; b: which of its pieces, as CURVE_PIECE; c: CURVE_FLAT or CURVE_ROUND */
+#define PRIMITIVE_CURVE 5u /* a: index into `curves`; b: its piece, as CURVE_PIECE; c: CURVE_FLAT or CURVE_ROUND */
 #define PRIMITIVE_KINDS 6
 
 #define PRIMITIVE_IS_QUADRIC(kind) ((kind) >= PRIMITIVE_SPHERE && (kind) <= PRIMITIVE_CYLINDER)
@@ -164,8 +163,8 @@ typedef struct Quadric {
     float world_radius; /* of a `whole` sphere */
 } Quadric;
 
-/* A cubic Bezier segment with a width that changes linearly with the parameter: 56 bytes. Seen from anywhere it is a band of
- * that width that faces the ray (geometry/curve.h). */
+/* A cubic Bezier segment with a width that changes linearly with the parameter: 56 bytes. Seen from anywhere it is a
+ * band of that width that faces the ray (geometry/curve.h). */
 typedef struct Curve {
     Vec3 p[4]; /* control points */
     float width[2]; /* at parameters 0 and 1 */
@@ -274,12 +273,13 @@ typedef struct FloatParam {
 #define MATERIAL_HAIR_COLOR 0x4u /* hair: color0 is the colour that it is to have */
 #define MATERIAL_HAIR_MELANIN 0x8u /* hair: base_u and base_v are concentrations of eumelanin and pheomelanin */
 
-/* color0: diffuse, coated diffuse, transmission: reflectance. conductor, coated or not: eta or reflectance.
- * color1: conductor: k. diffuse transmission: transmittance. coated diffuse: x the coat's optical thickness along its normal
+/* color0: diffuse, coated diffuse, transmission: reflectance. conductor, coated or not: eta or reflectance. color1:
+ * conductor: k. diffuse transmission: transmittance. coated diffuse: x the coat's optical thickness along its normal
  * (pbrt's "thickness"), y what scene_finish makes of it: the transmittance of one internal round trip (bsdf/coat.h).
- * roughness_u/v: as given in the scene, of a coat that of its interface, base_u/v that of the conductor below; alpha = roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS.
- * hair: color0: absorption, roughness_u/v: beta_m and beta_n, amount: alpha in degrees.
- * mix: `mix_a` where the random number is >= amount, `mix_b` where it is below. */
+ * roughness_u/v: as given in the scene, of a coat that of its interface, base_u/v that of the conductor below; alpha =
+ * roughness, or pbrt's sqrt(roughness) when MATERIAL_REMAP_ROUGHNESS. hair: color0: absorption, roughness_u/v: beta_m
+ * and beta_n, amount: alpha in degrees. mix: `mix_a` where the random number is >= amount, `mix_b` where it is
+ * below. */
 typedef struct Material {
     uint kind;
     uint flags;
@@ -302,8 +302,8 @@ typedef struct Material {
 
 /* ---- media ----------------------------------------------------------------------------------------------------- */
 
-/* A participating medium; coefficients per unit of length of the world, of media with a grid those where its factors are
- * 1. Number 0 is empty space. Scenes without media have no such table. */
+/* A participating medium; coefficients per unit of length of the world, of media with a grid those where its factors
+ * are 1. Number 0 is empty space. Scenes without media have no such table. */
 typedef struct Medium {
     Vec3 extinction; /* sigma_t: absorption and scattering */
     Vec3 scattering; /* sigma_s */
@@ -318,8 +318,7 @@ typedef struct MediumGrid {
     uint size_x, size_y, size_z; /* samples */
     float low; /* its box: along each axis, coordinates from low to low + size */
     uint words; /* of a sample: GRID_COLORS */
-    uint
-        bricks; /* first word, in texels, of the table of bricks: for each, x fastest, the first word of its samples or NONE */
+    uint bricks; /* first word, in texels, of a table: for each brick, x fastest, its samples' first word or NONE */
 } MediumGrid;
 
 /* Numbers of media are below this. */
@@ -338,8 +337,9 @@ typedef struct MediumGrid {
     X(PROJECTION, projection, "projection", (FEATURE_DELTA_LIGHT | FEATURE_INTENSITY_IMAGE), 1u)                       \
     X(DISTANT, distant, "distant", FEATURE_DELTA_LIGHT, 0u)
 
-/* All lights. Those at infinity, DISTANT and after, follow those at a point. Those of FEATURE_INFINITE_LIGHT come last; LIGHT_INFINITE is a constant environment, LIGHT_PORTAL one that
- * is constant or an image, and is seen through a portal alone (light/portal.h). */
+/* All lights. Those at infinity, DISTANT and after, follow those at a point. Those of FEATURE_INFINITE_LIGHT come last;
+ * LIGHT_INFINITE is a constant environment, LIGHT_PORTAL one that is constant or an image, and is seen through a portal
+ * alone (light/portal.h). */
 #define LIGHT_LIST(X)                                                                                                  \
     X(AREA, area, "area", FEATURE_AREA_LIGHT, 0u)                                                                      \
     LIGHT_LIST_DELTA(X)                                                                                                \
@@ -361,17 +361,17 @@ typedef struct Light {
     uint flags;
     uint primitive; /* area */
     uint image; /* infinite image, goniometric, projection; portal: NONE if its environment is constant */
-    Vec3
-        emission; /* area, infinite: radiance. point, spot, goniometric, projection: intensity. distant: irradiance on a
-                      plane facing it. With an image: its scale */
+    /* area, infinite: radiance. point, spot, goniometric, projection: intensity. distant: irradiance on a plane facing
+     * it. With an image: its scale */
+    Vec3 emission;
     float area; /* area: surface area in world space */
     Vec3 position; /* of lights at a point */
     float select_pdf; /* probability of choosing this light (host/scene/light_setup.h) */
     Vec3 direction; /* spot, projection: axis. distant: direction in which the light travels. unit */
     float cos_total; /* spot, projection: no light outside this angle */
     float cos_falloff; /* spot: full intensity inside this angle; projection: cos_total */
-    uint
-        distribution; /* of light subpaths; infinite image, portal, goniometric, projection: index into `distributions2d` */
+    /* of light subpaths; infinite image, portal, goniometric, projection: index into `distributions2d` */
+    uint distribution;
     uint portal; /* portal: index into `portals` */
     uint leaf; /* number of leaves before it in the tree of lights; NONE: it has no power */
     Affine world_from_light; /* infinite, goniometric, projection: of directions, scaled to a determinant of 1 or -1 */
@@ -387,9 +387,9 @@ typedef struct Distribution2D {
     uint first_conditional;
 } Distribution2D;
 
-/* The rectangle through which alone an infinite light is seen: corner + x axes.t + y axes.b with 0 <= x <= width and
- * 0 <= y <= height. axes.n points away from the side that is lit. `sums`: index in `texels` of the first of (columns + 1) x
- * (rows + 1) sums, modulo 2^32, over all cells of the rectified environment with smaller indices (light/portal.h). */
+/* The rectangle through which alone an infinite light is seen: corner + x axes.t + y axes.b with 0 <= x <= width and 0
+ * <= y <= height. axes.n points away from the side that is lit. `sums`: index in `texels` of the first of (columns + 1)
+ * x (rows + 1) sums, modulo 2^32, over all cells of the rectified environment with smaller indices (light/portal.h). */
 typedef struct Portal {
     Vec3 corner;
     float width, height;
@@ -405,9 +405,9 @@ typedef struct AliasBucket {
 } AliasBucket;
 
 /* A node of the tree by which a light is chosen for a point (light/light_tree.h): 32 bytes. The left child of a node
- * follows it. cones: cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and light
- * leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides. link: LIGHT_NODE_LEAF and the light; or the right child,
- * and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities matter. */
+ * follows it. cones: cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and
+ * light leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides. link: LIGHT_NODE_LEAF and the light; or the
+ * right child, and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities matter. */
 typedef struct LightNode {
     Vec3 center; /* of a sphere around its lights */
     float radius; /* -1: lights at infinity */

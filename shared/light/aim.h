@@ -1,9 +1,10 @@
-/* Light subpaths aimed at smooth specular surfaces. Of a lamp in a room, and of light from infinity, few subpaths meet the
- * small mirror or the window pane that makes a caustic, and connections to a camera find its light by nothing else. So a
- * part of the rays that leave a light, AIM_PART, is drawn through spheres around those surfaces, the aims, with equal
- * probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from infinity,
- * uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn as by
- * light_emit. (Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.3.1, has such projection maps.)
+/* Light subpaths aimed at smooth specular surfaces. Of a lamp in a room, and of light from infinity, few subpaths meet
+ * the small mirror or the window pane that makes a caustic, and connections to a camera find its light by nothing else.
+ * So a part of the rays that leave a light, AIM_PART, is drawn through spheres around those surfaces, the aims, with
+ * equal probability through each: uniform in the solid angle that the sphere subtends at the light's point or, from
+ * infinity, uniform on the sphere's disc. A sphere around the light's point itself aims nowhere, and the ray is drawn
+ * as by light_emit. (Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.3.1, has such projection
+ * maps.)
  *
  * Here are the densities that result, and the drawing. */
 #ifndef TWINLIGHT_LIGHT_AIM_H
@@ -33,8 +34,8 @@ SHARED_FUNCTION float aim_versine(Aim aim, Vec3 p)
     return sin2 / (1.0f + float_sqrt(1.0f - sin2));
 }
 
-/* Density per solid angle of a ray that leaves p along w (unit), given its light and p. ng: light_emit_pdf_w. Distant and
- * infinite lights: their directions are not aimed. */
+/* Density per solid angle of a ray that leaves p along w (unit), given its light and p. ng: light_emit_pdf_w. Distant
+ * and infinite lights: their directions are not aimed. */
 SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3 p, Vec3 ng, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count, kind = scene->lights[light].kind;
@@ -52,8 +53,8 @@ SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3
     return (1.0f - AIM_PART) * unaimed + AIM_PART * (sum / (float)count);
 }
 
-/* Density, per area perpendicular to it, of the ray of a light at infinity that passes p along w (unit), given w. p must be
- * in the scene. */
+/* Density, per area perpendicular to it, of the ray of a light at infinity that passes p along w (unit), given w. p
+ * must be in the scene. */
 SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, uint light, Vec3 p, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count;
@@ -68,8 +69,8 @@ SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, uint light, V
     return (1.0f - AIM_PART) * unaimed + AIM_PART * (sum / (float)count);
 }
 
-/* Moves the ray's origin so that it passes the disc of the aim; as in light_emit_from_disc, it begins where the bounding
- * sphere does. */
+/* Moves the ray's origin so that it passes the disc of the aim; as in light_emit_from_disc, it begins where the
+ * bounding sphere does. */
 SHARED_FUNCTION void aim_from_infinity(const SceneView *scene, Aim aim, Vec2 u, LightEmission *emission)
 {
     Vec2 disc = warp_disk_concentric(u);

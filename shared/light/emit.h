@@ -42,8 +42,8 @@ SHARED_FUNCTION bool light_emit_infinite(const SceneView *scene, uint light, Vec
     return light_emit_from_disc(scene, u_point, emission);
 }
 
-/* Density, per area perpendicular to w, with which light_emit makes the ray of a light at infinity that passes p along w
- * (unit), given w. */
+/* Density, per area perpendicular to w, with which light_emit makes the ray of a light at infinity that passes p along
+ * w (unit), given w. */
 SHARED_FUNCTION float light_emit_pdf_passing(const SceneView *scene, uint light, Vec3 p, Vec3 w)
 {
     if (!light_has_portal(scene, light))
@@ -92,8 +92,9 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
 
 /* Draws a ray that leaves `light`. Area lights: the point by area_light_point, even on spheres, which light_sample
  * draws by solid angle; the direction with the cosine, on the side or sides that emit. Point lights: a uniform
- * direction; spots roughly, goniometric and projection lights exactly in proportion to their intensity. Light from infinity: the direction as in light_sample,
- * the point on a disc that covers the scene, or on the light's portal. False: no emission; *emission is then meaningless. */
+ * direction; spots roughly, goniometric and projection lights exactly in proportion to their intensity. Light from
+ * infinity: the direction as in light_sample, the point on a disc that covers the scene, or on the light's portal.
+ * False: no emission; *emission is then meaningless. */
 SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                 LightEmission *emission)
 {

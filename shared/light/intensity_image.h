@@ -19,8 +19,8 @@ typedef struct IntensityPlace {
     float pdf_uniform; /* solid-angle density of the direction if uv is uniform; 0: it is not on the image */
 } IntensityPlace;
 
-/* Where the unit vector w leaves a goniometric light. If the transform M to the light's space stretches, w -> M w / |M w|
- * scales solid angles by |det M| / |M w|^3, and |det M| = 1 (layout/scene_types.h). */
+/* Where the unit vector w leaves a goniometric light. If the transform M to the light's space stretches, w -> M w / |M
+ * w| scales solid angles by |det M| / |M w|^3, and |det M| = 1 (layout/scene_types.h). */
 SHARED_FUNCTION IntensityPlace goniometric_place(__global const Light *source, Vec3 w)
 {
     IntensityPlace place;
@@ -36,8 +36,8 @@ SHARED_FUNCTION Vec3 goniometric_direction(__global const Light *source, Vec2 uv
     return vec3_normalize(affine_vector(source->world_from_light, octahedral_to_sphere(uv)));
 }
 
-/* Where w leaves a projection light. In the light's space the image is the square |x| <= z, |y| <= z of directions
- * (x, y, z), y up. The area element of the plane z = 1 there is the solid angle's over (M w)_z^3, and the square has the
+/* Where w leaves a projection light. In the light's space the image is the square |x| <= z, |y| <= z of directions (x,
+ * y, z), y up. The area element of the plane z = 1 there is the solid angle's over (M w)_z^3, and the square has the
  * area 4. */
 SHARED_FUNCTION IntensityPlace projection_place(__global const Light *source, Vec3 w)
 {

@@ -17,17 +17,17 @@ SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1
     return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);
 }
 
-/* light_select with the numbers of a point on the light, the first of which chooses the light and is stretched to what is
- * left of it, so that points stay stratified; *u: then those of the point. random: x: as bits1 of light_select; z, w: point
- * (y is not used). */
+/* light_select with the numbers of a point on the light, the first of which chooses the light and is stretched to what
+ * is left of it, so that points stay stratified; *u: then those of the point. random: x: as bits1 of light_select; z,
+ * w: point (y is not used). */
 SHARED_FUNCTION uint light_select_point(const SceneView *scene, Random4 random, Vec2 *u)
 {
     u->y = random_float(random.x[3]);
     return alias_sample_rest(scene->light_alias, scene->frame->scene.light_count, random.x[2], random.x[0], &u->x);
 }
 
-/* Chooses the light that a vertex at p with geometric normal ng is connected to; numbers as in light_select_point. *pdf:
- * light_choice_pdf. */
+/* Chooses the light that a vertex at p with geometric normal ng is connected to; numbers as in light_select_point.
+ * *pdf: light_choice_pdf. */
 SHARED_FUNCTION uint light_choose_point(const SceneView *scene, Vec3 p, Vec3 ng, Random4 random, Vec2 *u, float *pdf)
 {
     if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE)) {

@@ -8,8 +8,9 @@
 #include "geometry/curve.h"
 #include "layout/scene_view.h"
 
-/* The probability of the lamps, if there are distant or infinite lights, too: a share of the estimated irradiance within
- * these bounds. Visibility is not known: much of what arrives from far away may be hidden, or all of a lamp's light. */
+/* The probability of the lamps, if there are distant or infinite lights, too: a share of the estimated irradiance
+ * within these bounds. Visibility is not known: much of what arrives from far away may be hidden, or all of a lamp's
+ * light. */
 #define LAMPS_LEAST 0.5f
 #define LAMPS_MOST 0.875f
 

@@ -124,8 +124,8 @@ SHARED_FUNCTION_CALLED bool connect_vertices(const SceneView *scene, const Verte
     return true;
 }
 
-/* Connects y_{s-1} and z_{t-1}, s + t >= 3: to the lens, to a light, or two vertices between. An end that the strategy lacks is
- * not read. random: the numbers of the respective case. */
+/* Connects y_{s-1} and z_{t-1}, s + t >= 3: to the lens, to a light, or two vertices between. An end that the strategy
+ * lacks is not read. random: the numbers of the respective case. */
 SHARED_FUNCTION bool connect_ends(const SceneView *scene, uint s, uint t, const Vertex *y, const Vertex *z,
                                   Random4 random, Connection *connection)
 {

@@ -25,9 +25,9 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     walk_end(paths, rays, stride, item);
 }
 
-/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: x: light_select_point, z: aim; random: which
- * light and point on it, direction. *own: density of y_0, or of its direction for a light at infinity. False if the
- * light emits nothing. */
+/* Draws y_0, stored at `base`, and the first ray of the light walk. choice: x: light_select_point, z: aim; random:
+ * which light and point on it, direction. *own: density of y_0, or of its direction for a light at infinity. False if
+ * the light emits nothing. */
 SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __global uint *restrict vertices, uint base,
                                       Random4 choice, Random4 random, float *own)
 {

@@ -70,8 +70,8 @@ SHARED_FUNCTION bool vertex_smooth(__global const uint *vertices, uint stride, u
     return (state_load(vertices, stride, base + VERTEX_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u;
 }
 
-/* |cosine| between the unit direction w and the normal n of a vertex; 1 for a vertex in a medium, whose normal is 0. A curve
- * faces w. */
+/* |cosine| between the unit direction w and the normal n of a vertex; 1 for a vertex in a medium, whose normal is 0. A
+ * curve faces w. */
 SHARED_FUNCTION float vertex_cosine(const SceneView *scene, Vec3 w, Vec3 n)
 {
     float cosine = normal_is_fibre(scene, n) ? fibre_cosine(w, n) : float_abs(vec3_dot(w, n));
@@ -85,9 +85,9 @@ SHARED_FUNCTION float solid_angle_to_area(const SceneView *scene, Vec3 w, Vec3 n
     return vertex_cosine(scene, w, n) / distance2;
 }
 
-/* Factor that turns a solid-angle density at a vertex into an area density at the one before it, which is d away and has
- * the normal `ng` or, with flags EMITTER_*, is y_0. distance2: square of the length of d. At the position of a delta
- * light no strategy uses that density. */
+/* Factor that turns a solid-angle density at a vertex into an area density at the one before it, which is d away and
+ * has the normal `ng` or, with flags EMITTER_*, is y_0. distance2: square of the length of d. At the position of a
+ * delta light no strategy uses that density. */
 SHARED_FUNCTION float walk_back(const SceneView *scene, Vec3 d, float distance2, Vec3 ng, uint emitter_flags)
 {
     if ((emitter_flags & EMITTER_INFINITE) != 0u)
@@ -100,8 +100,8 @@ SHARED_FUNCTION float walk_back(const SceneView *scene, Vec3 d, float distance2,
 }
 
 /* Factor by which shading normals make a BSDF differ from its adjoint; paths from the light carry it (Veach 1997,
- * section 5.3.2). Not for vertices in a medium; 1 on a curve, whose BSDF is adjoint as it is (bsdf/fibre.h). wo and wi: in world
- * space; cosine_o and cosine_i: their cosines with the shading normal. */
+ * section 5.3.2). Not for vertices in a medium; 1 on a curve, whose BSDF is adjoint as it is (bsdf/fibre.h). wo and wi:
+ * in world space; cosine_o and cosine_i: their cosines with the shading normal. */
 SHARED_FUNCTION float adjoint_factor(const SceneView *scene, Vec3 ng, Vec3 wo, Vec3 wi, float cosine_o, float cosine_i)
 {
     if (normal_is_fibre(scene, ng))
@@ -120,8 +120,9 @@ SHARED_FUNCTION void delta_densities(const BsdfSample *sample, Vec3 wo, float *f
     *reverse = sample->pdf_rev_w * float_abs(wo.z);
 }
 
-/* Density with which the point (p, ng) on the light, given the light, is drawn for `from` (s = 1), over that of emitting
- * from it. They differ for spheres, which are sampled in the cone that `from` sees. w: unit, from `from` to p. */
+/* Density with which the point (p, ng) on the light, given the light, is drawn for `from` (s = 1), over that of
+ * emitting from it. They differ for spheres, which are sampled in the cone that `from` sees. w: unit, from `from` to
+ * p. */
 SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 w, float distance2,
                                           const Surface *point)
 {
@@ -132,8 +133,8 @@ SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Ve
     return emitted > 0.0f ? drawn / emitted : 0.0f;
 }
 
-/* Density with which the direction d (unit) to a light at infinity, given the light, is drawn at `from` (s = 1), over that
- * of light subpaths that come from there. They differ for lights with a portal, of which `from` sees a window. */
+/* Density with which the direction d (unit) to a light at infinity, given the light, is drawn at `from` (s = 1), over
+ * that of light subpaths that come from there. They differ for lights with a portal, of which `from` sees a window. */
 SHARED_FUNCTION float environment_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 d)
 {
     if (!light_has_portal(scene, light))

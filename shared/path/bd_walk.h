@@ -197,8 +197,8 @@ typedef struct WalkHit {
     float back; /* Vertex.back at the hit */
 } WalkHit;
 
-/* The media between the vertex before and the hit: the throughput, and the densities of the distance in both directions.
- * end: the vertex before is the end of the path. */
+/* The media between the vertex before and the hit: the throughput, and the densities of the distance in both
+ * directions. end: the vertex before is the end of the path. */
 SHARED_FUNCTION void walk_hit_pass(const SceneView *scene, __global const uint *restrict rays,
                                    __global const uint *restrict hits, uint stride, uint item, bool end,
                                    WalkHit *walk_hit)

@@ -48,8 +48,8 @@ SHARED_FUNCTION float bd_weight(__global const FrameParams *frame, uint s, uint 
     return bd_weights(frame, s, t, view, ends).own;
 }
 
-/* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other strategy
- * makes such a path, and of mmlt's estimators path tracing alone shows it. */
+/* s = 0: adds what media emit along the ray under way of the camera's walk, which ends segment `depth`. No other
+ * strategy makes such a path, and of mmlt's estimators path tracing alone shows it. */
 SHARED_FUNCTION_APART void walk_add_medium_emission(const SceneView *scene, __global uint *restrict paths,
                                                     __global const uint *restrict hits, uint item, uint depth)
 {

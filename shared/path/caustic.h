@@ -115,8 +115,8 @@ typedef struct DeltaScatter {
     bool smooth; /* the surface has delta lobes alone */
 } DeltaScatter;
 
-/* Draws a lobe at a surface that a ray in `medium` has hit along d; false if it is no delta or brings nothing. random: the
- * lobe, its point, mix materials. */
+/* Draws a lobe at a surface that a ray in `medium` has hit along d; false if it is no delta or brings nothing. random:
+ * the lobe, its point, mix materials. */
 SHARED_FUNCTION bool delta_scatter(const SceneView *scene, Surface *surface, Vec3 d, uint medium, uint transport,
                                    Random4 random, DeltaScatter *scatter)
 {

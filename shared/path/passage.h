@@ -58,8 +58,8 @@ SHARED_FUNCTION_APART Passage passage_shadow(const SceneView *scene, __global co
     return passage;
 }
 
-/* Density of the distance with which a vertex at either end of the passage is reached from the other. p, ng and medium: of
- * the vertex that is reached; a vertex in a medium has ng 0. */
+/* Density of the distance with which a vertex at either end of the passage is reached from the other. p, ng and medium:
+ * of the vertex that is reached; a vertex in a medium has ng 0. */
 SHARED_FUNCTION_APART float passage_density(const SceneView *scene, Passage passage, Vec3 p, Vec3 ng, uint medium)
 {
     if (!SCENE_HAS(scene, FEATURE_SCATTERING))

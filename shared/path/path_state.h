@@ -22,8 +22,8 @@
 #define PATH_LIMIT 43u /* frame->partition.split_direct: clamping threshold of its contribution's luminance */
 #define PATH_SURVIVED 44u /* frame->partition.split_direct: probability to survive Russian roulette so far */
 #define PATH_GATHERED 45u /* frame->film.split_depths: depth of the path in PATH_RADIANCE */
-/* With frame->pass.aovs, without depths: the next variable is this one or a later one; once the camera's ray has been traced, 3
- * values of each. */
+/* With frame->pass.aovs, without depths: the next variable is this one or a later one; once the camera's ray has been
+ * traced, 3 values of each. */
 #define PATH_AOV 45u
 #define PATH_AOV_VALUES PATH_BETA
 /* Caustics by photons (path/caustic.h); only with PhotonParams.count */

@@ -1,5 +1,5 @@
-/* Hair: values against a reference in double, samples against their density, energy, absorption, and paths from the light
- * against those from the camera, on surfaces and on curves. */
+/* Hair: values against a reference in double, samples against their density, energy, absorption, and paths from the
+ * light against those from the camera, on surfaces and on curves. */
 #include "support/bsdf_cases.h"
 
 #include "bsdf/material.h"
@@ -355,8 +355,8 @@ static Vec3 facing(Vec3 o, Vec3 w)
     return vec3(w.x, (w.y * o.z - w.z * o.y) / length, (w.y * o.y + w.z * o.z) / length);
 }
 
-/* The same on curves, which face the direction from which a path arrives, for every BSDF. There the path from the light is
- * the mirror image, and each end of the path has the cosine of its angle to the plane across the curve. */
+/* The same on curves, which face the direction from which a path arrives, for every BSDF. There the path from the light
+ * is the mirror image, and each end of the path has the cosine of its angle to the plane across the curve. */
 static void fibre_check(const TestScene *scene, Bsdf bsdf, TestRandom *random)
 {
     Vec3 camera = random_direction(random, 2.0 * random_double(random) - 1.0);

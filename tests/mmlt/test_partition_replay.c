@@ -34,8 +34,8 @@ static Random4 vertex_numbers(const Partition *p, uint depth, uint what)
     return pool_random(&p->pool_frame, p->pool.paths, 0, bd_random_vertex(side, i, what));
 }
 
-/* Numbers with which path tracing chooses the light of the path: those of the pool's sample, or, where its light subpath
- * has another light, any that do. */
+/* Numbers with which path tracing chooses the light of the path: those of the pool's sample, or, where its light
+ * subpath has another light, any that do. */
 static Random4 light_numbers(const Partition *p)
 {
     uint *paths = replayed->paths.paths;

@@ -1,5 +1,5 @@
-/* Splats that are spread over pixels carry where they are on the film: the edge of a lamp has the same profile as if each
- * went to a pixel drawn by the filter. Spread around the centers of pixels, the edge would be wider. */
+/* Splats that are spread over pixels carry where they are on the film: the edge of a lamp has the same profile as if
+ * each went to a pixel drawn by the filter. Spread around the centers of pixels, the edge would be wider. */
 #include "support/bidirectional.h"
 
 #include "mmlt/combination.h"
@@ -84,8 +84,8 @@ START_TEST(test_edges)
 }
 END_TEST
 
-/* A lamp that fills the view, seen through panes that reflect nothing: mmlt's path tracing shows it as indirect light, of
- * few samples, each pixel divided by those that lie near it. */
+/* A lamp that fills the view, seen through panes that reflect nothing: mmlt's path tracing shows it as indirect light,
+ * of few samples, each pixel divided by those that lie near it. */
 START_TEST(test_constant_indirect)
 {
     static const char *const LAMP = EDGE_FILM "Material \"thindielectric\" \"float eta\" 1.0001\n" PANE("-1")

@@ -95,8 +95,8 @@ static float cosine_at(const Walks *walks, Vec3 w, Vec3 ng)
     return vec3_is_zero(ng) ? 1.0f : float_abs(vec3_dot(w, ng));
 }
 
-/* Density with which the vertex scatters from direction `back` to `on`. The frame of a vertex on a curve faces the walk that
- * made it: what a walk the other way draws is the reverse of what that one does. */
+/* Density with which the vertex scatters from direction `back` to `on`. The frame of a vertex on a curve faces the walk
+ * that made it: what a walk the other way draws is the reverse of what that one does. */
 static float vertex_density(const Walks *walks, const Vertex *vertex, Vec3 back, Vec3 on, uint transport)
 {
     Vec3 wo = frame_to_local(vertex->frame, back), wi = frame_to_local(vertex->frame, on);
@@ -337,8 +337,8 @@ static double path_rounding(const RealPath *path)
     return sum;
 }
 
-/* The same for vertices on curves: a path that hits a curve goes on from its axis, up to half a width away, seen from its
- * neighbours under this angle. Lobes of the scenes' BSDFs change by up to ten times as much. */
+/* The same for vertices on curves: a path that hits a curve goes on from its axis, up to half a width away, seen from
+ * its neighbours under this angle. Lobes of the scenes' BSDFs change by up to ten times as much. */
 static double path_axis_rounding(const Walks *walks, const RealPath *path)
 {
     const double half = 0.06, slope = 10.0; /* of the scenes' curves */

@@ -214,8 +214,8 @@ START_TEST(environment_maps)
 }
 END_TEST
 
-/* "mapping" says that a map is one of latitude and longitude, whatever its size, and measures it as one: of radiance 1/2,
- * it lights a plane as a map in the other mapping does. */
+/* "mapping" says that a map is one of latitude and longitude, whatever its size, and measures it as one: of radiance
+ * 1/2, it lights a plane as a map in the other mapping does. */
 START_TEST(latitude_longitude_maps)
 {
     Scene scene;

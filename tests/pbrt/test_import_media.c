@@ -57,8 +57,8 @@ static float grid_sample(const Scene *scene, uint x, uint y, uint z, uint word)
     return bits_float(ELEMENT(scene, texels, uint, first + at * grid->words + word));
 }
 
-/* A grid's samples are divided by the largest, which multiplies the coefficients; its box is p0, p1 of the medium's space,
- * before WorldBegin as well as after it. */
+/* A grid's samples are divided by the largest, which multiplies the coefficients; its box is p0, p1 of the medium's
+ * space, before WorldBegin as well as after it. */
 START_TEST(uniform_grid)
 {
     static const char GRID[] =

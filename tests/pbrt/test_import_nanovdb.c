@@ -7,7 +7,8 @@
 
 #include <zlib.h>
 
-/* A grid with two leaves and a tile of the value 0.25 in front of them: x from -16 to -1, y from 8 to 15, z from 0 to 15. */
+/* A grid with two leaves and a tile of the value 0.25 in front of them: x from -16 to -1, y from 8 to 15, z from 0 to
+ * 15. */
 enum {
     ROOT = 672 + 64,
     UPPER = ROOT + 96,
@@ -233,7 +234,8 @@ START_TEST(refusals)
 }
 END_TEST
 
-/* Files that end too early, and ones with wrong bytes in their headers and nodes: an error or a grid, whose values can be asked for. */
+/* Files that end too early, and ones with wrong bytes in their headers and nodes: an error or a grid, whose values can
+ * be asked for. */
 START_TEST(damage)
 {
     NanoVdb grid;

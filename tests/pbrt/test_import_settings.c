@@ -46,8 +46,8 @@ START_TEST(film)
 }
 END_TEST
 
-/* White balance makes light of its temperature white at the same luminance, whatever the kind of light, and leaves that of
- * D65 as it is. Sensors by name count as the default. */
+/* White balance makes light of its temperature white at the same luminance, whatever the kind of light, and leaves that
+ * of D65 as it is. Sensors by name count as the default. */
 START_TEST(white_balance)
 {
     static const char *const LIGHTS[] = {"LightSource \"infinite\" \"spectrum L\" \"stdillum-D50\"",

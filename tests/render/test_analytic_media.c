@@ -69,8 +69,8 @@ START_TEST(test_slab)
 }
 END_TEST
 
-/* Slabs of grids, whose samples lie at z = 1/4 and 3/4: absorption that goes from 2 at the first to 6 at the second and,
- * beyond them, half of the way to 0; and the same with other colours. */
+/* Slabs of grids, whose samples lie at z = 1/4 and 3/4: absorption that goes from 2 at the first to 6 at the second
+ * and, beyond them, half of the way to 0; and the same with other colours. */
 #define NINE(sample) sample sample sample sample sample sample sample sample sample
 #define GRID_PLACE                                                                                                     \
     "\"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 2 \"point3 p0\" [ -1 -1 0 ] \"point3 p1\" [ 1 1 1 ]\n"
@@ -97,8 +97,8 @@ START_TEST(test_grid_slab)
 }
 END_TEST
 
-/* A sphere in a grid that is the same everywhere but at its border is like one of the homogeneous medium: the same paths
- * by the same numbers. */
+/* A sphere in a grid that is the same everywhere but at its border is like one of the homogeneous medium: the same
+ * paths by the same numbers. */
 static void sphere_color(double mean[3], const Integrator *integrator, const char *medium)
 {
     char text[2048];
@@ -286,7 +286,8 @@ START_TEST(test_emission_behind)
 }
 END_TEST
 
-/* The ramp of test_grid_slab, which emits: T + Le (1 - T); and with scattering, at depth 1, Le sigma_a / sigma_t (1 - T). */
+/* The ramp of test_grid_slab, which emits: T + Le (1 - T); and with scattering, at depth 1, Le sigma_a / sigma_t (1 -
+ * T). */
 START_TEST(test_emission_of_grid)
 {
     static const double LE[3] = {3.0, 2.0, 0.5};

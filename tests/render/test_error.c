@@ -218,7 +218,7 @@ static const struct {
     {integrator_pt, {.goal = 0.05, .scale = 1.0, .percentile = 95.0}, RECONSTRUCTION_SPLAT},
     {integrator_bdpt, {.goal = 0.03, .scale = 1.0}, RECONSTRUCTION_SPLAT},
     {integrator_ibpt, {.goal = 0.03, .scale = 1.0}, RECONSTRUCTION_SPLAT},
-    {integrator_mmlt, {.goal = 0.02, .scale = 1.0}, RECONSTRUCTION_SPLAT},
+    {integrator_mmlt, {.goal = 0.015, .scale = 1.0}, RECONSTRUCTION_SPLAT},
     {integrator_mmlt, {.goal = 0.006, .scale = 1.0, .blocks = true}, RECONSTRUCTION_SPLAT},
 };
 

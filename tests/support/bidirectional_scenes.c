@@ -186,7 +186,8 @@ const BidirectionalScene BIDIRECTIONAL_SCENES[] = {
      BD_ROOM
      "Material \"hair\" \"float beta_m\" 0.6 \"float beta_n\" 0.8 \"rgb reflectance\" [ 0.7 0.5 0.3 ]\n" BD_BALL,
      SUPPORT_ALL, 4, 3},
-    /* Between vertices in a medium 1 / distance^2 has no finite variance, so only the sums of strategies are compared. */
+    /* Between vertices in a medium 1 / distance^2 has no finite variance, so only the sums of strategies are
+     * compared. */
     {"ink in glass and behind an interface",
      "MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.4 0.8 1.6 ] \"float sigma_s\" 0\n"
      "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.1 0.05 0.02 ] \"float sigma_s\" 0\n"

@@ -89,7 +89,8 @@ static inline void test_record_make(TestScene *scene, Bsdf *bsdf, float thicknes
     scene->view.lookup = scene->lookup.data;
 }
 
-/* Added to MATERIAL_COATED_CONDUCTOR: alphas are those of the conductor, the coat is smooth; without it, both have them. */
+/* Added to MATERIAL_COATED_CONDUCTOR: alphas are those of the conductor, the coat is smooth; without it, both have
+ * them. */
 #define TEST_SMOOTH_COAT 0x100u
 
 /* A complete Bsdf with grey colours; a rough coat gets its table. */

@@ -51,8 +51,8 @@ typedef struct TestScene {
 void test_scene_init(TestScene *test);
 void test_scene_mesh(TestScene *test, const TestMesh *mesh, uint flags);
 void test_scene_quadric(TestScene *test, uint kind, Quadric quadric, const double world_from_object[16]);
-/* Full and clipped spheres, disks and cylinders, `count` at random positions in the unit ball; instances of an object in a larger
- * one, with scales below `size`: some mirrored, all stretched. */
+/* Full and clipped spheres, disks and cylinders, `count` at random positions in the unit ball; instances of an object
+ * in a larger one, with scales below `size`: some mirrored, all stretched. */
 void test_scene_quadrics(TestScene *test, TestRandom *random, uint count);
 /* Curves in 2^levels pieces each. */
 void test_scene_curves(TestScene *test, const Curve *curves, size_t count, uint levels, uint type);
