@@ -22,7 +22,7 @@
 #include "path/path_state.h"
 
 /* Vertices before this one always survive Russian roulette, and paths whose throughput is at least this. With 1 instead
- * of 0.25 the square error is up to twice as large, for 5 to 40 % less time (docs/TUNING.md). */
+ * of 0.25 the square error is 1.4 to 2.1 times as large, for 7 to 41 % less time (docs/TUNING.md). */
 #define ROULETTE_FIRST_DEPTH 2u
 #define ROULETTE_THROUGHPUT 0.25f
 
