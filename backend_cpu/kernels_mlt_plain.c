@@ -1,3 +1,7 @@
 #include "plain_kernels.h"
 
-#include "kernels_mlt.c"
+#include "kernel_loop.h"
+
+#include "kernels/mlt.cl"
+
+KERNEL_LIST_CHAINS(KERNEL_LOOP)

@@ -1,4 +1,8 @@
 #define KERNEL_LOOP_NAME(name) kernel_wide_plain_##name
 #include "plain_kernels.h"
 
-#include "kernels_mlt.c"
+#include "kernel_loop.h"
+
+#include "kernels/mlt.cl"
+
+KERNEL_LIST_CHAINS(KERNEL_LOOP)

@@ -5,4 +5,9 @@
 #endif
 #include "plain_kernels.h"
 
-#include "kernels_pt.c"
+#include "kernel_loop.h"
+
+#include "kernels/aov.cl"
+#include "kernels/pt.cl"
+
+KERNEL_LIST_PATHS(KERNEL_LOOP)

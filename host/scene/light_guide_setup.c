@@ -98,6 +98,7 @@ void light_guide_setup(Scene *scene)
                       .primitives = scene->primitives.data,
                       .patches = scene->patches.data,
                       .quadrics = scene->quadrics.data,
+                      .curves = scene->curves.data,
                       .lights = scene->lights.data,
                       .distributions2d = scene->distributions2d.data,
                       .lookup = scene->lookup.data};

@@ -9,10 +9,9 @@
 /* Where the place `in` of a copy is on the film itself, both in [0, 1)^2, or the other way round. column and row: of
  * the copy; the film is (0, 0). The equal-area map is turned by 180 degrees from copy to copy; past the poles of the
  * other mapping, which repeats from left to right, is the opposite longitude. */
-SHARED_FUNCTION Vec2 spherical_copy(uint kind, float column, float row, Vec2 in)
+SHARED_FUNCTION Vec2 spherical_copy(uint kind, int column, int row, Vec2 in)
 {
-    bool odd_row = row - 2.0f * float_floor(0.5f * row) != 0.0f;
-    bool odd_column = column - 2.0f * float_floor(0.5f * column) != 0.0f;
+    bool odd_row = (row & 1) != 0, odd_column = (column & 1) != 0;
     if (kind == CAMERA_EQUAL_AREA)
         return odd_row != odd_column ? vec2(1.0f - in.x, 1.0f - in.y) : in;
     if (!odd_row)
@@ -25,7 +24,7 @@ SHARED_FUNCTION Vec2 spherical_copy(uint kind, float column, float row, Vec2 in)
 SHARED_FUNCTION_APART Ray spherical_ray(const Camera *camera, Vec2 film, float width, float height)
 {
     float x = film.x / width, y = film.y / height, column = float_floor(x), row = float_floor(y);
-    Vec2 uv = spherical_copy(camera->kind, column, row, vec2(x - column, y - row));
+    Vec2 uv = spherical_copy(camera->kind, (int)column, (int)row, vec2(x - column, y - row));
     Vec3 d = camera->kind == CAMERA_EQUAL_AREA ? octahedral_to_sphere(uv) : equirectangular_to_sphere(uv);
     Ray ray;
     ray.o = affine_point(camera->world_from_camera, vec3_splat(0.0f));
@@ -59,15 +58,16 @@ SHARED_FUNCTION_APART Vec2 spherical_film(__global const FrameParams *frame, Vec
 {
     float width = (float)frame->film.width, height = (float)frame->film.height;
     float more_x = frame->film.filter.radius_x, more_y = frame->film.filter.radius_y;
-    float column_end = float_floor(((float)frame->film.crop_x1 + more_x) / width);
-    float row_end = float_floor(((float)frame->film.crop_y1 + more_y) / height);
-    float column_begin = float_floor(((float)frame->film.crop_x0 - more_x) / width);
+    int column_begin = (int)float_floor(((float)frame->film.crop_x0 - more_x) / width);
+    int column_end = (int)float_floor(((float)frame->film.crop_x1 + more_x) / width);
+    int row_begin = (int)float_floor(((float)frame->film.crop_y0 - more_y) / height);
+    int row_end = (int)float_floor(((float)frame->film.crop_y1 + more_y) / height);
     Vec2 chosen = vec2(0.0f, 0.0f);
     *count = 0.0f;
-    for (float row = float_floor(((float)frame->film.crop_y0 - more_y) / height); row <= row_end; row += 1.0f)
-        for (float column = column_begin; column <= column_end; column += 1.0f) {
+    for (int row = row_begin; row <= row_end; ++row)
+        for (int column = column_begin; column <= column_end; ++column) {
             Vec2 place = spherical_copy(frame->camera.kind, column, row, uv);
-            Vec2 film = vec2(width * (column + place.x), height * (row + place.y));
+            Vec2 film = vec2(width * ((float)column + place.x), height * ((float)row + place.y));
             if (!camera_film_covered(frame, film))
                 continue;
             *count += 1.0f;
