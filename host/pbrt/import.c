@@ -105,7 +105,7 @@ static bool source_open(PbrtImport *im, const ImportSource *source)
 }
 
 /* White balance multiplies the channels of the image. They are independent of each other, so it may as well multiply
- * those of all lights; chains then see the brightness that the image has. */
+ * those of all that emits; chains then see the brightness that the image has. */
 static void balance_apply(const PbrtImport *im)
 {
     Vec3 b = im->balance;
@@ -114,6 +114,10 @@ static void balance_apply(const PbrtImport *im)
     for (size_t i = 0; i < im->scene->lights.count; ++i) {
         Light *light = &ARRAY_AT(&im->scene->lights, Light, i);
         light->emission = vec3_mul(light->emission, b);
+    }
+    for (size_t i = 0; i < im->scene->media.count; ++i) {
+        Medium *medium = &ARRAY_AT(&im->scene->media, Medium, i);
+        medium->emission = vec3_mul(medium->emission, b);
     }
 }
 

@@ -14,8 +14,7 @@ typedef struct PathSteps {
     bool split; /* direct light is splatted apart */
     bool split_depths; /* what each segment brings is splatted apart */
     bool caustics;
-    bool
-        keeps; /* with `split`: direct light is splatted at the end, together with other light that it is summed with */
+    bool keeps; /* with `split`: direct light is splatted at the end, in a sum with other light */
 } PathSteps;
 
 /* Directions drawn by photons. */

@@ -78,6 +78,11 @@ START_TEST(white_balance)
                 &scene);
     assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1.4422930f, 0.9919337f, 0.5485340f, 1e-5f);
     scene_destroy(&scene);
+    import_text("Film \"rgb\" \"float whitebalance\" 20000 MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n"
+                "\"rgb sigma_a\" [ 1 1 1 ] \"rgb sigma_s\" [ 0 0 0 ] \"rgb Le\" [ 1 1 1 ] WorldBegin",
+                &scene);
+    assert_vec3(ELEMENT(&scene, media, Medium, 1).emission, 1.4422930f, 0.9919337f, 0.5485340f, 1e-5f);
+    scene_destroy(&scene);
     import_text("Film \"rgb\" \"string sensor\" \"nikon_d850\" WorldBegin LightSource \"point\"", &scene);
     assert_vec3(ELEMENT(&scene, lights, Light, 0).emission, 1, 1, 1, 0.0f);
     ck_assert_ptr_nonnull(strstr(import_log(), "warning: the sensor \"nikon_d850\" counts as cie1931"));
