@@ -42,7 +42,7 @@ cd "$work/copy" || exit 99
 # ---- a BSDF ---------------------------------------------------------------------------------------------------------
 
 sed 's/TWINLIGHT_BSDF_DIFFUSE_H/TWINLIGHT_BSDF_PLASTER_H/; s/diffuse_/plaster_/g' shared/bsdf/diffuse.h >shared/bsdf/plaster.h
-edit shared/layout/material_list.h 's/^\(    X(DIFFUSE_TRANSMISSION, .*[^\\ ]\) *$/\1 \\\n    X(PLASTER, plaster, "plaster", TRAIT_COSINE)/'
+edit shared/layout/material_list.h 's/^    X(DIFFUSE, diffuse, .*\\$/&\n    X(PLASTER, plaster, "plaster", TRAIT_COSINE) \\/'
 edit shared/bsdf/bsdf.h 's/^#include "bsdf\/lobe.h"\|^#include "bsdf\/diffuse.h"/&\n#include "bsdf\/plaster.h"/'
 edit shared/bsdf/sources.mk 's/^\tshared\/bsdf\/material.h \\$/&\n\tshared\/bsdf\/plaster.h \\/'
 edit host/pbrt/materials.c 's/^static void coated_diffuse_read/static void plaster_read(MaterialReader *r)\n{\n    diffuse_read(r);\n}\n\n&/'
@@ -59,7 +59,7 @@ N
 }"
 edit host/scene/light_setup.c 's/^static double distant_power/static double bulb_power(const Light *light, double disk)\n{\n    return point_power(light, disk);\n}\n\n&/'
 edit host/pbrt/lights.c 's/^static void distant_read/static void bulb_read(LightReader *r)\n{\n    point_read(r);\n    r->light.kind = LIGHT_BULB;\n}\n\n&/'
-edit tests/light/test_emit_direction.c 's/^enum { POINT,/enum { BULB, POINT,/; s/^    case POINT:$/    case BULB:\n        fixture_add_light(f, (Light){.kind = LIGHT_BULB, .emission = {2, 2, 2}, .position = {1, 2, 3}});\n        break;\n&/'
+edit tests/light/test_emit_direction.c 's/^    POINT,$/    BULB,\n    POINT,/; s/^    case POINT:$/    case BULB:\n        fixture_add_light(f, (Light){.kind = LIGHT_BULB, .emission = {2, 2, 2}, .position = {1, 2, 3}});\n        break;\n&/'
 files 5 'a light'
 
 # ---- an integrator --------------------------------------------------------------------------------------------------

@@ -199,7 +199,7 @@ static float light_reach(const Scene *scene, const Light *light)
 
 /* ---- features ---------------------------------------------------------------------------------------------------- */
 
-#define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_##NAME,
+#define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_BIT(NAME),
 static const ulong FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
 #undef FEATURE_OF
 

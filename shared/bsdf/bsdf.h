@@ -45,7 +45,7 @@ SHARED_FUNCTION void bsdf_flags_set(Bsdf *bsdf)
 }
 
 /* Whether to dispatch to the functions of kind NAME, whose directions have |z| > BSDF_COSINE_MIN. */
-#define OF_KIND(scene, bsdf, NAME) (SCENE_HAS(scene, FEATURE_##NAME) && (bsdf)->kind == MATERIAL_##NAME)
+#define OF_KIND(scene, bsdf, NAME) (SCENE_HAS(scene, FEATURE_BIT(NAME)) && (bsdf)->kind == MATERIAL_##NAME)
 
 /* Whether it is the phase function of a vertex in a medium. */
 SHARED_FUNCTION bool bsdf_is_phase(const SceneView *scene, const Bsdf *bsdf)

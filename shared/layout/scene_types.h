@@ -48,7 +48,7 @@
 #define FEATURE_NUMBER(NAME, name, text, traits) FEATURE_NUMBER_##NAME,
 enum { FEATURE_LIST(FEATURE_NUMBER) FEATURE_COUNT };
 #undef FEATURE_NUMBER
-/* Macros, because constants of an enum are ints. */
+/* Macros, because constants of an enum are ints. Names are only for features that code asks for one by one. */
 #define FEATURE_BIT(NAME) ((ulong)1 << FEATURE_NUMBER_##NAME)
 #define FEATURE_TRIANGLE FEATURE_BIT(TRIANGLE)
 #define FEATURE_BILINEAR FEATURE_BIT(BILINEAR)
