@@ -42,10 +42,9 @@ void vector_cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* False if v has no direction. Scales first, to avoid underflow and overflow. */
-static bool normalize3(double v[3])
+bool vector_normalize(double v[3])
 {
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); /* against underflow and overflow */
     if (!(largest > 0.0) || !isfinite(largest))
         return false;
     for (int i = 0; i < 3; ++i)
@@ -59,7 +58,7 @@ static bool normalize3(double v[3])
 Matrix matrix_rotate(double degrees, const double axis[3])
 {
     double a[3] = {axis[0], axis[1], axis[2]};
-    normalize3(a);
+    vector_normalize(a);
     double radians = degrees * (M_PI / 180.0);
     double s = sin(radians), c = cos(radians);
     Matrix r = matrix_identity();
@@ -79,10 +78,10 @@ bool matrix_look_at(const double eye[3], const double look[3], const double up[3
 {
     double direction[3] = {look[0] - eye[0], look[1] - eye[1], look[2] - eye[2]};
     double up_unit[3] = {up[0], up[1], up[2]}, right[3], new_up[3];
-    if (!normalize3(direction) || !normalize3(up_unit))
+    if (!vector_normalize(direction) || !vector_normalize(up_unit))
         return false;
     vector_cross(up_unit, direction, right);
-    if (!normalize3(right))
+    if (!vector_normalize(right))
         return false;
     vector_cross(direction, right, new_up);
     const double *axes[3] = {right, new_up, direction};

@@ -44,6 +44,9 @@ bool matrix_swaps_handedness(const Matrix *matrix);
 /* out = a x b; `out` must not be a or b. */
 void vector_cross(const double a[3], const double b[3], double out[3]);
 
+/* Makes v a unit vector; false, and v unchanged, if it has no direction. */
+bool vector_normalize(double v[3]);
+
 /* out = M (x, y, z, 1), and the same without translation; `in` and `out` may be the same. */
 void matrix_point(const Matrix *matrix, const double in[3], double out[3]);
 void matrix_vector(const Matrix *matrix, const double in[3], double out[3]);

@@ -20,18 +20,11 @@ typedef struct Ribbon {
     size_t vertex_count, patch_count;
 } Ribbon;
 
-static void vector_unit(double v[3])
-{
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3 && length > 0.0; ++i)
-        v[i] /= length;
-}
-
 static void normal_get(const float *normal, double out[3])
 {
     for (int i = 0; i < 3; ++i)
         out[i] = (double)normal[i];
-    vector_unit(out);
+    vector_normalize(out);
 }
 
 static double vectors_angle(const double a[3], const double b[3])
@@ -50,7 +43,7 @@ static void normal_between(const float *normals, double u, double out[3])
     double at_a = turns ? sin((1.0 - u) * angle) / whole : 1.0 - u, at_b = turns ? sin(u * angle) / whole : u;
     for (int i = 0; i < 3; ++i)
         out[i] = at_a * a[i] + at_b * b[i];
-    vector_unit(out);
+    vector_normalize(out);
 }
 
 /* Levels of division of a segment. The deviation of a cubic from its chord is below 3/4 of the second differences of
@@ -96,9 +89,9 @@ static void vertices_add(Ribbon *ribbon, const Curve *s, const float *normals, d
     segment_point(s, u, p, d);
     normal_between(normals, u, n);
     vector_cross(n, d, across);
-    vector_unit(across);
+    vector_normalize(across);
     vector_cross(d, across, normal);
-    vector_unit(normal);
+    vector_normalize(normal);
     for (int side = 0; side < 2; ++side) {
         size_t v = ribbon->vertex_count++;
         for (size_t i = 0; i < 3; ++i) {
