@@ -8,8 +8,8 @@
 #include "camera/film_axis.h"
 #include "layout/state.h"
 
-/* Maximum number of pixels: splats store a pixel in 30 bits. */
-#define FILM_PIXELS_MAX (SPLAT_RARE - 1u)
+/* Maximum number of pixels: splats store a pixel in 29 bits (SPLAT_FILM_SHIFT). */
+#define FILM_PIXELS_MAX ((1u << SPLAT_FILM_SHIFT) - 1u)
 
 typedef struct Film {
     int width, height; /* of the whole film, pixels */

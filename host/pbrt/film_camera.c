@@ -159,7 +159,7 @@ bool import_film(PbrtImport *im, const char *kind)
     film->width = side_read(&list, "xresolution", 1280);
     film->height = side_read(&list, "yresolution", 720);
     if ((int64_t)film->width * film->height > (int64_t)FILM_PIXELS_MAX)
-        param_error(&list, "yresolution", "a film of %d x %d pixels is too large: 2^30 - 1 pixels at most", film->width,
+        param_error(&list, "yresolution", "a film of %d x %d pixels is too large: 2^29 - 1 pixels at most", film->width,
                     film->height);
     int crop[4] = {0, 0, film->width, film->height};
     if (!list.failed) {

@@ -106,9 +106,10 @@ SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)
     return split_depths != 0u ? segments << SPLAT_DEPTH_SHIFT : 0u;
 }
 
-/* Passes of several variables have the number of the image in the place of layers; all splats are samples. */
-#define SPLAT_FILM_SHIFT 30u
-#define SPLAT_FILMS 4u
+/* Passes of several variables have the number of the image in the upper bits, where others have layers and depths; all
+ * splats are samples. */
+#define SPLAT_FILM_SHIFT 29u
+#define SPLAT_FILMS 8u
 
 #define SPLAT_PIXEL 0u
 #define SPLAT_COLOR 1u
