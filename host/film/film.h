@@ -6,7 +6,9 @@
 
 #include "base/archive.h"
 #include "camera/film_axis.h"
-#include "layout/state.h"
+#include "camera/film_sum.h"
+
+#include <math.h>
 
 /* Maximum number of pixels: splats store a pixel in 29 bits (SPLAT_FILM_SHIFT). */
 #define FILM_PIXELS_MAX ((1u << SPLAT_FILM_SHIFT) - 1u)
@@ -114,10 +116,20 @@ void film_counters_clear(Film *film);
 void film_archive(Archive *archive, Film *film);
 
 /* The value read from a sum: clamped to +-2^62 units, because larger sums depend on the order of additions. */
-int64_t film_sum_shown(int64_t sum);
+static inline int64_t film_sum_shown(int64_t sum)
+{
+    const int64_t most = (int64_t)SUM_MAX;
+    return sum > most ? most : sum < -most ? -most : sum;
+}
 
 /* The sum nearest to `units`; full from 2^62 on. */
-int64_t film_sum_rounded(double units);
+static inline int64_t film_sum_rounded(double units)
+{
+    const double most = (double)SUM_MAX;
+    if (fabs(units) < most)
+        return llrint(units);
+    return units < 0.0 ? -(int64_t)SUM_FULL : (int64_t)SUM_FULL;
+}
 
 /* Number of pixels with a sum at or beyond 2^62 units; they are darker than they should be. */
 size_t film_full_pixels(const Film *film);

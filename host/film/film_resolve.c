@@ -4,20 +4,6 @@
 
 #include <math.h>
 
-int64_t film_sum_shown(int64_t sum)
-{
-    const int64_t most = (int64_t)SUM_MAX;
-    return sum > most ? most : sum < -most ? -most : sum;
-}
-
-int64_t film_sum_rounded(double units)
-{
-    const double most = (double)SUM_MAX;
-    if (fabs(units) < most)
-        return llrint(units);
-    return units < 0.0 ? -(int64_t)SUM_FULL : (int64_t)SUM_FULL;
-}
-
 /* Whether one of a pixel's three sums is full; false if `sums` is NULL. */
 static bool pixel_full(const int64_t *sums, size_t pixel)
 {

@@ -139,10 +139,15 @@ static CombinationTerms terms_of(const Combination *combination, const double sa
  * is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence the
  * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c, the variance of the
  * whole tile's mean: hence the correlation. Weights are in [0, 1] for any variances, those that are infinite or NaN
- * included. */
+ * included. Path tracing alone shows all light. */
 static TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms)
 {
     const double *spread = tile->spread, *samples = terms->samples;
+    if (!(samples[ESTIMATOR_CHAINS] > 0.0))
+        return (TileCombination){.paths = 1.0,
+                                 .paths_rare = 1.0,
+                                 .variance = (fmax(spread[ESTIMATOR_PATHS], SPREAD_MIN) + spread[SERIES_PATHS_RARE]) /
+                                             samples[ESTIMATOR_PATHS]};
     double by_chains = samples[ESTIMATOR_CHAINS] / spread_clamp(spread[ESTIMATOR_CHAINS]);
     double by_pool = samples[ESTIMATOR_POOL] / spread_clamp(spread[ESTIMATOR_POOL]);
     double a = terms->correlation * (1.0 / (by_chains + by_pool) + spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS]);
@@ -173,9 +178,11 @@ static double step_variance(double pool_per_step)
     return 1.0 + root * root * estimator_cost(ESTIMATOR_CHAINS) / (estimator_cost(ESTIMATOR_POOL) * pool_per_step);
 }
 
-/* Variance of a step under a plan, relative to its variance with the pools so far. */
+/* Variance of a step under a plan, relative to its variance with the pools so far; 1 without chains. */
 static double chains_factor(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
+    if (!(samples[ESTIMATOR_CHAINS] > 0.0))
+        return 1.0;
     double pools = pixel_series_weight(&combination->sums[ESTIMATOR_POOL], 0),
            steps = pixel_series_weight(&combination->sums[ESTIMATOR_CHAINS], 0);
     return step_variance(samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]) / step_variance(pools / steps);
@@ -349,4 +356,13 @@ StepRates combination_rates(Combination *combination)
     memcpy(combination->best, samples, sizeof search.best[best].samples);
     return (StepRates){.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
                        .pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
+}
+
+double combination_alone_error(const Combination *combination)
+{
+    const double *best = combination->best,
+                 alone[ESTIMATOR_COUNT] = {[ESTIMATOR_PATHS] = estimators_work(best) / estimator_cost(ESTIMATOR_PATHS)};
+    if (!(best[ESTIMATOR_PATHS] > 0.0))
+        return HUGE_VAL;
+    return error_of(combination, alone, true, 1) / fmax(error_of(combination, best, true, 1), SPREAD_MIN);
 }

@@ -18,6 +18,12 @@ size_t combination_tile_of(const Combination *combination, size_t pixel)
     return y / TILE_SIDE * (size_t)combination->tiles[0] + x / TILE_SIDE;
 }
 
+size_t combination_run_end(const Combination *combination, size_t pixel, size_t side)
+{
+    size_t width = (size_t)combination->size[0], x = pixel % width, end = (x / side + 1) * side;
+    return pixel - x + (end < width ? end : width);
+}
+
 size_t combination_patch_count(const Combination *combination)
 {
     return (size_t)combination->patches[0] * (size_t)combination->patches[1];
@@ -130,9 +136,12 @@ static void row_sum(const FilmLearning *learning, const int64_t *sums, const int
     double unit = ldexp((double)film_pixels(film) / (double)learning->samples, film->quantum_exponent);
     memset(combination->patch_sums + patches.first, 0, (patches.end - patches.first) * sizeof(float));
     memset(combination->tile_sums + tiles.first, 0, (tiles.end - tiles.first) * sizeof(float));
-    for (size_t i = pixels.first; i < pixels.end; ++i)
-        combination->patch_sums[patch_of(combination, i)] +=
-            luminance_of(sums + 3 * i, less ? less + 3 * i : NULL, unit);
+    for (size_t i = pixels.first, end; i < pixels.end; i = end) {
+        float *sum = &combination->patch_sums[patch_of(combination, i)];
+        end = combination_run_end(combination, i, PATCH_SIDE);
+        for (size_t pixel = i; pixel < end; ++pixel)
+            *sum += luminance_of(sums + 3 * pixel, less ? less + 3 * pixel : NULL, unit);
+    }
     for (size_t i = patches.first; i < patches.end; ++i)
         combination->tile_sums[combination_tile_of_patch(combination, i)] += combination->patch_sums[i];
 }

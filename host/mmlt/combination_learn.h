@@ -83,6 +83,8 @@ typedef struct Combination {
 size_t combination_tile_count(const Combination *combination);
 size_t combination_patch_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
+/* Where the run of pixels ends that begins with `pixel`, in the same row of the same square of `side` pixels. */
+size_t combination_run_end(const Combination *combination, size_t pixel, size_t side);
 size_t combination_tile_of_patch(const Combination *combination, size_t patch);
 
 /* Calls part(context, row) for every row of tiles, several at a time in images large enough. */

@@ -73,21 +73,28 @@ static LayerWeights layer_weights(const CombinationTile *tile, EstimatorKind kin
     return weights;
 }
 
+/* Adds the values of the pixels first ... end - 1 of one tile. */
+static void values_add(const EstimatorSums *sums, LayerWeights weights, double scale, size_t first, size_t end)
+{
+    for (size_t i = 3 * first; i < 3 * end; ++i) {
+        double sum = weights.light * (double)film_sum_shown(sums->light[i]);
+        if (weights.own > 0.0)
+            sum += weights.own * (double)film_sum_shown(sums->own[i]);
+        if (sums->rare)
+            sum += weights.rare * (double)film_sum_shown(sums->rare[i]);
+        sums->into[i] = (float)((double)sums->into[i] + scale * sum);
+    }
+}
+
 static void sums_add(const ImageAdding *adding, EstimatorSums sums, RowRange pixels)
 {
     const CombinedImage *image = adding->image;
+    const Combination *teacher = image->teacher;
     const double scale = (double)image->worth / image->samples[adding->kind];
-    for (size_t pixel = pixels.first; pixel < pixels.end; ++pixel) {
-        const CombinationTile *tile = &image->teacher->known[combination_tile_of(image->teacher, pixel)];
-        LayerWeights weights = layer_weights(tile, adding->kind);
-        for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
-            double sum = weights.light * (double)film_sum_shown(sums.light[i]);
-            if (weights.own > 0.0)
-                sum += weights.own * (double)film_sum_shown(sums.own[i]);
-            if (sums.rare)
-                sum += weights.rare * (double)film_sum_shown(sums.rare[i]);
-            sums.into[i] = (float)((double)sums.into[i] + scale * sum);
-        }
+    for (size_t pixel = pixels.first, end; pixel < pixels.end; pixel = end) {
+        const CombinationTile *tile = &teacher->known[combination_tile_of(teacher, pixel)];
+        end = combination_run_end(teacher, pixel, TILE_SIDE);
+        values_add(&sums, layer_weights(tile, adding->kind), scale, pixel, end);
     }
 }
 

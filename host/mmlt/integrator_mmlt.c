@@ -42,7 +42,7 @@ static bool generation_next(Mmlt *mmlt, Error *error)
     RenderRun *run = mmlt->run;
     Plan *plan = &mmlt->plan;
     double begin = timing_now();
-    if (!mmlt_generation_run(mmlt, plan->chains, error) ||
+    if (!mmlt_generation_run(mmlt, plan_chains(plan), error) ||
         !render_layers_sample(run, mmlt->paths.done * run->crop_pixels, error))
         return false;
     mmlt->seconds = timing_now() - begin;

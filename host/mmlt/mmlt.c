@@ -37,6 +37,12 @@ static bool chains_needed(const Mmlt *mmlt)
     return mmlt->run->frame.path.max_depth >= CHAIN_DEPTH_MIN;
 }
 
+/* Whether the generation has chains, and is not path tracing alone. */
+static bool chains_due(const Mmlt *mmlt)
+{
+    return chains_needed(mmlt) && plan_chains(&mmlt->plan) > 0;
+}
+
 /* Makes the film, like that of the image; unless chains are alone, with what estimators leave to each other. */
 static bool generation_film_init(Mmlt *mmlt, Error *error)
 {
@@ -220,7 +226,7 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
     bool first = mmlt->generation.index == 0;
     if (first && !first_paths_run(mmlt, count, whole, error))
         return false;
-    if (chains_needed(mmlt) && *whole && !chains_follow(mmlt, count, whole, error))
+    if (chains_due(mmlt) && *whole && !chains_follow(mmlt, count, whole, error))
         return false;
     return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, whole, error);
 }
@@ -231,7 +237,7 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
  * tracing. */
 static void generation_samples(Mmlt *mmlt, uint count)
 {
-    bool chains = chains_needed(mmlt);
+    bool chains = chains_due(mmlt);
     double *samples = mmlt->samples;
     paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
     mmlt->chains.own.samples = (uint64_t)count * mmlt->options.steps; /* also if no path is long enough for any */
@@ -274,6 +280,8 @@ static void films_combine(Mmlt *mmlt)
     else
         combined_image_add(&mmlt->combined, ESTIMATOR_PATHS, &mmlt->film);
     combined_image_finish(&mmlt->combined, &mmlt->film);
+    if (chains_needed(mmlt) && !chains_due(mmlt)) /* what is known of path tracing tells nothing new of the others */
+        return;
     mmlt_guide_count(&mmlt->guide, generation->replica, own, (double)mmlt->pool.own.samples);
     if (*render_run_stop(mmlt->run) && !mmlt->run->checkpoint) /* no generation follows */
         return;
@@ -299,8 +307,9 @@ static bool generation_take(Mmlt *mmlt, Error *error)
 static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
 {
     const Generation *generation = &mmlt->generation;
-    pool_estimator_count(&mmlt->pool, generation);
-    if (chains_needed(mmlt) && chains_estimator_alive(&mmlt->chains, generation))
+    if (count > 0)
+        pool_estimator_count(&mmlt->pool, generation);
+    if (chains_due(mmlt) && chains_estimator_alive(&mmlt->chains, generation))
         chains_estimator_count(&mmlt->chains, generation, &mmlt->pool, count);
     plan_count(&mmlt->plan, work, paths_estimator_owed(&mmlt->paths));
     mmlt->run->done = mmlt->plan.done;

@@ -86,13 +86,18 @@ void plan_archive(Archive *archive, Plan *plan)
     ARCHIVE_FIELD(archive, plan->last);
     archive_count(archive, &plan->chains, 1, plan->options->chains, "chains of a generation");
     ARCHIVE_FIELD(archive, plan->planned);
+    archive_flags(archive, &plan->easy, 1, "whether path tracing may go on alone");
+    archive_doubles(archive, &plan->alone, 1, (NumberRange){0.0, 0x1p32}, "samples of path tracing alone");
+    archive_doubles(archive, &plan->alone_work, 1, (NumberRange){0.0, 0x1p80}, "the work of path tracing alone");
 }
 
 void plan_learn(Plan *plan, uint index, Combination *combination)
 {
     StepRates rates = combination_rates(combination);
-    if (rates.paths > 0.0 && index % 2 == 1)
-        plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
+    if (!(rates.paths > 0.0) || index % 2 == 0)
+        return;
+    plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
+    plan->easy = combination_alone_error(combination) < ALONE_ERROR;
 }
 
 void plan_count(Plan *plan, uint64_t work, double owed)
@@ -100,6 +105,25 @@ void plan_count(Plan *plan, uint64_t work, double owed)
     plan->last = work;
     plan->done += work;
     plan->owed = owed;
+    if (plan->alone > 0.0)
+        plan->alone_work = fmax(plan->alone_work - (double)work, 0.0);
+    else
+        plan->alone_work = plan->easy ? plan->alone_work + ALONE_WORK * (double)work : 0.0;
+}
+
+/* The work of the next generation. */
+static double next_work(const Plan *plan)
+{
+    return plan->alone > 0.0 ? estimator_cost(ESTIMATOR_PATHS) * plan->alone * (double)plan->pixels
+                             : chain_work(plan) * plan->chains;
+}
+
+/* Whole samples of every pixel that path tracing may make alone in each generation of a pair. */
+static double alone_samples(const Plan *plan)
+{
+    double sample = estimator_cost(ESTIMATOR_PATHS) * (double)plan->pixels, left = (double)(plan->total - plan->done),
+           most = fmax(GENERATION_PART * (double)plan->done, sample);
+    return floor(fmin(most, 0.5 * fmin(plan->alone_work, left)) / sample);
 }
 
 /* How many times longer a generation of `next` chains takes than one of plan->chains, which with a limit of work does
@@ -110,10 +134,13 @@ static double growth(const Plan *plan, uint next)
     return (width + (double)next) / (width + (double)plan->chains);
 }
 
-/* Twice as many chains if a generation may take that long; several times twice where it hardly takes longer. */
-static uint chains_grown(const Plan *plan, double seconds, double elapsed)
+/* Twice as many chains if a generation may take that long; several times twice where it hardly takes longer. after_alone: the
+ * latest generation was path tracing alone, which tells what work takes. */
+static uint chains_grown(const Plan *plan, bool after_alone, double seconds, double elapsed)
 {
     double part = plan->timed ? seconds / elapsed : (double)plan->last / (double)plan->done;
+    if (after_alone)
+        part *= chain_work(plan) * plan->chains / (double)plan->last;
     uint next = plan->chains;
     for (int i = 0; i < GROWTHS && next < plan->options->chains; ++i) {
         double longer = growth(plan, 2 * next);
@@ -135,10 +162,15 @@ static uint chains_limited(const Plan *plan, uint next)
 void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 {
     uint most = plan->options->chains, whole = chains_of_sample(plan), next = plan->chains;
+    bool after_alone = plan->alone > 0.0;
     if (!plan->scheme->grows || plan->done >= plan->total)
         return;
+    if (index % 2 == 0)
+        plan->alone = alone_samples(plan);
+    if (plan->alone > 0.0)
+        return;
     if (index % 2 == 0) {
-        next = chains_limited(plan, chains_grown(plan, seconds, elapsed));
+        next = chains_limited(plan, chains_grown(plan, after_alone, seconds, elapsed));
         next = next < whole ? whole : next;
     }
     plan->planned = chain_work(plan);
@@ -150,17 +182,33 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 
 double plan_seconds(const Plan *plan, double seconds)
 {
-    return plan->last > 0 ? seconds * chain_work(plan) * plan->chains / (double)plan->last : 0.0;
+    return plan->last > 0 ? seconds * next_work(plan) / (double)plan->last : 0.0;
+}
+
+/* Fits path tracing alone into the time, unless no whole sample fits: then the generation has chains. */
+static bool alone_fit(Plan *plan, double seconds, double left)
+{
+    double expected = plan_seconds(plan, seconds);
+    if (plan->alone > 0.0 && left < expected)
+        plan->alone = floor(plan->alone * left / expected);
+    return plan->alone > 0.0;
 }
 
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit)
 {
+    if (left > 0.0 && alone_fit(plan, seconds, left))
+        return true;
     double expected = plan_seconds(plan, seconds);
     if (left <= 0.0 || (plan->scheme->grows && (left < LAST_PART * expected || least > left + LATE_PART * limit)))
         return false;
     if (plan->scheme->grows && left < expected)
         plan->chains = (uint)fmax(plan->chains * (left / expected), 1.0);
     return true;
+}
+
+uint plan_chains(const Plan *plan)
+{
+    return plan->alone > 0.0 ? 0 : plan->chains;
 }
 
 uint plan_pool_samples(const Plan *plan, uint chains)
@@ -175,5 +223,12 @@ uint plan_pool_samples(const Plan *plan, uint chains)
 
 double plan_paths_samples(const Plan *plan, uint chains)
 {
-    return plan->rates.paths * steps_of(plan, chains) / (double)plan->pixels;
+    double samples = plan->rates.paths * steps_of(plan, chains);
+    if (plan->alone > 0.0)
+        return plan->alone;
+    if (plan->scheme->grows) {
+        double left = (double)plan->total - (double)plan->done - (double)chains * chain_work_with(plan, 0.0);
+        samples = fmin(samples, fmax(left, 0.0) / estimator_cost(ESTIMATOR_PATHS));
+    }
+    return samples / (double)plan->pixels;
 }

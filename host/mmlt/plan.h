@@ -17,7 +17,10 @@ typedef struct Plan {
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
     double owed; /* samples of path tracing per pixel that are due, which rounding has left to later generations */
     uint width; /* of the backend (BackendStatistics.width); 0 until set */
-    uint chains; /* in the next generation */
+    uint chains; /* in the next generation that has any */
+    bool easy; /* path tracing alone does nearly as well as the best division of work */
+    double alone; /* samples per pixel of the next generation if it is path tracing alone; 0: it has chains */
+    double alone_work; /* estimators_work that path tracing may do alone before the next generation with chains */
     double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */
 } Plan;
 
@@ -38,7 +41,7 @@ void plan_learn(Plan *plan, uint index, Combination *combination);
 /* Counts a generation's work. owed: Plan.owed after it. */
 void plan_count(Plan *plan, uint64_t work, double owed);
 
-/* Plans the size of generation `index`. Both of a pair, one for each replica, have the same, also the last
+/* Plans the size of generation `index`, and whether it is path tracing alone. Both of a pair, one for each replica, have the same, also the last
  * one before a limit of work. With a limit of work the
  * sizes depend on that alone, so that the image does not depend on the clock. seconds: of the latest generation;
  * elapsed: in all. */
@@ -53,11 +56,15 @@ double plan_seconds(const Plan *plan, double seconds);
  * time. */
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit);
 
+/* Chains of the next generation; 0: it is path tracing alone. */
+uint plan_chains(const Plan *plan);
+
 /* Samples of a pool for `chains` chains: --mlt=pool, else by the rates, rounded to whole samples per pixel if that gives at
  * least one. */
 uint plan_pool_samples(const Plan *plan, uint chains);
 
-/* Samples of path tracing per pixel for `chains` chains. */
+/* Samples of path tracing per pixel for `chains` chains: by the rates, but no more than the work that is left allows. Of path tracing
+ * alone, with `chains` 0: Plan.alone. */
 double plan_paths_samples(const Plan *plan, uint chains);
 
 #endif

@@ -37,6 +37,7 @@ void pool_estimator_archive(Archive *archive, PoolEstimator *pool)
     archive_doubles(archive, &pool->pilot_brightness, 1, RANGE_FLOATS_POSITIVE, "the brightness of the pilot pool");
     archive_doubles(archive, pool->brightness_sum, REPLICAS, (NumberRange){0.0, DBL_MAX},
                     "the brightness of all pools");
+    ARCHIVE_FIELD(archive, pool->pools);
     ARCHIVE_FIELD(archive, pool->own.samples);
 }
 
@@ -188,10 +189,11 @@ bool pool_estimator_run(PoolEstimator *pool, const Generation *generation, uint 
 void pool_estimator_count(PoolEstimator *pool, const Generation *generation)
 {
     pool->brightness_sum[generation->replica] += pool->brightness;
+    ++pool->pools[generation->replica];
 }
 
 double pool_estimator_brightness(const PoolEstimator *pool, const Generation *generation)
 {
-    uint pools = (generation->index + 1) / 2;
+    uint pools = pool->pools[generation->other];
     return pools > 0 ? pool->brightness_sum[generation->other] / pools : pool->pilot_brightness;
 }

@@ -24,7 +24,8 @@ typedef struct PoolEstimator {
     /* rounds of the pixels completed in each order; for pools longer than a round, the number of pools */
     uint turns[REPLICAS + 1];
     double pilot_brightness; /* brightness by the pilot pool; 0: there was none */
-    double brightness_sum[REPLICAS]; /* summed over the replica's pools */
+    double brightness_sum[REPLICAS]; /* summed over the replica's pools ... */
+    uint pools[REPLICAS]; /* ... which are so many */
 } PoolEstimator;
 
 /* film: the generation's. chains_only: the pool is not shown, and every sample has a light subpath. */

@@ -123,6 +123,13 @@
 #define FIRST_WORTH 0.25
 #define WORTH_MOST 2.0
 
+/* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this many
+ * times the error of the best division of work, which takes longer; docs/TUNING.md. */
+#define ALONE_ERROR 1.15
+
+/* Its work then, in units of that of the generations between, which look for what it does not find. */
+#define ALONE_WORK 4.0
+
 /* Plans are searched on a grid that divides time into this many parts. */
 #define PLAN_PARTS 20
 

@@ -99,7 +99,9 @@ SHARED_FUNCTION void spread_all(Spread *spread, const SpreadAxis *across, const 
             density += across->density[i] * down->density[j];
             float due = last ? (float)SPREAD_PARTS : float_min(density * scale, (float)SPREAD_PARTS);
             uint parts = (uint)(due + rounding);
-            spread->share.slot = (down->first + j - film->y0) * (film->x1 - film->x0) + across->first + i - film->x0;
+            uint x = across->first + i, y = down->first + j;
+            spread->share.slot = (y - film->y0) * (film->x1 - film->x0) + x - film->x0;
+            spread->share.place = film_pending_place(x, y);
             if (parts != spread->parts)
                 spread_add(spread, parts, across->sign[i] * down->sign[j] < 0.0f);
         }
@@ -118,6 +120,7 @@ SHARED_FUNCTION void film_whole_add(const FilmView *film, FilmPending *pending, 
 {
     FilmShare share;
     share.slot = splat->slot;
+    share.place = film_pending_place(splat->pixel % film->width, splat->pixel / film->width);
     share.name = splat->name;
     share.small = film_units_small(&splat->units);
     for (uint c = 0; c < 3u; ++c)

@@ -190,6 +190,7 @@ SHARED_FUNCTION bool film_units_small(const FilmUnits *units)
 /* A pixel's share of a splat. */
 typedef struct FilmShare {
     uint slot; /* the pixel */
+    uint place; /* film_pending_place */
     uint name; /* of the splat */
     ulong rgb[3]; /* units, two's complement */
     bool small; /* below UNITS_SMALL in magnitude */
@@ -205,8 +206,11 @@ SHARED_FUNCTION void film_sums_add(__global ulong *sums, const ulong rgb[3])
 
 /* What a thread of the host has not yet added to the film: a table of pixels, in which small shares that meet in a pixel
  * are added up without atomic operations. Devices have none. It is emptied after at most FILM_PENDING_SPLATS splats, so
- * that no sum in it overflows. */
-#define FILM_PENDING_PIXELS 512u
+ * that no sum in it overflows. Its places repeat every FILM_PENDING_COLUMNS columns and FILM_PENDING_ROWS rows: more rows
+ * than a band of pixels (layout/item.h) has, and the filter around it. */
+#define FILM_PENDING_COLUMNS 32u
+#define FILM_PENDING_ROWS 16u
+#define FILM_PENDING_PIXELS (FILM_PENDING_COLUMNS * FILM_PENDING_ROWS)
 #define FILM_PENDING_SPLATS (1u << 16)
 
 typedef struct FilmPending {
@@ -216,6 +220,12 @@ typedef struct FilmPending {
         uint slot, samples;
     } pixels[FILM_PENDING_PIXELS];
 } FilmPending;
+
+/* The place of the pixel in column x and row y. */
+SHARED_FUNCTION uint film_pending_place(uint x, uint y)
+{
+    return y % FILM_PENDING_ROWS * FILM_PENDING_COLUMNS + x % FILM_PENDING_COLUMNS;
+}
 
 SHARED_FUNCTION void film_pending_begin(FilmPending *pending)
 {
@@ -249,8 +259,7 @@ SHARED_FUNCTION void film_rgb_add(const FilmView *film, FilmPending *pending, __
             atomic_count_add(film->counts + share->slot, samples);
         return;
     }
-    /* neighbouring pixels: eight next to each other */
-    uint place = (share->slot & 7u) | ((share->slot >> 3) * 0x9e3779b1u) >> 26 << 3;
+    uint place = share->place;
     if (pending->pixels[place].sums != sums) {
         film_pending_add(film, pending, place);
         pending->pixels[place].sums = sums;

@@ -293,6 +293,42 @@ START_TEST(test_plan_known)
 }
 END_TEST
 
+/* Path tracing alone shows its own rare light and has its own variance, direct light included, which is compared with that of
+ * the best division of the same work. */
+START_TEST(test_alone_known)
+{
+    Known known;
+    double alone[ESTIMATOR_COUNT] = {0.0}, costs[ESTIMATOR_COUNT];
+    known_init(&known, 31);
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        costs[s] = estimator_cost((EstimatorKind)s);
+    for (int round = 0; round < ROUNDS; ++round) {
+        double expected = 0.0, errors[WIDTH * HEIGHT];
+        known_tell(&known, 3.0);
+        Combination *combination = &known.combination;
+        combination->best[ESTIMATOR_PATHS] = 0.0;
+        TEST_TRUE(combination_alone_error(combination) > DBL_MAX);
+        combination_rates(combination);
+        combination->best[ESTIMATOR_CHAINS] *= 3.0; /* any division of work will do */
+        alone[ESTIMATOR_PATHS] = estimators_work(combination->best) / costs[ESTIMATOR_PATHS];
+        combination_errors(combination, alone, errors);
+        for (size_t i = 0; i < combination_tile_count(combination); ++i) {
+            const CombinationTile *tile = &combination->known[i];
+            double square = tile->light * tile->light + dark_square(combination),
+                   own = (tile->spread[ESTIMATOR_PATHS] + tile->spread[SERIES_PATHS_RARE]) / alone[ESTIMATOR_PATHS];
+            TEST_NEAR(errors[i] * square / own, 1.0, 1e-6);
+            expected += (own + tile->direct / alone[ESTIMATOR_PATHS]) / square;
+        }
+        double best = picture_error(combination, combination->best, costs);
+        TEST_NEAR(combination_alone_error(combination) / (expected / best), 1.0, 1e-6);
+        TEST_TRUE(combination_weights_set(combination, alone) >= 1);
+        for (size_t i = 0; i < combination_tile_count(combination); ++i)
+            TEST_TRUE(combination->known[i].weight[ESTIMATOR_PATHS] == 1.0 && combination->known[i].paths_rare == 1.0);
+    }
+    known_destroy(&known);
+}
+END_TEST
+
 /* Once a plan is known, a generation counts by its work times the error of the plan's division over that of its own, direct
  * light left out: also one without path tracing, which may count twice at most. */
 START_TEST(test_worth_known)
@@ -499,6 +535,7 @@ TCase *combination_known_tests(void)
     tcase_add_test(tcase, test_errors_known);
     tcase_add_test(tcase, test_rates_adopted);
     tcase_add_test(tcase, test_plan_known);
+    tcase_add_test(tcase, test_alone_known);
     tcase_add_test(tcase, test_worth_known);
     tcase_add_test(tcase, test_importance_known);
     tcase_add_test(tcase, test_wild_numbers);

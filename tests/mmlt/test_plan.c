@@ -73,7 +73,7 @@ END_TEST
 START_TEST(test_end)
 {
     const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
-    const unsigned samples = 12 + (unsigned)_i;
+    const unsigned samples = 12 + (unsigned)_i % 6;
     Plan plan;
     plan_init(&plan, &options, mmlt_scheme(false), PIXELS, (uint64_t)samples * PIXELS);
     double owed = 0.0;
@@ -81,13 +81,70 @@ START_TEST(test_end)
     while (plan.done < plan.total && index < GENERATIONS_MOST) {
         late += plan.total - plan.done < PIXELS;
         plan_count(&plan, rounded_work(&plan, index, &owed), owed);
-        plan.rates.paths = 4.0;
+        plan.rates.paths = _i < 6 ? 4.0 : 45.0;
         plan_next(&plan, ++index, 1e9, 1.0);
     }
     printf("%u samples: %u generations, %u of them in the last sample, %.3f times the work wanted\n", samples, index,
            late, (double)plan.done / (double)plan.total);
     ck_assert_uint_le(late, 3);
-    ck_assert_double_lt((double)plan.done / (double)plan.total, 1.5);
+    ck_assert_uint_lt(plan.done, plan.total + PIXELS);
+}
+END_TEST
+
+/* Where light is easy, pairs of generations that are path tracing alone, of whole samples, have most of the work: up to
+ * ALONE_WORK times that of those between them, which go on and grow. In other scenes there are none. */
+START_TEST(test_alone)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 1000ull * PIXELS);
+    double owed = 0.0, alone = 0.0, pair = 0.0;
+    uint index = 0, mixed = 0, largest = 0;
+    while (plan.done < plan.total && index < GENERATIONS_MOST) {
+        uint64_t work = plan.alone > 0.0 ? (uint64_t)(plan.alone * PIXELS) : rounded_work(&plan, index, &owed);
+        ck_assert_uint_eq(plan_chains(&plan), plan.alone > 0.0 ? 0 : plan.chains);
+        ck_assert_double_eq(plan.alone, floor(plan.alone));
+        if (plan.alone > 0.0) {
+            ck_assert_double_eq(plan_paths_samples(&plan, 0), plan.alone);
+            ck_assert_double_le((double)work, fmax(GENERATION_PART * (double)plan.done, PIXELS));
+            alone += (double)work;
+        } else if (index >= 4) {
+            ++mixed;
+            largest = plan.chains > largest ? plan.chains : largest;
+        }
+        if (index % 2 == 1)
+            ck_assert_double_eq(plan.alone, pair);
+        pair = plan.alone;
+        plan.rates.paths = index >= 3 ? 20.0 : plan.rates.paths;
+        plan.easy = _i == 1 && index >= 3;
+        plan_count(&plan, work, owed);
+        plan_next(&plan, ++index, 1e9, 1.0);
+    }
+    double part = alone / (double)plan.done;
+    printf("path tracing alone has %.3f of the work; %u other generations of up to %u chains\n", part, mixed, largest);
+    ck_assert_uint_lt(plan.done, plan.total + PIXELS);
+    ck_assert_double_le(part, _i == 1 ? ALONE_WORK / (1.0 + ALONE_WORK) : 0.0);
+    ck_assert_double_ge(part, _i == 1 ? 0.6 : 0.0);
+    ck_assert_uint_gt(mixed, 8);
+    ck_assert_uint_gt(largest, 2 * CHAINS_FIRST);
+}
+END_TEST
+
+/* Of path tracing alone as many whole samples as the time allows; if none, the generation has chains. */
+START_TEST(test_alone_fit)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    plan_count(&plan, PIXELS, 0.0);
+    plan.alone = 5.0;
+    ck_assert_double_eq_tol(plan_seconds(&plan, 0.5), 2.5, 1e-9);
+    ck_assert(plan_fit(&plan, 0.5, 0.0, 2.6, 10.0));
+    ck_assert_double_eq(plan.alone, 5.0);
+    ck_assert(plan_fit(&plan, 0.5, 0.0, 1.2, 10.0));
+    ck_assert_double_eq(plan.alone, 2.0);
+    plan_fit(&plan, 0.5, 0.0, 0.4, 10.0);
+    ck_assert_uint_gt(plan_chains(&plan), 0);
 }
 END_TEST
 
@@ -178,7 +235,7 @@ START_TEST(test_pools)
 {
     ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = 12};
     Plan plan;
-    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, PIXELS * 16);
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
     plan.rates.pool = 1.0 / 12.0;
     ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS / 4), PIXELS / 4);
     ck_assert_uint_eq(plan_pool_samples(&plan, PIXELS + PIXELS / 4), PIXELS);
@@ -243,7 +300,9 @@ int main(void)
     tcase_add_test(tcase, test_last);
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_rates);
-    tcase_add_loop_test(tcase, test_end, 0, 6);
+    tcase_add_loop_test(tcase, test_end, 0, 12);
+    tcase_add_loop_test(tcase, test_alone, 0, 2);
+    tcase_add_test(tcase, test_alone_fit);
     tcase_add_test(tcase, test_clock);
     tcase_add_loop_test(tcase, test_width, 0, 2);
     tcase_add_test(tcase, test_pools);

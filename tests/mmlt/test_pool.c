@@ -185,6 +185,23 @@ START_TEST(test_first)
 }
 END_TEST
 
+/* The mean brightness is that of the other replica's pools, also if generations without any came between; of the pilot before
+ * there is one. */
+START_TEST(test_brightness)
+{
+    PoolEstimator pool = {.pilot_brightness = 5.0};
+    for (uint index = 0; index < 20; ++index) {
+        const Generation generation = {.index = index, .replica = (int)(index % 2), .other = (int)((index + 1) % 2)};
+        if (index % 4 >= 2)
+            continue;
+        ck_assert_double_eq_tol(pool_estimator_brightness(&pool, &generation),
+                                index == 0 ? 5.0 : index % 2 == 0 ? 3.0 : 1.0, 1e-12);
+        pool.brightness = index % 2 == 0 ? 1.0 : 3.0;
+        pool_estimator_count(&pool, &generation);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("pool");
@@ -193,6 +210,7 @@ int main(void)
     tcase_add_loop_test(even, test_even, 0, sizeof SIZES / sizeof SIZES[0]);
     suite_add_tcase(suite, even);
     TCase *first = tcase_create("first");
+    tcase_add_test(first, test_brightness);
     tcase_add_loop_test(first, test_first, 0, 2);
     suite_add_tcase(suite, first);
     return test_run(suite);

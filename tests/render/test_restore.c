@@ -50,17 +50,20 @@ static const WrongValue WRONG[] = {
     {PLAN, 8, DOUBLE, 0.0, "samples of a pool per step: 0 was saved"},
     {PLAN, 32, WORD, 65, "chains of a generation: 65 were saved, but there can be 1 to 64"},
     {PLAN, 32, WORD, 0, "chains of a generation: 0 were saved"},
+    {PLAN, 44, WORD, 2, "whether path tracing may go on alone: "},
+    {PLAN, 45, DOUBLE, -1.0, "samples of path tracing alone: -1 was saved"},
+    {PLAN, 53, DOUBLE, (double)NAN, "the work of path tracing alone: NaN was saved"},
     {PLAN, -4, WORD, 0, "generations: 0 were saved"},
-    {PLAN, 76, DOUBLE, 1e9, "samples of path tracing: "},
-    {PLAN, 76, DOUBLE, -7.0, "samples of path tracing that are wanted: -7 was saved"},
-    {PLAN, 56, WORD, 9, "samples of path tracing: "}, /* the upper half of `done` */
-    {PLAN, 116, DOUBLE, (double)INFINITY, "the brightness of a pool: inf was saved"},
-    {PLAN, 148, DOUBLE, -1.0, "the brightness of the pilot pool: -1 was saved"},
-    {PLAN, 156, DOUBLE, (double)NAN, "the brightness of all pools: NaN was saved"},
-    {PLAN, 180, WORD, 9, "the words of a chain: "},
-    {PLAN, 188, WORD, 4e9, "chains: 4000000000 were saved, but there can be 0 to 64"},
-    {PLAN, 192, DOUBLE, (double)NAN, "the samples behind chains: NaN was saved"},
-    {PLAN, 200, DOUBLE, (double)INFINITY, "the brightness of chains: inf was saved"},
+    {PLAN, 93, DOUBLE, 1e9, "samples of path tracing: "},
+    {PLAN, 93, DOUBLE, -7.0, "samples of path tracing that are wanted: -7 was saved"},
+    {PLAN, 73, WORD, 9, "samples of path tracing: "}, /* the upper half of `done` */
+    {PLAN, 133, DOUBLE, (double)INFINITY, "the brightness of a pool: inf was saved"},
+    {PLAN, 165, DOUBLE, -1.0, "the brightness of the pilot pool: -1 was saved"},
+    {PLAN, 173, DOUBLE, (double)NAN, "the brightness of all pools: NaN was saved"},
+    {PLAN, 205, WORD, 9, "the words of a chain: "},
+    {PLAN, 213, WORD, 4e9, "chains: 4000000000 were saved, but there can be 0 to 64"},
+    {PLAN, 217, DOUBLE, (double)NAN, "the samples behind chains: NaN was saved"},
+    {PLAN, 225, DOUBLE, (double)INFINITY, "the brightness of chains: inf was saved"},
     {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 2, "chain 2 of 2: its path is too short or too long"},
     {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 33, "chain 2 of 2: its path is too short or too long"},
     {CHAIN_WORDS, CHAIN_PASS_KEY, WORD, 0x503, "chain 2 of 2: its path has more vertices from the light"},
@@ -96,7 +99,7 @@ static size_t population_bytes(const unsigned char *population)
 
 static size_t place_of(const WrongValue *wrong, const unsigned char *bytes, size_t size)
 {
-    size_t rates = rates_find(bytes, size), chains = rates + 180, words = chains + 28, second;
+    size_t rates = rates_find(bytes, size), chains = rates + 205, words = chains + 28, second;
     uint32_t count;
     memcpy(&count, bytes + chains + 8, sizeof count);
     second = chains + population_bytes(bytes + chains);
