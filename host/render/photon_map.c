@@ -85,19 +85,24 @@ static void maker_destroy(PhotonMaker *maker)
     free(maker->records.records);
 }
 
-/* Makes a map of all records. *grow: whether more would be better. *missed: photon_grid_make. */
-static bool map_fill(PhotonMaker *maker, PhotonMap *map, bool *grow, double *missed, Error *error)
+/* Makes a map of all records. *missed: photon_grid_make; *by_fewer: the same by every PHOTONS_GROWTH-th. Both are 0 if
+ * there are no records, or on a stop. */
+static bool map_fill(PhotonMaker *maker, PhotonMap *map, double *missed, double *by_fewer, Error *error)
 {
-    double by_fewer = 0.0;
-    *grow = false;
+    *missed = *by_fewer = 0.0;
     photon_map_destroy(map);
     if (maker->records.count == 0 || !maker->search.whole)
         return true;
-    if (!photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, &by_fewer, error) ||
-        !photon_grid_make(&maker->records, &maker->lights, map, missed, error))
-        return false;
-    *grow = *missed > MISSED_ENOUGH && *missed < MISSED_SHRINKS * by_fewer;
-    return true;
+    return photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, by_fewer, error) &&
+           photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+}
+
+uint photon_count_next(uint found, uint most, double missed, double by_fewer)
+{
+    bool better = missed > MISSED_ENOUGH && missed < MISSED_SHRINKS * by_fewer;
+    if (!better || found >= most)
+        return 0;
+    return found < most / PHOTONS_GROWTH ? PHOTONS_GROWTH * found : most;
 }
 
 /* Says that there are too few photons for the light that they know of. */
@@ -117,17 +122,15 @@ static void missed_warn(const PhotonMap *map, uint count, double missed)
 /* Makes a map of few photons, then of more until they are enough, `count` at most, or no more are found. */
 static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *error)
 {
-    uint wanted = PHOTONS_FIRST;
-    double missed = 0.0;
-    bool grow = true;
-    while (grow) {
-        wanted = wanted < count ? wanted : count;
-        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &grow, &missed, error))
+    uint wanted = PHOTONS_FIRST < count ? PHOTONS_FIRST : count;
+    while (wanted > 0) {
+        double missed, by_fewer;
+        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &missed, &by_fewer, error))
             return false;
         if (wanted == count)
             missed_warn(map, count, missed);
-        grow = grow && wanted <= maker->search.found && maker->search.found < count;
-        wanted = maker->search.found < count / PHOTONS_GROWTH ? PHOTONS_GROWTH * maker->search.found : count;
+        uint found = maker->search.found;
+        wanted = found < wanted ? 0 : photon_count_next(found, count, missed, by_fewer);
     }
     return true;
 }

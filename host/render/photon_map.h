@@ -13,4 +13,8 @@
 bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error);
 void photon_map_destroy(PhotonMap *map);
 
+/* How many photons are to be made, at most `most`, when there are `found`, of whose predicted directions the part
+ * `missed` misses the light, and `by_fewer` where each is predicted by a quarter of them; 0: these are enough. */
+uint photon_count_next(uint found, uint most, double missed, double by_fewer);
+
 #endif

@@ -181,6 +181,23 @@ result 'an image without samples has replaced another' $?
 grep -q 'warning: s.exr is left unchanged' err
 result 'no warning about an image that is left unchanged' $?
 
+# The photons of a small lamp over water take some seconds of two cores. Without them there is nothing to render yet.
+sed -e 's/"rgb L" \[ 440 405 335 \]/"rgb L" [ 4400000 4050000 3350000 ]/' -e 's/\[ 0.22 \]/[ 0.0022 ]/' \
+    "${scene%/*}/pool.pbrt" >small.pbrt
+grep -q 'radius" \[ 0.0022 \]' small.pbrt
+result 'the lamp of pool.pbrt is not what this script takes it for' $?
+for integrator in pt mmlt; do
+    begin --integrator=$integrator --resolution=32x32 --photons=1048576 small.pbrt
+    sleep 1
+    sent=$(milliseconds)
+    kill -s INT $process
+    ended "SIGINT while photons are made, $integrator" 3000
+    grep -q '"photons": 0' s.json
+    result "$integrator: the stop came after the photons" $?
+    grep -q 'warning: 1024 of 1024 pixels have no sample' err
+    result "$integrator: no warning about an image without samples" $?
+done
+
 # Nobody reads the messages any more: all files are written, the statistics included.
 ("$program" render --time=1s --resolution=32x32 --stats=s.json -o s.exr "$scene" 2>&1 >/dev/null; echo $? >status) | true
 wait_for status

@@ -283,6 +283,25 @@ START_TEST(test_found)
 }
 END_TEST
 
+/* Photons grow in number while more of them predict better: not where nearly all predictions hit the light, where a
+ * quarter of them predict as well, or where all that are allowed have been made. */
+START_TEST(test_growth)
+{
+    static const struct {
+        uint found, most, next;
+        double missed, by_fewer;
+    } cases[] = {
+        {32768, 1048576, 131072, 0.3, 0.6},   {32768, 1048576, 0, 0.01, 0.5},  {32768, 1048576, 0, 0.3, 0.4},
+        {32768, 1048576, 131072, 0.03, 0.2},  {32768, 1048576, 0, 0.0, 0.0},   {131072, 1048576, 524288, 0.3, 0.6},
+        {524288, 1048576, 1048576, 0.3, 0.6}, {1048576, 1048576, 0, 0.3, 0.6}, {32768, 100000, 100000, 0.3, 0.6},
+        {40000, 32768, 0, 0.3, 0.6},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+        ck_assert_uint_eq(photon_count_next(cases[i].found, cases[i].most, cases[i].missed, cases[i].by_fewer),
+                          cases[i].next);
+}
+END_TEST
+
 static int codes_compare(const void *a, const void *b)
 {
     const uint *x = a, *y = b;
@@ -341,6 +360,7 @@ int main(void)
     tcase_add_test(photons, test_lobe);
     tcase_add_test(photons, test_density);
     tcase_add_test(photons, test_grid);
+    tcase_add_test(photons, test_growth);
     suite_add_tcase(suite, photons);
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
