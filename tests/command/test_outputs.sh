@@ -188,7 +188,7 @@ grep -q 'radius" \[ 0.0022 \]' small.pbrt
 result 'the lamp of pool.pbrt is not what this script takes it for' $?
 for integrator in pt mmlt; do
     begin --integrator=$integrator --resolution=32x32 --photons=1048576 small.pbrt
-    sleep 1
+    sleep 0.5
     sent=$(milliseconds)
     kill -s INT $process
     ended "SIGINT while photons are made, $integrator" 3000
