@@ -484,7 +484,7 @@ bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray)
 __attribute__((noinline)) static Hit media_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words,
                                                    uint *diagnostics, uint stride, uint item, Ray ray)
 {
-    MediaWalk walk = media_walk_load(ray_words, stride, item);
+    MediaWalk walk = media_walk_load(&rays->view, ray_words, stride, item);
     Hit hit;
     do
         hit = rays_embree_closest(rays, &ray);

@@ -30,6 +30,7 @@ check_PROGRAMS += \
 	tests/test_layers \
 	tests/test_light \
 	tests/test_math \
+	tests/test_grid_emission \
 	tests/test_medium_grid \
 	tests/test_metrics \
 	tests/test_mlt_option \
@@ -152,6 +153,7 @@ tests_test_compare_SOURCES = tests/compare/test_compare.c
 tests_test_error_SOURCES = tests/render/test_error.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
+tests_test_grid_emission_SOURCES = tests/geometry/test_grid_emission.c
 tests_test_medium_grid_SOURCES = tests/geometry/test_medium_grid.c
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
 tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c

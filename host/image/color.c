@@ -92,22 +92,41 @@ static bool spectrum_illuminant(const double *spectrum, double rgb[3])
     return true;
 }
 
+/* Second radiation constant h c / k in m K (CODATA 2018). */
+#define RADIATION_CONSTANT 1.438776877e-2
+
+/* Planck's law, lambda^-5 / (e^x - 1), relative to the longest wavelength, so that neither very low nor very high
+ * temperatures over- or underflow. */
+static void blackbody_spectrum(double kelvin, double spectrum[SPECTRUM_SIZE])
+{
+    double x_last = RADIATION_CONSTANT / (CIE_LAST * 1e-9 * kelvin);
+    for (int i = 0; i < SPECTRUM_SIZE; ++i) {
+        double ratio = (CIE_FIRST + i) / (double)CIE_LAST, x = x_last / ratio;
+        spectrum[i] = exp(x_last - x) * expm1(-x_last) / expm1(-x) / pow(ratio, 5.0);
+    }
+}
+
 void color_blackbody(float kelvin, float rgb[3])
 {
-    /* Second radiation constant h c / k in m K (CODATA 2018). Planck's law up to a factor: lambda^-5 / (e^x - 1). */
-    const double C2 = 1.438776877e-2;
-    double temperature = (double)kelvin > BLACKBODY_KELVIN_MIN ? (double)kelvin : BLACKBODY_KELVIN_MIN;
     double spectrum[SPECTRUM_SIZE], color[3];
-    for (int i = 0; i < SPECTRUM_SIZE; ++i) {
-        double micrometre = (CIE_FIRST + i) * 1e-3;
-        /* Relative to the longest wavelength, so that neither very low nor very high temperatures over- or
-         * underflow. */
-        double x = C2 / (micrometre * 1e-6 * temperature), x_last = C2 / (CIE_LAST * 1e-9 * temperature);
-        spectrum[i] = exp(x_last - x) * expm1(-x_last) / expm1(-x) / pow(micrometre, 5.0);
-    }
+    blackbody_spectrum(fmax((double)kelvin, BLACKBODY_KELVIN_MIN), spectrum);
     spectrum_illuminant(spectrum, color);
     for (int c = 0; c < 3; ++c)
         rgb[c] = (float)color[c];
+}
+
+void color_blackbody_relative(float kelvin, float rgb[3])
+{
+    /* Where x e^x / (e^x - 1) = 5, the spectrum has its maximum. */
+    const double X_PEAK = 4.965114231744276;
+    double spectrum[SPECTRUM_SIZE], x_last = RADIATION_CONSTANT / (CIE_LAST * 1e-9 * fmax((double)kelvin, 100.0));
+    double last = pow(x_last / X_PEAK, 5.0) * expm1(X_PEAK) / expm1(x_last), luminance = 0.0;
+    color_blackbody(kelvin, rgb);
+    blackbody_spectrum(fmax((double)kelvin, 100.0), spectrum);
+    for (int i = 0; i < SPECTRUM_SIZE; ++i)
+        luminance += cie_value(CIE_FIRST + i, 1) * spectrum[i];
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = kelvin > 100.0f ? (float)((double)rgb[c] * luminance * last) : 0.0f;
 }
 
 void color_daylight(float kelvin, float rgb[3])

@@ -42,6 +42,14 @@ bool medium_grid_place(PbrtImport *im, ParamList *list, const char *name, const 
  * coefficients by the largest of its factors. */
 bool medium_grid_add(PbrtImport *im, ParamList *list, const GridSource *source, Medium *medium);
 
+/* Reads temperatureoffset, or temperaturecutoff, and temperaturescale. */
+void medium_kelvin_read(ParamList *list, GridKelvin *kelvin);
+
+/* Adds the grid of the emission of a medium that has its grid, unless it emits nothing or only needs are wanted;
+ * multiplies its emission by the largest of the factors. kelvin: as of grid_emission_add. */
+bool medium_emission_add(PbrtImport *im, ParamList *list, const GridSource *source, const GridKelvin *kelvin,
+                         Medium *medium);
+
 bool medium_uniform_grid_read(PbrtImport *im, ParamList *list, Medium *medium);
 bool medium_rgb_grid_read(PbrtImport *im, ParamList *list, Medium *medium);
 bool medium_nanovdb_read(PbrtImport *im, ParamList *list, Medium *medium);

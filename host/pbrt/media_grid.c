@@ -1,10 +1,10 @@
 /* Where grids are, and media of grids whose samples are in the scene file: "uniformgrid" and "rgbgrid". */
-#include "pbrt/errors.h"
 #include "pbrt/media.h"
 #include "pbrt/state.h"
 #include "pbrt/values.h"
 
 #include <math.h>
+#include <string.h>
 
 const float MEDIUM_ONES[2][3] = {{1.0f, 1.0f, 1.0f}, {1.0f, 1.0f, 1.0f}};
 
@@ -109,7 +109,9 @@ static const float *values_read(ParamList *list, const GridSource *source, const
 typedef struct GridValues {
     const GridSource *source;
     const float *density; /* of a uniformgrid */
+    const float *temperature, *factor; /* of its emission, or NULL */
     const float *absorption, *scattering; /* of an rgbgrid; NULL: 1 everywhere */
+    const float *radiance; /* that it emits, or NULL */
 } GridValues;
 
 static size_t sample_index(const GridValues *values, const uint index[3])
@@ -137,49 +139,78 @@ static void rgb_sample(const void *context, const uint index[3], float *out)
 
 /* ---- media ------------------------------------------------------------------------------------------------------- */
 
-/* Emission that differs from place to place is refused, or left out: by temperatures or, with `colors`, a colour for
- * each sample. */
-static bool emission_refuse(PbrtImport *im, ParamList *list, bool colors)
+/* pbrt's illuminants are normalised to this luminance; that of an rgbgrid is not divided by it. */
+#define ILLUMINANT_LUMINANCE 106.856895
+
+void medium_kelvin_read(ParamList *list, GridKelvin *kelvin)
 {
-    static const char *const WITH_IT[] = {"Lescale", "temperatureoffset", "temperaturecutoff", "temperaturescale"};
-    bool le = colors && param_ignore(list, "Le"), temperature = param_ignore(list, "temperature") != NULL;
-    for (size_t i = 0; i < sizeof WITH_IT / sizeof *WITH_IT; ++i)
-        param_ignore(list, WITH_IT[i]);
-    const char *name = le ? "Le" : "temperature";
-    return (!le && !temperature) || import_unsupported(im, param_place(list, name), "emission that varies in a medium",
-                                                       "no emission", "use a uniformgrid with \"Le\" alone");
+    float offset = param_float(list, "temperatureoffset", param_float(list, "temperaturecutoff", 0.0f));
+    kelvin->scale = medium_factor_read(list, "temperaturescale");
+    kelvin->offset = -offset * kelvin->scale;
+    if (!isfinite(kelvin->offset))
+        param_error(list, "temperaturescale", "the temperatures of %s overflow", list->owner);
 }
 
-/* A uniformgrid's Le, times its Lescale, which must be the same for all samples. */
-static bool emission_read(PbrtImport *im, ParamList *list, const GridSource *source, Vec3 absorption, Medium *medium)
+bool medium_emission_add(PbrtImport *im, ParamList *list, const GridSource *source, const GridKelvin *kelvin,
+                         Medium *medium)
 {
-    float le[3] = {0.0f, 0.0f, 0.0f}, factor = 1.0f;
-    if (!value_color(im, list, "Le", COLOR_ILLUMINANT, le) || list->failed)
-        return !list->failed;
-    const float *values = values_read(list, source, "Lescale", PARAM_FLOAT, 1);
-    size_t count = (size_t)source->size[0] * source->size[1] * source->size[2];
-    for (size_t i = 0; values && !list->failed && i < count; ++i) {
-        factor = values[0];
-        if (values[i] != factor)
-            return import_unsupported(im, param_place(list, "Lescale"), "emission that varies in a medium",
-                                      "no emission", "give \"Lescale\" the same value everywhere");
+    float largest[6];
+    if (im->options.needs || vec3_is_zero(medium->emission))
+        return true;
+    if (!grid_emission_add(im->scene, medium->grid, source, kelvin, largest, im->error))
+        return false;
+    if (kelvin && !isfinite(kelvin->scale * largest[0])) {
+        param_error(list, "temperaturescale", "the temperatures of %s overflow", list->owner);
+        return false;
     }
-    medium->emission = medium_coefficients_scale(list, vec3_mul(absorption, vec3(le[0], le[1], le[2])), (double)factor);
+    Vec3 factor = vec3_splat(kelvin ? 1.0f : largest[0]);
+    if (source->words == 2)
+        factor = vec3_splat(largest[1]);
+    if (source->words == 6)
+        factor = vec3(largest[0] * largest[3], largest[1] * largest[4], largest[2] * largest[5]);
+    medium->emission = medium_coefficients_scale(list, vec3_mul(medium->emission, factor), 1.0);
     return !list->failed;
 }
 
-/* Both: the samples have been read. */
+/* The samples have been read. */
 static bool samples_add(PbrtImport *im, ParamList *list, GridSource *source, Medium *medium)
 {
     MediumBox box;
-    return !list->failed && emission_refuse(im, list, source->words > 1) && medium_box_read(list, &box) &&
-           medium_box_place(im, list, &box, source) && medium_grid_add(im, list, source, medium);
+    return !list->failed && medium_box_read(list, &box) && medium_box_place(im, list, &box, source) &&
+           medium_grid_add(im, list, source, medium);
+}
+
+/* A temperature, its radiance's factor or both. */
+static void emission_sample(const void *context, const uint index[3], float *out)
+{
+    const GridValues *values = context;
+    size_t at = sample_index(values, index);
+    if (values->temperature)
+        *out++ = values->temperature[at];
+    if (values->factor)
+        *out = values->factor[at];
+}
+
+/* A uniformgrid's Le or temperature, and Lescale, into the medium and `values`. */
+static void emission_read(PbrtImport *im, ParamList *list, const GridSource *source, Vec3 absorption,
+                          GridValues *values, Medium *medium)
+{
+    float le[3] = {0.0f, 0.0f, 0.0f};
+    bool colored = value_color(im, list, "Le", COLOR_ILLUMINANT, le);
+    values->temperature = values_read(list, source, "temperature", PARAM_FLOAT, 1);
+    values->factor = values_read(list, source, "Lescale", PARAM_FLOAT, 1);
+    if (colored && values->temperature) {
+        param_error(list, "temperature", "%s has both \"Le\" and \"temperature\"", list->owner);
+        error_fix(list->error, "remove one of the two");
+    }
+    medium->emission = values->temperature ? absorption : vec3_mul(absorption, vec3(le[0], le[1], le[2]));
 }
 
 bool medium_uniform_grid_read(PbrtImport *im, ParamList *list, Medium *medium)
 {
     GridValues values = {.density = NULL};
     GridSource source = {.words = 1, .low = 0.5f, .sample = density_sample, .context = &values};
+    GridKelvin kelvin;
     values.source = &source;
     Vec3 absorption;
     medium_coefficients_read(im, list, MEDIUM_ONES, medium, &absorption);
@@ -187,7 +218,22 @@ bool medium_uniform_grid_read(PbrtImport *im, ParamList *list, Medium *medium)
     values.density = values_read(list, &source, "density", PARAM_FLOAT, 1);
     if (!values.density)
         param_error(list, "density", "%s lacks \"float density\"", list->owner);
-    return emission_read(im, list, &source, absorption, medium) && samples_add(im, list, &source, medium);
+    emission_read(im, list, &source, absorption, &values, medium);
+    medium_kelvin_read(list, &kelvin);
+    if (!samples_add(im, list, &source, medium))
+        return false;
+    source.sample = emission_sample;
+    source.words = (values.temperature ? 1u : 0u) + (values.factor ? 1u : 0u);
+    return source.words == 0 || medium_emission_add(im, list, &source, values.temperature ? &kelvin : NULL, medium);
+}
+
+/* Absorption and radiance. */
+static void rgb_emission_sample(const void *context, const uint index[3], float *out)
+{
+    const GridValues *values = context;
+    size_t at = 3 * sample_index(values, index);
+    memcpy(out, values->absorption + at, 3 * sizeof *out);
+    memcpy(out + 3, values->radiance + at, 3 * sizeof *out);
 }
 
 bool medium_rgb_grid_read(PbrtImport *im, ParamList *list, Medium *medium)
@@ -198,10 +244,21 @@ bool medium_rgb_grid_read(PbrtImport *im, ParamList *list, Medium *medium)
     size_read(list, &source);
     values.absorption = values_read(list, &source, "sigma_a", PARAM_RGB, 3);
     values.scattering = values_read(list, &source, "sigma_s", PARAM_RGB, 3);
+    values.radiance = values_read(list, &source, "Le", PARAM_RGB, 3);
     if (!values.absorption && !values.scattering)
         param_error(list, "sigma_s", "%s lacks \"rgb sigma_a\" and \"rgb sigma_s\"", list->owner);
-    float scale = medium_factor_read(list, "scale");
+    if (values.radiance && !values.absorption) {
+        param_error(list, "Le", "%s has \"Le\" and lacks \"rgb sigma_a\"", list->owner);
+        error_fix(list->error, "emission is sigma_a times Le: give \"rgb sigma_a\" for each sample");
+    }
+    float scale = medium_factor_read(list, "scale"), factor = medium_factor_read(list, "Lescale");
     medium->extinction = medium->scattering = vec3_splat(scale);
     medium_g_read(list, medium);
-    return samples_add(im, list, &source, medium);
+    if (!samples_add(im, list, &source, medium))
+        return false;
+    if (!values.radiance)
+        return true;
+    source.sample = rgb_emission_sample;
+    medium->emission = medium_coefficients_scale(list, vec3_splat(scale), (double)factor * ILLUMINANT_LUMINANCE);
+    return medium_emission_add(im, list, &source, NULL, medium);
 }

@@ -1,5 +1,4 @@
 /* Media of NanoVDB files. */
-#include "pbrt/errors.h"
 #include "pbrt/media.h"
 #include "pbrt/nanovdb.h"
 
@@ -66,58 +65,71 @@ static bool nanovdb_place(PbrtImport *im, ParamList *list, const NanoVdb *grid, 
     return medium_grid_place(im, list, "filename", &index_from_medium, source);
 }
 
-/* A grid of temperatures makes the medium emit, unless Lescale is 0. */
-static bool temperature_check(PbrtImport *im, ParamList *list, const char *path)
+/* Reads the grid of that name, and where it is in the scene. *found: there is one, which is to be destroyed. */
+static bool nanovdb_source(PbrtImport *im, ParamList *list, const char *path, const char *name, NanoVdb *grid,
+                           GridSource *source, bool *found)
 {
-    const char *name = param_string(list, "temperaturename", "temperature");
-    NanoVdb grid;
-    bool found;
-    param_ignore(list, "temperaturecutoff");
-    param_ignore(list, "temperatureoffset");
-    param_ignore(list, "temperaturescale");
-    if (medium_factor_read(list, "Lescale") == 0.0f || list->failed)
-        return !list->failed;
-    if (!nanovdb_open(list, path, name, &grid, &found))
+    *source = (GridSource){
+        .words = 1, .low = 1.0f, .ends = 1, .sample = nanovdb_sample, .empty = nanovdb_is_empty, .context = grid};
+    if (!nanovdb_open(list, path, name, grid, found))
         return false;
-    if (!found)
+    if (!*found || nanovdb_place(im, list, grid, source))
         return true;
-    nanovdb_destroy(&grid);
-    return import_unsupported(im, param_place(list, "filename"), "emission of a medium by its temperature",
-                              "no emission", "set \"float Lescale\" 0");
+    nanovdb_destroy(grid);
+    return false;
 }
 
 /* The grid of densities at `path`. */
-static bool nanovdb_density_read(PbrtImport *im, ParamList *list, const char *path, Medium *medium)
+static bool density_read(PbrtImport *im, ParamList *list, const char *path, const char *name, Medium *medium)
 {
-    const char *name = param_string(list, "gridname", "density");
     NanoVdb grid;
+    GridSource source;
     bool found;
-    if (list->failed || !nanovdb_open(list, path, name, &grid, &found))
+    if (!nanovdb_source(im, list, path, name, &grid, &source, &found))
         return false;
     if (!found) {
         param_error(list, "filename", "%s has no grid \"%s\"", path, name);
         return error_fix(list->error, "name one that it has by \"string gridname\"");
     }
-    GridSource source = {
-        .words = 1, .low = 1.0f, .ends = 1, .sample = nanovdb_sample, .empty = nanovdb_is_empty, .context = &grid};
-    bool good = nanovdb_place(im, list, &grid, &source) && medium_grid_add(im, list, &source, medium);
+    bool good = medium_grid_add(im, list, &source, medium);
+    nanovdb_destroy(&grid);
+    return good;
+}
+
+/* The grid of temperatures at `path`, if there is one. */
+static bool temperature_read(PbrtImport *im, ParamList *list, const char *path, const char *name,
+                             const GridKelvin *kelvin, Medium *medium)
+{
+    NanoVdb grid;
+    GridSource source;
+    bool found;
+    if (vec3_is_zero(medium->emission))
+        return true;
+    if (!nanovdb_source(im, list, path, name, &grid, &source, &found))
+        return false;
+    if (!found) {
+        medium->emission = vec3_splat(0.0f);
+        return true;
+    }
+    bool good = medium_emission_add(im, list, &source, kelvin, medium);
     nanovdb_destroy(&grid);
     return good;
 }
 
 bool medium_nanovdb_read(PbrtImport *im, ParamList *list, Medium *medium)
 {
-    const char *file = param_string(list, "filename", "");
+    const char *file = param_string(list, "filename", ""), *density = param_string(list, "gridname", "density"),
+               *temperature = param_string(list, "temperaturename", "temperature");
+    GridKelvin kelvin;
     Vec3 absorption;
     medium_coefficients_read(im, list, MEDIUM_ONES, medium, &absorption);
+    medium_kelvin_read(list, &kelvin);
+    medium->emission = medium_coefficients_scale(list, absorption, (double)medium_factor_read(list, "Lescale"));
     if (!*file)
         param_error(list, "filename", "%s lacks \"string filename\"", list->owner);
     const char *path = list->failed ? NULL : import_path(im, file);
     if (!path)
         return false;
-    if (im->options.needs) {
-        param_ignore(list, "gridname");
-        return temperature_check(im, list, path);
-    }
-    return temperature_check(im, list, path) && nanovdb_density_read(im, list, path, medium);
+    return im->options.needs || (density_read(im, list, path, density, medium) &&
+                                 temperature_read(im, list, path, temperature, &kelvin, medium));
 }

@@ -1,7 +1,9 @@
 #include "scene/grid_build.h"
 
-#include "geometry/medium_grid.h"
+#include "geometry/grid_emission.h"
+#include "image/color.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -126,6 +128,7 @@ bool grid_add(Scene *scene, const GridSource *source, uint *number, float *large
                          .size_z = size[2],
                          .low = source->low,
                          .words = source->words,
+                         .table = NONE,
                          .bricks = (uint)(scene->texels.count - bricks)};
     Builder builder = {scene, source, malloc(GRID_BRICK_SAMPLES * source->words * sizeof(float)), NONE};
     bool good = builder.samples ? bricks_add(&builder, grid, error)
@@ -135,6 +138,55 @@ bool grid_add(Scene *scene, const GridSource *source, uint *number, float *large
     if (good)
         factors_scale(&scene->texels, grid->bricks + bricks, source->words, largest);
     return good;
+}
+
+/* ---- emission ---------------------------------------------------------------------------------------------------- */
+
+/* The table of black bodies, which all of the scene's grids share. */
+static bool blackbody_table_find(Scene *scene, uint *table, Error *error)
+{
+    for (size_t i = 0; i < scene->grids.count; ++i) {
+        *table = ARRAY_AT(&scene->grids, MediumGrid, i).table;
+        if (*table != NONE)
+            return true;
+    }
+    *table = (uint)scene->lookup.count;
+    float *rows = array_grow(&scene->lookup, BLACKBODY_WORDS, error);
+    if (!rows)
+        return false;
+    for (uint i = 0; i < BLACKBODY_ROWS; ++i)
+        color_blackbody_relative(BLACKBODY_MIDDLE * (float)i / (float)(BLACKBODY_ROWS - i), rows + (size_t)i * 3);
+    return true; /* the last row, of infinite temperature, is 0 */
+}
+
+/* Whether one grid's cells are the other's. */
+static bool grids_align(const MediumGrid *a, const MediumGrid *b)
+{
+    for (int i = 0; i < 12; ++i) {
+        float difference = a->grid_from_world.m[i] - b->grid_from_world.m[i];
+        float tolerance = i % 4 == 3 ? 1e-3f : 1e-6f * fabsf(a->grid_from_world.m[i]);
+        if (!(fabsf(difference - (i % 4 == 3 ? rintf(difference) : 0.0f)) <= tolerance))
+            return false;
+    }
+    return true;
+}
+
+bool grid_emission_add(Scene *scene, uint number, const GridSource *source, const GridKelvin *kelvin, float *largest,
+                       Error *error)
+{
+    uint emission, table = NONE;
+    if (!grid_add(scene, source, &emission, largest, error) || (kelvin && !blackbody_table_find(scene, &table, error)))
+        return false;
+    MediumGrid *grid = &ARRAY_AT(&scene->grids, MediumGrid, number - 1),
+               *emits = &ARRAY_AT(&scene->grids, MediumGrid, emission - 1);
+    grid->emission = emission;
+    emits->aligned = grids_align(grid, emits) ? 1u : 0u;
+    emits->table = table;
+    if (kelvin) {
+        emits->kelvin_scale = kelvin->scale * largest[0];
+        emits->kelvin_offset = kelvin->offset;
+    }
+    return true;
 }
 
 Box grid_box(const MediumGrid *grid)

@@ -13,7 +13,7 @@
 typedef struct GridSource {
     uint size[3]; /* samples along x, y and z; of all three 1 more with `ends` */
     uint ends; /* 1: there is a sample at the upper end of each axis of the box, whose index is `size`; low must be 1 */
-    uint words; /* of a sample: GRID_COLORS */
+    uint words; /* of a sample: GRID_COLORS, or those of a grid of emission */
     float low; /* MediumGrid.low */
     Matrix grid_from_world;
     /* Writes the sample at an index: `words` numbers, finite and not negative. */
@@ -28,6 +28,16 @@ typedef struct GridSource {
  * divided by the largest, which is left in largest[0 ... words - 1]. Fails if memory or indices of 32 bits do not
  * suffice. */
 bool grid_add(Scene *scene, const GridSource *source, uint *number, float *largest, Error *error);
+
+/* Temperatures in kelvin: scale * sample + offset, scale not negative. */
+typedef struct GridKelvin {
+    float scale, offset;
+} GridKelvin;
+
+/* Appends a grid of the emission of the medium of grid `number` (geometry/grid_emission.h), as grid_add does. kelvin:
+ * the samples' first words are temperatures; else NULL. */
+bool grid_emission_add(Scene *scene, uint number, const GridSource *source, const GridKelvin *kelvin, float *largest,
+                       Error *error);
 
 /* The bounds of a grid's box in the world. */
 Box grid_box(const MediumGrid *grid);

@@ -5,6 +5,7 @@
 #ifndef TWINLIGHT_GEOMETRY_MEDIA_WALK_H
 #define TWINLIGHT_GEOMETRY_MEDIA_WALK_H
 
+#include "geometry/grid_emission.h"
 #include "geometry/medium.h"
 #include "geometry/surface.h"
 #include "layout/diagnostics.h"
@@ -80,6 +81,7 @@ typedef struct MediaWalk {
     bool scattered; /* at `point`; then the walk continues for `emission` alone */
     bool arrived; /* at the end of a ray with t_max, right behind an interface */
     bool blocked; /* CROSSINGS_MAX */
+    bool gathers; /* emission is wanted */
     ScatterPoint point;
     Vec3 emission; /* light that the media emit towards the ray's origin, as far as the walk would go unscattered */
 } MediaWalk;
@@ -93,11 +95,12 @@ SHARED_FUNCTION MediaWalk media_walk_begin(uint medium)
 }
 
 /* Of a ray for closest hits. */
-SHARED_FUNCTION MediaWalk media_walk_load(__global const uint *rays, uint stride, uint item)
+SHARED_FUNCTION MediaWalk media_walk_load(const SceneView *scene, __global const uint *rays, uint stride, uint item)
 {
     MediaWalk walk = media_walk_begin(state_load(rays, stride, RAY_MEDIUM, item));
     walk.target = state_load_float(rays, stride, RAY_TARGET, item);
     walk.channel = state_load(rays, stride, RAY_CHANNEL, item);
+    walk.gathers = SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION);
     return walk;
 }
 
@@ -127,16 +130,6 @@ SHARED_FUNCTION float emission_part(float emission, float extinction, float dist
     return emission * (1.0f - float_exp(-x)) / extinction;
 }
 
-/* Adds the light that the next part of a ray emits; walk->depth is still that before it. lengths: as of
- * optical_depth_add: in a grid, emission and extinction have the same factor. */
-SHARED_FUNCTION void media_walk_emission(__global const Medium *medium, Vec3 lengths, MediaWalk *walk)
-{
-    Vec3 emission = vec3(emission_part(medium->emission.x, medium->extinction.x, lengths.x),
-                         emission_part(medium->emission.y, medium->extinction.y, lengths.y),
-                         emission_part(medium->emission.z, medium->extinction.z, lengths.z));
-    walk->emission = vec3_add(walk->emission, vec3_mul(transmittance(walk->depth.all), emission));
-}
-
 /* A part of a ray that is in a single medium. */
 typedef struct RayPart {
     const Ray *ray;
@@ -144,6 +137,29 @@ typedef struct RayPart {
     float distance; /* up to its end */
     bool surface; /* which is on one */
 } RayPart;
+
+/* Whether the emission of the medium, which has a grid, differs from extinction by more than a factor. */
+SHARED_FUNCTION bool medium_emission_varies(const SceneView *scene, __global const Medium *medium)
+{
+    return SCENE_HAS(scene, FEATURE_MEDIUM_GRID) && medium->grid != 0u &&
+           scene->grids[medium->grid - 1u].emission != 0u && !vec3_is_zero(medium->emission);
+}
+
+/* Adds the light that the next part of a ray emits; walk->depth is still that before it. lengths: as of
+ * optical_depth_add: where emission does not vary, it has the same factor as extinction. */
+SHARED_FUNCTION void media_walk_emission(const SceneView *scene, const RayPart *part, Vec3 lengths, MediaWalk *walk)
+{
+    __global const Medium *medium = scene->media + walk->medium;
+    Vec3 emission;
+    if (medium_emission_varies(scene, medium))
+        emission =
+            grid_emission(scene, medium, part->ray->o, vec3_scale(part->ray->d, 1.0f / part->length), part->distance);
+    else
+        emission = vec3(emission_part(medium->emission.x, medium->extinction.x, lengths.x),
+                        emission_part(medium->emission.y, medium->extinction.y, lengths.y),
+                        emission_part(medium->emission.z, medium->extinction.z, lengths.z));
+    walk->emission = vec3_add(walk->emission, vec3_mul(transmittance(walk->depth.all), emission));
+}
 
 /* Scatters the ray at the distance `near` from its origin. lengths: as of optical_depth_add, up to the point. */
 SHARED_FUNCTION void media_walk_scatter_at(const SceneView *scene, const RayPart *part, float near, Vec3 lengths,
@@ -194,7 +210,7 @@ SHARED_FUNCTION_APART Vec3 media_walk_grid(const SceneView *scene, const RayPart
         media_walk_scatter_at(scene, part, column.distance, column.sums, walk);
     else if (scatters)
         walk->target -= attenuation(coefficient, vec3_component(column.sums, walk->channel));
-    if (column.reached && SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
+    if (column.reached && SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION) && walk->gathers)
         column = grid_column(scene, medium->grid - 1u, part->ray->o, w, part->distance, 0u, FLOAT_INFINITY);
     return column.sums;
 }
@@ -214,8 +230,8 @@ SHARED_FUNCTION bool media_walk_on(const SceneView *scene, Ray *ray, const Hit *
         lengths = media_walk_grid(scene, &part, walk);
     else if (SCENE_HAS(scene, FEATURE_SCATTERING))
         media_walk_scatter(scene, &part, walk);
-    if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
-        media_walk_emission(scene->media + walk->medium, lengths, walk);
+    if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION) && walk->gathers)
+        media_walk_emission(scene, &part, lengths, walk);
     else if (walk->scattered)
         return false;
     optical_depth_add(scene, &walk->depth, walk->medium, lengths);

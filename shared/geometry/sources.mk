@@ -5,6 +5,7 @@ SHARED_FILES += \
 	shared/geometry/curve.h \
 	shared/geometry/cylinder.h \
 	shared/geometry/disk.h \
+	shared/geometry/grid_emission.h \
 	shared/geometry/media_walk.h \
 	shared/geometry/medium.h \
 	shared/geometry/medium_grid.h \

@@ -24,7 +24,7 @@ __kernel void trace_closest(__global const FrameParams *restrict frame, __global
         hit_store(hits, stride, item, bvh_closest(scene, bvh, ray));
         return;
     }
-    MediaWalk walk = media_walk_load(rays, stride, item);
+    MediaWalk walk = media_walk_load(scene, rays, stride, item);
     Hit hit;
     do
         hit = bvh_closest(scene, bvh, ray);

@@ -319,6 +319,12 @@ typedef struct MediumGrid {
     float low; /* its box: along each axis, coordinates from low to low + size */
     uint words; /* of a sample: GRID_COLORS */
     uint bricks; /* first word, in texels, of a table: for each brick, x fastest, its samples' first word or NONE */
+    uint emission; /* 1 + index of the grid of the medium's emission (geometry/grid_emission.h); 0: emission has the
+                      factor of extinction */
+    /* Of a grid of emission: */
+    uint aligned; /* 1: its samples are at those of extinction, up to a shift by whole cells; 0: somewhere else */
+    uint table; /* first float in `lookup` of the colours of black bodies; NONE: there are no temperatures */
+    float kelvin_scale, kelvin_offset; /* temperature: scale times factor, plus offset */
 } MediumGrid;
 
 /* Numbers of media are below this. */

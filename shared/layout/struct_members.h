@@ -160,6 +160,11 @@
     MEMBER(MediumGrid, low)                                                                                            \
     MEMBER(MediumGrid, words)                                                                                          \
     MEMBER(MediumGrid, bricks)                                                                                         \
+    MEMBER(MediumGrid, emission)                                                                                       \
+    MEMBER(MediumGrid, aligned)                                                                                        \
+    MEMBER(MediumGrid, table)                                                                                          \
+    MEMBER(MediumGrid, kelvin_scale)                                                                                   \
+    MEMBER(MediumGrid, kelvin_offset)                                                                                  \
     STRUCT(PixelFilter)                                                                                                \
     MEMBER(PixelFilter, kind)                                                                                          \
     MEMBER(PixelFilter, radius_x)                                                                                      \

@@ -49,6 +49,47 @@ START_TEST(test_blackbody)
 }
 END_TEST
 
+/* Planck's law with the constants of CODATA 2018, up to a factor. */
+static double planck(double nanometre, double kelvin)
+{
+    double metre = nanometre * 1e-9;
+    return pow(metre, -5.0) / expm1(6.62607015e-34 * 299792458.0 / (metre * 1.380649e-23 * kelvin));
+}
+
+/* The observer's luminance by the fit of Wyman, Sloan and Shirley, "Simple analytic approximations to the CIE XYZ color
+ * matching functions", 2013, which is off by less than 1 %. */
+static double observer(double nanometre)
+{
+    double a = (nanometre - 568.8) * (nanometre < 568.8 ? 0.0213 : 0.0247),
+           b = (nanometre - 530.9) * (nanometre < 530.9 ? 0.0613 : 0.0322);
+    return 0.821 * exp(-0.5 * a * a) + 0.286 * exp(-0.5 * b * b);
+}
+
+/* Luminance of black bodies whose spectrum has the maximum 1; their colour is that of others. */
+START_TEST(test_blackbody_relative)
+{
+    static const float KELVINS[] = {700.0f, 1000.0f, 1500.0f, 3000.0f, 6500.0f, 20000.0f};
+    float rgb[3], color[3];
+    for (size_t i = 0; i < sizeof KELVINS / sizeof *KELVINS; ++i) {
+        double most = 0.0, sum = 0.0, kelvin = (double)KELVINS[i];
+        for (double x = 50.0; x < 6000.0; x += 1.0)
+            most = fmax(most, planck(x, kelvin));
+        for (double x = 360.0; x <= 830.0; x += 1.0)
+            sum += observer(x) * planck(x, kelvin) / most;
+        color_blackbody_relative(KELVINS[i], rgb);
+        color_blackbody(KELVINS[i], color);
+        ck_assert_double_eq_tol(luminance(rgb) / sum, 1.0, kelvin < 1200.0 ? 0.1 : 0.02); /* the fit's far red */
+        ck_assert_double_eq_tol((double)(rgb[1] / rgb[0]), (double)(color[1] / color[0]), 1e-5);
+    }
+    color_blackbody_relative(100.0f, rgb);
+    ck_assert_float_eq(rgb[0], 0.0f);
+    color_blackbody_relative(0.0f, rgb);
+    ck_assert_float_eq(rgb[0], 0.0f);
+    color_blackbody_relative(1e9f, rgb);
+    ck_assert_float_lt(rgb[0], 1e-3f);
+}
+END_TEST
+
 static void named(const char *name, ColorRole role, float rgb[3])
 {
     Error error;
@@ -208,6 +249,7 @@ TCase *texture_color_tcase(void)
     TCase *tcase = tcase_create("color");
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_test(tcase, test_blackbody);
+    tcase_add_test(tcase, test_blackbody_relative);
     tcase_add_test(tcase, test_metals);
     tcase_add_test(tcase, test_glass);
     tcase_add_test(tcase, test_illuminants);

@@ -108,6 +108,64 @@ START_TEST(rgb_grid)
 }
 END_TEST
 
+/* The grids of emission, their factors, and what these are parts of. */
+START_TEST(grid_emission_read)
+{
+    static const struct {
+        const char *text;
+        Vec3 emission;
+        uint words;
+        float first; /* of the second sample's words */
+    } cases[] = {
+        {"\"uniformgrid\" \"float density\" [ 1 2 ] \"rgb Le\" [ 1 2 3 ]", {4.0f, 8.0f, 12.0f}, 0, 0.0f},
+        {"\"uniformgrid\" \"float density\" [ 1 2 ] \"rgb Le\" [ 1 2 3 ] \"float Lescale\" [ 5 3 ]",
+         {20.0f, 40.0f, 60.0f},
+         1,
+         0.6f},
+        {"\"uniformgrid\" \"float density\" [ 1 2 ] \"float temperature\" [ 900 300 ]",
+         {4.0f, 4.0f, 4.0f},
+         1,
+         0.333333f},
+        {"\"uniformgrid\" \"float density\" [ 1 2 ] \"float temperature\" [ 300 900 ] \"float Lescale\" [ 0.25 0.5 ]\n"
+         "\"float temperatureoffset\" 100 \"float temperaturecutoff\" 7 \"float temperaturescale\" 2",
+         {2.0f, 2.0f, 2.0f},
+         2,
+         1.0f},
+        {"\"uniformgrid\" \"float density\" [ 1 2 ] \"float Lescale\" [ 0.25 0.5 ]", {0.0f, 0.0f, 0.0f}, 0, 0.0f},
+        {"\"rgbgrid\" \"rgb sigma_a\" [ 1 1 2  4 2 2 ] \"rgb Le\" [ 1 1 1  2 1 0 ] \"float Lescale\" 0.5",
+         {2.0f * 8.0f * 0.5f * 106.856895f, 2.0f * 2.0f * 0.5f * 106.856895f, 2.0f * 2.0f * 0.5f * 106.856895f},
+         6,
+         1.0f}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[512];
+        Scene scene;
+        snprintf(text, sizeof text,
+                 "MakeNamedMedium \"m\" \"string type\" %s \"integer nx\" 2 \"float scale\" 2 WorldBegin",
+                 cases[i].text);
+        import_text(text, &scene);
+        const Medium *m = &ELEMENT(&scene, media, Medium, 1);
+        Vec3 e = cases[i].emission;
+        assert_vec3(m->emission, e.x, e.y, e.z, 1e-5f * (1.0f + e.x));
+        const MediumGrid *grid = &ELEMENT(&scene, grids, MediumGrid, 0);
+        ck_assert_uint_eq(grid->emission, cases[i].words > 0 ? 2 : 0);
+        if (cases[i].words > 0) {
+            const SceneView view = {.grids = grid, .texels = scene.texels.data};
+            Vec3 value = grid_factors(&view, 1u, vec3(0.75f, 0.5f, 0.5f), false);
+            ck_assert_uint_eq(grid[1].words, cases[i].words);
+            ck_assert_uint_eq(grid[1].aligned, 1);
+            if (cases[i].words != 2)
+                TEST_NEAR(value.x, cases[i].first, 1e-5);
+            ck_assert_uint_eq(grid[1].table != NONE, i == 2 || i == 3);
+        }
+        if (i == 3) {
+            ASSERT_FLOAT(grid[1].kelvin_scale, 1800.0f);
+            ASSERT_FLOAT(grid[1].kelvin_offset, -200.0f);
+        }
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
 /* pbrt's density of clouds, written down from its definition, in double but for the noise. */
 static double cloud_at(const double p[3], double density, double wispiness, double frequency)
 {
@@ -290,6 +348,7 @@ TCase *import_media_case(void)
     tcase_add_test(tcase, presets);
     tcase_add_test(tcase, uniform_grid);
     tcase_add_test(tcase, rgb_grid);
+    tcase_add_test(tcase, grid_emission_read);
     tcase_add_test(tcase, cloud);
     tcase_add_test(tcase, grid_bounds);
     tcase_add_test(tcase, interfaces);

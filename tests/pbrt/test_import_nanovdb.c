@@ -192,6 +192,35 @@ START_TEST(medium)
 }
 END_TEST
 
+/* A grid of temperatures makes it emit, by its own map, unless Lescale is 0 or there is none. */
+START_TEST(temperature)
+{
+    static const char *const PARAMETERS[] = {"\"string temperaturename\" \"density\" \"float Lescale\" 4",
+                                             "\"string temperaturename\" \"density\" \"float Lescale\" 0", ""};
+    nanovdb_write("grid.nvdb", 1);
+    for (int i = 0; i < 3; ++i) {
+        char text[512];
+        Scene scene;
+        snprintf(text, sizeof text,
+                 "WorldBegin MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"grid.nvdb\"\n"
+                 "\"float sigma_a\" 2 \"float temperaturecutoff\" 0.1 \"float temperaturescale\" 1000 %s",
+                 PARAMETERS[i]);
+        import_text_in(text, test_folder, false, &scene);
+        const MediumGrid *grid = &ELEMENT(&scene, grids, MediumGrid, 0);
+        float emission = i == 0 ? 2.0f * 0.86f * 4.0f : 0.0f;
+        assert_vec3(ELEMENT(&scene, media, Medium, 1).emission, emission, emission, emission, 1e-5f);
+        ck_assert_uint_eq(grid->emission, i == 0 ? 2 : 0);
+        ck_assert_uint_eq(scene.grids.count, i == 0 ? 2 : 1);
+        if (i == 0) {
+            TEST_NEAR(grid[1].kelvin_scale, 860.0, 1e-3);
+            TEST_NEAR(grid[1].kelvin_offset, -100.0, 1e-3);
+            ck_assert_uint_eq(grid[1].aligned, 1);
+        }
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
 /* ---- bad files --------------------------------------------------------------------------------------------------- */
 
 static void refused(const char *part)
@@ -271,8 +300,9 @@ START_TEST(messages)
         {"", "lacks \"string filename\""},
         {"\"string filename\" \"none.nvdb\"", "cannot read"},
         {"\"string filename\" \"grid.nvdb\" \"string gridname\" \"smoke\"", "has no grid \"smoke\""},
-        {"\"string filename\" \"grid.nvdb\" \"string temperaturename\" \"density\"",
-         "emission of a medium by its temperature is not supported"}};
+        {"\"string filename\" \"grid.nvdb\" \"float temperaturescale\" -1", "\"temperaturescale\" of the medium"},
+        {"\"string filename\" \"grid.nvdb\" \"float temperaturescale\" 1e38 \"float temperatureoffset\" 9",
+         "temperatures of the medium \"m\" overflow"}};
     nanovdb_write("grid.nvdb", 0);
     for (size_t i = 0; i < sizeof PARTS / sizeof *PARTS; ++i) {
         char text[256];
@@ -296,6 +326,7 @@ TCase *import_nanovdb_case(void)
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
     tcase_add_loop_test(tcase, values, 0, 2);
     tcase_add_test(tcase, medium);
+    tcase_add_test(tcase, temperature);
     tcase_add_test(tcase, refusals);
     tcase_add_test(tcase, damage);
     tcase_add_test(tcase, messages);

@@ -297,9 +297,8 @@ START_TEST(test_emission_of_grid)
         fog[c] = 2.0 * LE[c] * 0.5 * (1.0 - t * t);
     }
 #define FIRE(scattering)                                                                                               \
-    "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float scale\" 0.5 \"rgb Le\" [ 3 2 0.5 ]\n"            \
-    "\"float Lescale\" [" NINE(" 2 2") " ]\n" GRID_PLACE "\"float sigma_s\" " scattering                               \
-                                       " \"float density\" [" NINE(" 2") NINE(" 6") " ]\n"
+    "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float scale\" 0.5 \"rgb Le\" [ 6 4 1 ]\n" GRID_PLACE   \
+    "\"float sigma_s\" " scattering " \"float density\" [" NINE(" 2") NINE(" 6") " ]\n"
     for (int i = 0; i < CASE_COUNT; ++i) {
         media_color(mean, CASES[i].integrator(), 16, 3,
                     ALONG_Z(FIRE("0")) LAMP "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
@@ -308,6 +307,72 @@ START_TEST(test_emission_of_grid)
                     ALONG_Z(FIRE("1")) "LightSource \"point\"\n"
                                        "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
         media_check(&CASES[i], "emission of a grid that scatters", mean, fog, ANALYTIC_TOLERANCE);
+    }
+}
+END_TEST
+
+/* Between samples at z = 1/4 and 3/4, and half of the way to 0 at the faces. */
+static double ramp_value(double z, double first, double second)
+{
+    if (z < 0.25)
+        return first * (0.5 + 2.0 * z);
+    return z < 0.75 ? first + (second - first) * (2.0 * z - 0.5) : second * (2.5 - 2.0 * z);
+}
+
+/* The integral of transmittance times absorption times radiance from z = 0 to `end` in steps, for samples at z = 1/4 and
+ * 3/4. */
+static double ramp_light(double extinction, double absorption, const double density[2], const double radiance[2],
+                         double end)
+{
+    enum { STEPS = 20000 };
+    double sum = 0.0, depth = 0.0;
+    for (int i = 0; i < STEPS; ++i) {
+        double z = end * (i + 0.5) / STEPS, d = ramp_value(z, density[0], density[1]) * end / STEPS;
+        sum += absorption * d * ramp_value(z, radiance[0], radiance[1]) * exp(-depth - 0.5 * extinction * d);
+        depth += extinction * d;
+    }
+    return sum;
+}
+
+#define FLICKERS                                                                                                       \
+    ALONG_Z("MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"float scale\" 0.5\n"                           \
+            "\"rgb Le\" [ 3 2 0.5 ] \"float Lescale\" [" NINE(" 1")                                                    \
+                NINE(" 4") " ]\n" GRID_PLACE "\"float density\" [" NINE(" 2") NINE(" 6") " ]\n")                       \
+    "LightSource \"point\"\n"
+
+/* Emission that varies otherwise than extinction, with scattering, by every integrator. */
+START_TEST(test_emission_that_varies)
+{
+    static const double LE[3] = {3.0, 2.0, 0.5}, DENSITY[2] = {2.0, 6.0};
+    static const double ABSORPTION[3][2] = {{2.0, 1.0}, {1.0, 3.0}, {3.0, 0.0}},
+                        RADIANCE[3][2] = {{1.0, 2.0}, {0.0, 4.0}, {2.0, 5.0}};
+    double fire[3], half[3], colors[3], mean[3];
+    const double scale[2] = {1.0, 4.0};
+    for (int c = 0; c < 3; ++c) {
+        const double radiance[2] = {LE[c] * scale[0], LE[c] * scale[1]}, *a = ABSORPTION[c];
+        fire[c] = ramp_light(1.0, 0.5, DENSITY, radiance, 1.0);
+        half[c] = ramp_light(1.0, 0.5, DENSITY, radiance, 0.5);
+        colors[c] = ramp_light(1.0, 1.0, a, RADIANCE[c], 1.0);
+    }
+    for (int i = 0; i < CASE_COUNT; ++i) {
+        media_color(mean, CASES[i].integrator(), 256, 1,
+                    FLICKERS "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission that varies", mean, fire, 1e-3);
+        media_color(mean, CASES[i].integrator(), 256, 1,
+                    FLICKERS "MediumInterface \"grid\" Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"
+                             "Shape \"bilinearmesh\" \"point3 P\" [ -4 -4 0.5  4 -4 0.5  -4 4 0.5  4 4 0.5 ]\n"
+                             "MediumInterface \"grid\" \"\" Material \"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission before a wall", mean, half, 1e-3);
+        media_color(
+            mean, CASES[i].integrator(), 256, 1,
+            ALONG_Z("MakeNamedMedium \"grid\" \"string type\" \"rgbgrid\" \"float Lescale\" 0.00935831\n" GRID_PLACE
+                    "\"rgb sigma_a\" [" NINE(" 2 1 3") NINE(" 1 3 0") " ] \"rgb sigma_s\" [" NINE(
+                        " 0 0 0 0 0 0") " ]\n"
+                                        "\"rgb Le\" [" NINE(" 1 0 2")
+                                            NINE(" 2 4 5") " ]\n") "LightSource \"point\"\n"
+                                                                   "MediumInterface \"grid\" \"\" Material "
+                                                                   "\"interface\"\n" SLAB);
+        media_check(&CASES[i], "emission of colours that varies", mean, colors, 1e-3);
     }
 }
 END_TEST
@@ -343,6 +408,7 @@ TCase *analytic_media_case(void)
     tcase_add_test(tcase, test_emission_behind);
     tcase_add_test(tcase, test_emission_of_fog);
     tcase_add_test(tcase, test_emission_of_grid);
+    tcase_add_test(tcase, test_emission_that_varies);
     tcase_set_timeout(tcase, 300);
     return tcase;
 }
