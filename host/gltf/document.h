@@ -38,6 +38,8 @@ typedef struct GltfMaterial {
     double emission[3]; /* factor times strength */
     double transmission;
     double ior;
+    double coat, coat_roughness; /* KHR_materials_clearcoat: factor, and roughness like `roughness` */
+    GltfTexture coat_texture, coat_roughness_texture;
     GltfTexture base_texture, metallic_roughness_texture, normal_texture, emissive_texture, transmission_texture;
     GltfAlpha alpha;
     double cutoff;

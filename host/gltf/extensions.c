@@ -5,9 +5,9 @@
 #include <string.h>
 
 /* Extensions that are read. */
-static const char *const READ[] = {"KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
-                                   "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_unlit",
-                                   "KHR_texture_transform"};
+static const char *const READ[] = {"KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+                                   "KHR_materials_ior",   "KHR_materials_specular",  "KHR_materials_transmission",
+                                   "KHR_materials_unlit", "KHR_texture_transform"};
 
 /* Extensions that describe nothing that is seen here. */
 static const char *const SILENT[] = {"KHR_xmp_json_ld", "KHR_materials_variants"};

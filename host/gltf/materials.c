@@ -88,6 +88,23 @@ static bool specular_is_partial(const GltfObject *specular, double factor)
     return factor != 0.0 && (factor != 1.0 || json_object_size(specular->json) > plain);
 }
 
+/* After the normal texture. */
+static void coat_read(GltfReader *reader, const GltfObject *object, GltfMaterial *material)
+{
+    GltfObject info;
+    const GltfObject coat = gltf_extension(reader, object, "KHR_materials_clearcoat");
+    material->coat = gltf_number(reader, &coat, "clearcoatFactor", 0.0, 0.0, 1.0);
+    if (gltf_extension(reader, object, "KHR_materials_unlit").json)
+        material->coat = 0.0;
+    material->coat_roughness = gltf_number(reader, &coat, "clearcoatRoughnessFactor", 0.0, 0.0, 1.0);
+    material->coat_texture = texture_read(reader, &coat, "clearcoatTexture", &info);
+    material->coat_roughness_texture = texture_read(reader, &coat, "clearcoatRoughnessTexture", &info);
+    const GltfTexture normals = texture_read(reader, &coat, "clearcoatNormalTexture", &info);
+    if (material->coat > 0.0 && normals.image != material->normal_texture.image)
+        log_message(LOG_WARNING, "%s: the clear coat of %s has the normals of what is below", reader->path,
+                    object->name);
+}
+
 static void extensions_read(GltfReader *reader, const GltfObject *object, GltfMaterial *material)
 {
     GltfObject info;
@@ -129,7 +146,7 @@ static void alpha_read(GltfReader *reader, const GltfObject *object, GltfMateria
         gltf_fail(reader, "%s.alphaMode is \"%.40s\" instead of OPAQUE, MASK or BLEND", object->name, mode);
 }
 
-#define TEXTURES_PER_MATERIAL 5
+#define TEXTURES_PER_MATERIAL 7
 
 static void textures_list(GltfMaterial *material, GltfTexture *out[TEXTURES_PER_MATERIAL])
 {
@@ -138,6 +155,8 @@ static void textures_list(GltfMaterial *material, GltfTexture *out[TEXTURES_PER_
     out[2] = &material->metallic_roughness_texture;
     out[3] = &material->emissive_texture;
     out[4] = &material->transmission_texture;
+    out[5] = &material->coat_texture;
+    out[6] = &material->coat_roughness_texture;
 }
 
 /* Shapes of pbrt have one set of texture coordinates, normal maps no transform of their own, and textures none that turns.
@@ -211,6 +230,7 @@ static void material_read(GltfReader *reader, size_t i, GltfMaterial *material)
     alpha_read(reader, &object, material);
     material->normal_texture = texture_read(reader, &object, "normalTexture", &info);
     material->normal_scale = gltf_number(reader, &info, "scale", 1.0, -1e6, 1e6);
+    coat_read(reader, &object, material);
     if (!reader->failed)
         textures_unify(reader, object.name, material);
 }

@@ -1,5 +1,5 @@
 /* Materials and textures as directives. Metallic-roughness becomes a mix of a conductor and a coated diffuse material,
- * transmission a mix of that with glass. */
+ * transmission a mix of that with glass, and a clear coat a mix with the same under another coat. */
 #include "base/log.h"
 #include "gltf/images.h"
 #include "gltf/translate.h"
@@ -77,16 +77,42 @@ static void color_print(Translation *translation, int material, const char *name
         PRINT(translation, " \"rgb %s\" [ %.9g %.9g %.9g ]", name, color[0], color[1], color[2]);
 }
 
-/* The alpha of the microfacet distribution: glTF's roughness squared. */
-static void roughness_print(Translation *translation, int material, bool textured)
+/* The index of refraction of clear coats. */
+#define COAT_IOR 1.5
+
+/* What the textures of a material are for; those that it has are printed. */
+typedef struct MaterialTextures {
+    bool roughness, metallic, transmission, coat, coat_roughness;
+} MaterialTextures;
+
+/* One of a material's parts: its name's suffix, and whether it is under the clear coat. */
+typedef struct MaterialPart {
+    const char *suffix;
+    bool coated;
+} MaterialPart;
+
+/* Parameter `name`, the alpha of a microfacet distribution: glTF's roughness squared. */
+static void alpha_print(Translation *translation, int material, const char *name, const char *texture, double roughness)
 {
-    double roughness = translation->gltf->materials[material].roughness;
-    if (textured)
-        PRINT(translation, " \"texture roughness\" \"%d alpha of roughness\"", material);
+    if (texture)
+        PRINT(translation, " \"texture %s\" \"%d alpha of %s\"", name, material, texture);
     else
-        PRINT(translation, " \"float roughness\" %.9g", roughness * roughness);
-    PRINT(translation, " \"bool remaproughness\" false");
+        PRINT(translation, " \"float %s\" %.9g", name, roughness * roughness);
 }
+
+/* The roughness of the base, or of the clear coat. */
+static void roughness_print(Translation *translation, int material, const char *name, const MaterialTextures *textures,
+                            bool coat)
+{
+    const GltfMaterial *from = &translation->gltf->materials[material];
+    if (coat)
+        alpha_print(translation, material, name, textures->coat_roughness ? "coat roughness" : NULL,
+                    from->coat_roughness);
+    else
+        alpha_print(translation, material, name, textures->roughness ? "roughness" : NULL, from->roughness);
+}
+
+#define NO_REMAP " \"bool remaproughness\" false"
 
 static void normal_print(Translation *translation, int material)
 {
@@ -131,90 +157,109 @@ static void mix_print(Translation *translation, int material, const char *suffix
         PRINT(translation, "] \"float amount\" %.9g\n", amount);
 }
 
-/* The part of diffuse light that the coat of a material reflects back inside; smooth where roughness has a texture. */
-static double internal_reflectance(const GltfMaterial *material, bool rough)
+/* The part of diffuse light that the upper coat of a material reflects back inside; of a smooth one where roughness has
+ * a texture. */
+static double internal_reflectance(const GltfMaterial *material, const MaterialTextures *textures, bool coated)
 {
-    double alpha = rough ? 0.0 : material->roughness * material->roughness;
-    return material->matte ? 0.0 : 1.0 - (double)coat_escape((float)alpha, (float)material->ior);
+    double root = coated ? material->coat_roughness : material->roughness, ior = coated ? COAT_IOR : material->ior;
+    bool textured = coated ? textures->coat_roughness : textures->roughness;
+    double alpha = textured ? 0.0 : root * root;
+    return material->matte && !coated ? 0.0 : 1.0 - (double)coat_escape((float)alpha, (float)ior);
 }
 
-/* The part that is not metal: a coat over a diffuse base whose albedo through the coat is the base colour. */
-static void dielectric_print(Translation *translation, int material, const char *suffix, bool rough)
+/* The part that is not metal: a coat over a diffuse base whose albedo through the coat is the base colour. A clear coat
+ * takes the place of the base's own. */
+static void dielectric_print(Translation *translation, int material, MaterialPart part,
+                             const MaterialTextures *textures)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
-    double internal = internal_reflectance(from, rough), base[3];
+    const bool matte = from->matte && !part.coated;
+    const char *name = part.coated ? "base under the coat" : "base";
+    double internal = internal_reflectance(from, textures, part.coated), base[3];
     const DerivedImage color = {
         .kind = DERIVED_COLOR, .factor = {from->base[0], from->base[1], from->base[2]}, .coat = internal};
     for (int k = 0; k < 3; ++k)
         base[k] = gltf_coat_base(from->base[k], internal);
-    bool textured = texture_print(translation, material, "base", &from->base_texture, color);
+    bool textured = texture_print(translation, material, name, &from->base_texture, color);
     if (textured)
         PRINT(translation, "\n");
-    named_begin(translation, material, suffix, from->matte ? "diffuse" : "coateddiffuse");
-    color_print(translation, material, "reflectance", textured, "base", base);
-    if (!from->matte) {
-        PRINT(translation, " \"float eta\" %.9g \"float thickness\" 0", from->ior);
-        roughness_print(translation, material, rough);
+    named_begin(translation, material, part.suffix, matte ? "diffuse" : "coateddiffuse");
+    color_print(translation, material, "reflectance", textured, name, base);
+    if (!matte) {
+        PRINT(translation, " \"float eta\" %.9g \"float thickness\" 0", part.coated ? COAT_IOR : from->ior);
+        roughness_print(translation, material, "roughness", textures, part.coated);
+        PRINT(translation, NO_REMAP);
     }
     named_end(translation, material);
 }
 
-static void metal_print(Translation *translation, int material, const char *suffix, bool rough)
+static void metal_print(Translation *translation, int material, MaterialPart part, const MaterialTextures *textures)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
+    const char *name = part.coated ? "metal under the coat" : "metal";
     const DerivedImage color = {.kind = DERIVED_COLOR, .factor = {from->base[0], from->base[1], from->base[2]}};
-    bool textured = texture_print(translation, material, "metal", &from->base_texture, color);
+    bool textured = texture_print(translation, material, name, &from->base_texture, color);
     if (textured)
         PRINT(translation, "\n");
-    named_begin(translation, material, suffix, "conductor");
-    color_print(translation, material, "reflectance", textured, "metal", from->base);
-    roughness_print(translation, material, rough);
+    named_begin(translation, material, part.suffix, part.coated ? "coatedconductor" : "conductor");
+    color_print(translation, material, "reflectance", textured, name, from->base);
+    roughness_print(translation, material, part.coated ? "conductor.roughness" : "roughness", textures, false);
+    if (part.coated) {
+        PRINT(translation, " \"float interface.eta\" %.9g \"float thickness\" 0", COAT_IOR);
+        roughness_print(translation, material, "interface.roughness", textures, true);
+    }
+    PRINT(translation, NO_REMAP);
     named_end(translation, material);
 }
 
-/* Glass: thin unless the material has a volume. A thin one is smooth. */
-static void glass_print(Translation *translation, int material, const char *suffix, bool rough)
+/* Glass: thin unless the material has a volume. A thin one is smooth. A clear coat changes nothing of it. */
+static void glass_print(Translation *translation, int material, MaterialPart part, const MaterialTextures *textures)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
     bool tinted = from->base_texture.image >= 0 || from->base[0] < 1.0 || from->base[1] < 1.0 || from->base[2] < 1.0;
-    if (tinted || (!from->volume && (rough || from->roughness > 0.0)))
+    bool rough = textures->roughness || from->roughness > 0.0;
+    if (!part.coated && (tinted || (!from->volume && rough)))
         log_message(LOG_WARNING, "%s: what materials[%d] transmits is not tinted%s", translation->gltf->path, material,
                     from->volume ? "" : ", and a thin pane is smooth");
-    named_begin(translation, material, suffix, from->volume ? "dielectric" : "thindielectric");
+    if (part.coated)
+        log_message(LOG_WARNING, "%s: the clear coat of materials[%d] leaves out what transmits light",
+                    translation->gltf->path, material);
+    named_begin(translation, material, part.suffix, from->volume ? "dielectric" : "thindielectric");
     PRINT(translation, " \"float eta\" %.9g", from->ior);
-    if (from->volume)
-        roughness_print(translation, material, rough);
+    if (from->volume) {
+        roughness_print(translation, material, "roughness", textures, false);
+        PRINT(translation, NO_REMAP);
+    }
     named_end(translation, material);
 }
 
-/* The square of roughness times its texture, as "N alpha of roughness". */
-static bool roughness_texture(Translation *translation, int material)
+/* The square of a roughness times its texture, as "N alpha of NAME". */
+static bool alpha_of_texture(Translation *translation, int material, const char *name, const GltfTexture *texture,
+                             double factor)
 {
-    const GltfMaterial *from = &translation->gltf->materials[material];
-    if (!channel_print(translation, material, "roughness", &from->metallic_roughness_texture, 1, from->roughness))
+    if (!channel_print(translation, material, name, texture, 1, factor))
         return false;
     PRINT(translation,
-          "Texture \"%d alpha of roughness\" \"float\" \"scale\" \"texture tex\" \"%d roughness\" \"texture scale\" "
-          "\"%d roughness\"\n",
-          material, material, material);
+          "Texture \"%d alpha of %s\" \"float\" \"scale\" \"texture tex\" \"%d %s\" \"texture scale\" \"%d %s\"\n",
+          material, name, material, name, material, name);
     return true;
 }
 
-/* The part that is not metal, as material SUFFIX: with transmission a mix. */
-static void nonmetal_print(Translation *translation, int material, const char *suffix, bool rough)
+/* The part that is not metal: with transmission a mix. */
+static void nonmetal_print(Translation *translation, int material, MaterialPart part, const MaterialTextures *textures)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
-    static const char *const PARTS[2] = {" coat", " glass"};
-    bool textured = from->transmission > 0.0 && channel_print(translation, material, "transmission",
-                                                              &from->transmission_texture, 0, from->transmission);
+    static const char *const PARTS[2][2] = {{" coat", " glass"}, {" coat under the coat", " glass under the coat"}};
     if (from->transmission == 0.0) {
-        dielectric_print(translation, material, suffix, rough);
-    } else if (from->transmission == 1.0 && !textured) {
-        glass_print(translation, material, suffix, rough);
+        dielectric_print(translation, material, part, textures);
+    } else if (from->transmission == 1.0 && !textures->transmission) {
+        glass_print(translation, material, part, textures);
     } else {
-        dielectric_print(translation, material, PARTS[0], rough);
-        glass_print(translation, material, PARTS[1], rough);
-        mix_print(translation, material, suffix, PARTS, textured ? "transmission" : NULL, from->transmission);
+        const char *const *parts = PARTS[part.coated];
+        dielectric_print(translation, material, (MaterialPart){parts[0], part.coated}, textures);
+        glass_print(translation, material, (MaterialPart){parts[1], part.coated}, textures);
+        mix_print(translation, material, part.suffix, parts, textures->transmission ? "transmission" : NULL,
+                  from->transmission);
     }
 }
 
@@ -228,23 +273,55 @@ static void alpha_texture(Translation *translation, int material)
         PRINT(translation, "\n");
 }
 
+static MaterialTextures textures_print(Translation *translation, int material)
+{
+    const GltfMaterial *from = &translation->gltf->materials[material];
+    MaterialTextures textures = {0};
+    textures.roughness =
+        alpha_of_texture(translation, material, "roughness", &from->metallic_roughness_texture, from->roughness);
+    textures.metallic = from->metallic > 0.0 && channel_print(translation, material, "metallic",
+                                                              &from->metallic_roughness_texture, 2, from->metallic);
+    textures.transmission =
+        (from->metallic < 1.0 || textures.metallic) && from->transmission > 0.0 &&
+        channel_print(translation, material, "transmission", &from->transmission_texture, 0, from->transmission);
+    textures.coat =
+        from->coat > 0.0 && channel_print(translation, material, "clear coat", &from->coat_texture, 0, from->coat);
+    textures.coat_roughness = from->coat > 0.0 && alpha_of_texture(translation, material, "coat roughness",
+                                                                   &from->coat_roughness_texture, from->coat_roughness);
+    alpha_texture(translation, material);
+    return textures;
+}
+
+/* Metal, what is not, or a mix of both. */
+static void base_print(Translation *translation, int material, MaterialPart part, const MaterialTextures *textures)
+{
+    const GltfMaterial *from = &translation->gltf->materials[material];
+    static const char *const PARTS[2][2] = {{" dielectric", " metal"},
+                                            {" dielectric under the coat", " metal under the coat"}};
+    if (from->metallic == 0.0) {
+        nonmetal_print(translation, material, part, textures);
+    } else if (from->metallic == 1.0 && !textures->metallic) {
+        metal_print(translation, material, part, textures);
+    } else {
+        const char *const *parts = PARTS[part.coated];
+        nonmetal_print(translation, material, (MaterialPart){parts[0], part.coated}, textures);
+        metal_print(translation, material, (MaterialPart){parts[1], part.coated}, textures);
+        mix_print(translation, material, part.suffix, parts, textures->metallic ? "metallic" : NULL, from->metallic);
+    }
+}
+
 static void material_print(Translation *translation, int material)
 {
     const GltfMaterial *from = &translation->gltf->materials[material];
-    static const char *const PARTS[2] = {" dielectric", " metal"};
-    bool rough = roughness_texture(translation, material);
-    bool mixed = from->metallic > 0.0 &&
-                 channel_print(translation, material, "metallic", &from->metallic_roughness_texture, 2, from->metallic);
-    alpha_texture(translation, material);
-    if (from->metallic == 0.0) {
-        nonmetal_print(translation, material, "", rough);
-    } else if (from->metallic == 1.0 && !mixed) {
-        metal_print(translation, material, "", rough);
-    } else {
-        nonmetal_print(translation, material, PARTS[0], rough);
-        metal_print(translation, material, PARTS[1], rough);
-        mix_print(translation, material, "", PARTS, mixed ? "metallic" : NULL, from->metallic);
+    static const char *const PARTS[2] = {" bare", " under the coat"};
+    const MaterialTextures textures = textures_print(translation, material);
+    if (from->coat == 0.0 || (from->coat == 1.0 && !textures.coat)) {
+        base_print(translation, material, (MaterialPart){"", from->coat > 0.0}, &textures);
+        return;
     }
+    base_print(translation, material, (MaterialPart){PARTS[0], false}, &textures);
+    base_print(translation, material, (MaterialPart){PARTS[1], true}, &textures);
+    mix_print(translation, material, "", PARTS, textures.coat ? "clear coat" : NULL, from->coat);
 }
 
 void gltf_material_alpha(Translation *translation, int material)

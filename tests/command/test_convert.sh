@@ -71,6 +71,7 @@ done <<'EOF'
 "pbrMetallicRoughness": { "baseColorFactor": [ 0.9, 0.6, 0.3, 1 ], "metallicFactor": 0, "roughnessFactor": 0.7 }
 "normalTexture": { "index": 0, "scale": 0.3 }, "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicRoughnessTexture": { "index": 0 } }
 "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0 }, "extensions": { "KHR_materials_transmission": { "transmissionFactor": 0.7 } }
+"pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0.5 }, "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 0.7, "clearcoatRoughnessTexture": { "index": 0 }, "clearcoatRoughnessFactor": 0.5 } }
 "alphaMode": "MASK", "doubleSided": true, "emissiveFactor": [ 1, 1, 1 ], "emissiveTexture": { "index": 0 }, "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } }
 EOF
 file_exists 3-meshes/0.ply

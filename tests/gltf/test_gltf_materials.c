@@ -106,6 +106,60 @@ START_TEST(transmission_is_glass)
 }
 END_TEST
 
+/* A clear coat lies over metal, takes the place of the base's own coat, and is a mix with what is not under it. */
+START_TEST(clear_coats)
+{
+    Scene scene;
+    gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.9,0.5,0.1,1],\"roughnessFactor\":0.5},"
+                        "\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,"
+                        "\"clearcoatRoughnessFactor\":0.3}}"),
+               &scene);
+    const Material *m = gltf_material(&scene, 0);
+    ck_assert_uint_eq(m->kind, MATERIAL_COATED_CONDUCTOR);
+    TEST_NEAR(m->eta, 1.5, 0);
+    TEST_NEAR(m->roughness_u.value, 0.09, 1e-7);
+    TEST_NEAR(m->base_u.value, 0.25, 1e-7);
+    TEST_NEAR(m->scale, 0, 0);
+    scene_destroy(&scene);
+    gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1],\"metallicFactor\":0},"
+                        "\"extensions\":{\"KHR_materials_ior\":{\"ior\":1.8},\"KHR_materials_clearcoat\":{"
+                        "\"clearcoatFactor\":0.25}}"),
+               &scene);
+    m = gltf_material(&scene, 0);
+    ck_assert_uint_eq(m->kind, MATERIAL_MIX);
+    TEST_NEAR(m->amount.value, 0.25, 0);
+    const Material *bare = &ELEMENT(&scene, materials, Material, m->mix_a),
+                   *coated = &ELEMENT(&scene, materials, Material, m->mix_b);
+    ck_assert_uint_eq(bare->kind, MATERIAL_COATED_DIFFUSE);
+    ck_assert_uint_eq(coated->kind, MATERIAL_COATED_DIFFUSE);
+    TEST_NEAR(bare->eta, 1.8, 1e-6);
+    TEST_NEAR(bare->roughness_u.value, 1, 0);
+    TEST_NEAR(coated->eta, 1.5, 0);
+    TEST_NEAR(coated->roughness_u.value, 0, 0);
+    double base = (double)coated->color0.value.x;
+    TEST_NEAR((1.0 - INTERNAL) * base / (1.0 - INTERNAL * base), 0.5, 1e-4);
+    scene_destroy(&scene);
+}
+END_TEST
+
+START_TEST(clear_coats_leave_out)
+{
+    Scene scene;
+    gltf_scene(MATERIAL("\"pbrMetallicRoughness\":{\"metallicFactor\":0},\"extensions\":{"
+                        "\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
+                        "\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1}}"),
+               &scene);
+    ck_assert_uint_eq(gltf_material(&scene, 0)->kind, MATERIAL_THIN_DIELECTRIC);
+    gltf_says("the clear coat of materials[0] leaves out what transmits light");
+    scene_destroy(&scene);
+    gltf_scene(MATERIAL("\"extensions\":{\"KHR_materials_unlit\":{},"
+                        "\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1}}"),
+               &scene);
+    ck_assert_uint_eq(gltf_material(&scene, 0)->kind, MATERIAL_DIFFUSE);
+    scene_destroy(&scene);
+}
+END_TEST
+
 START_TEST(surfaces_without_gloss_are_diffuse)
 {
     static const char *const EXTENSIONS[] = {"\"KHR_materials_unlit\":{}",
@@ -220,6 +274,8 @@ TCase *gltf_materials_case(void)
     tcase_add_test(tests, rough_coats_keep_the_albedo);
     tcase_add_test(tests, metallic_is_a_mix);
     tcase_add_test(tests, transmission_is_glass);
+    tcase_add_test(tests, clear_coats);
+    tcase_add_test(tests, clear_coats_leave_out);
     tcase_add_test(tests, surfaces_without_gloss_are_diffuse);
     tcase_add_test(tests, partial_gloss_is_said);
     tcase_add_test(tests, emission_has_its_strength);

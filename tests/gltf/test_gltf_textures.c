@@ -133,6 +133,27 @@ START_TEST(transmission_is_red)
 }
 END_TEST
 
+/* The coat's factor is red, its roughness green, whose square is the alpha. */
+START_TEST(clear_coats_are_red_and_green)
+{
+    Scene scene;
+    gltf_scene(MATERIAL("\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_clearcoat\":{"
+                        "\"clearcoatFactor\":0.5,\"clearcoatTexture\":{\"index\":0},"
+                        "\"clearcoatRoughnessFactor\":0.8,\"clearcoatRoughnessTexture\":{\"index\":0}}}"),
+               &scene);
+    gltf_says("the clear coat of materials[0] has the normals of what is below");
+    const Material *m = gltf_material(&scene, 0);
+    uint amount = m->amount.program, alpha = ELEMENT(&scene, materials, Material, m->mix_b).roughness_u.program;
+    scene_end(&scene);
+    for (int i = 0; i < 4; ++i) {
+        double green = 0.8 * PIXELS[i][1] / 255.0;
+        TEST_NEAR(number_value(&scene, amount, pixel_uv(i)), 0.5 * PIXELS[i][0] / 255.0, 1e-6);
+        TEST_NEAR(number_value(&scene, alpha, pixel_uv(i)), green * green, 1e-6);
+    }
+    scene_destroy(&scene);
+}
+END_TEST
+
 /* The normal that the map of material 0 has at pixel i. */
 static Vec3 map_normal(const Scene *scene, int i)
 {
@@ -290,6 +311,7 @@ TCase *gltf_textures_case(void)
     tcase_add_test(tests, roughness_is_green_and_metallic_blue);
     tcase_add_test(tests, alpha_is_that_of_the_base_color);
     tcase_add_test(tests, transmission_is_red);
+    tcase_add_test(tests, clear_coats_are_red_and_green);
     tcase_add_test(tests, normal_maps_have_their_scale);
     tcase_add_test(tests, transforms_scale_and_move);
     tcase_add_test(tests, turned_textures_turn_coordinates);
