@@ -103,7 +103,8 @@ static void scene_prepare(BenchScene *bench)
                         .displacement.program = NONE,
                         .normal_map = NONE,
                         .coat_table = NONE};
-    Light light = {.kind = LIGHT_POINT, .emission = {1.0f, 1.0f, 1.0f}, .image = NONE, .distribution = NONE};
+    LightData light = {
+        .kind = LIGHT_POINT, .emission = {1.0f, 1.0f, 1.0f}, .detail.image = NONE, .detail.distribution = NONE};
     MeshData mesh = {.positions = &bench->positions[0].x,
                      .vertex_count = bench->vertex_count,
                      .indices = bench->indices,

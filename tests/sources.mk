@@ -273,6 +273,7 @@ tests_test_light_SOURCES = tests/light/test_light.c \
 	tests/light/test_light_mis.c \
 	tests/light/test_light_portal.c \
 	tests/light/test_light_select.c \
+	tests/light/test_light_bounds.c \
 	tests/light/test_light_tree.c
 
 tests_test_math_SOURCES = tests/math/test_math.c \

@@ -57,9 +57,9 @@ edit shared/light/delta.h "/^\/\* ---- point -.*/{
 r $work/bulb.h
 N
 }"
-edit host/scene/light_setup.c 's/^static double distant_power/static double bulb_power(const Light *light, double disk)\n{\n    return point_power(light, disk);\n}\n\n&/'
+edit host/scene/light_setup.c 's/^static double distant_power/static double bulb_power(const LightDetail *light, double disk)\n{\n    return point_power(light, disk);\n}\n\n&/'
 edit host/pbrt/lights.c 's/^static void distant_read/static void bulb_read(LightReader *r)\n{\n    point_read(r);\n    r->light.kind = LIGHT_BULB;\n}\n\n&/'
-edit tests/light/test_emit_direction.c 's/^    POINT,$/    BULB,\n    POINT,/; s/^    case POINT:$/    case BULB:\n        fixture_add_light(f, (Light){.kind = LIGHT_BULB, .emission = {2, 2, 2}, .position = {1, 2, 3}});\n        break;\n&/'
+edit tests/light/test_emit_direction.c 's/^    POINT,$/    BULB,\n    POINT,/; s/^    case POINT:$/    case BULB:\n        fixture_add_light(f, (LightData){.kind = LIGHT_BULB, .emission = {2, 2, 2}, .detail.position = {1, 2, 3}});\n        break;\n&/'
 files 5 'a light'
 
 # ---- an integrator --------------------------------------------------------------------------------------------------

@@ -71,8 +71,8 @@ static void directions_set(LightReader *r, Matrix to_world, Matrix to_light)
         to_world.m[i] /= scale;
         to_light.m[i] *= scale;
     }
-    r->light.world_from_light = matrix_affine(to_world.m);
-    r->light.light_from_world = matrix_affine(to_light.m);
+    r->light.detail.world_from_light = matrix_affine(to_world.m);
+    r->light.detail.light_from_world = matrix_affine(to_light.m);
 }
 
 /* ---- infinite ---------------------------------------------------------------------------------------------------- */
@@ -139,7 +139,7 @@ static void map_load(LightReader *r, const Image *image, const char *path, float
         r->light.kind = LIGHT_INFINITE_IMAGE;
     r->light.emission = light_emission_make(r->list, WHITE, scale);
     r->list->failed =
-        r->list->failed || !texture_image_add(r->im->scene, image, &options, &r->light.image, r->list->error);
+        r->list->failed || !texture_image_add(r->im->scene, image, &options, &r->light.detail.image, r->list->error);
     free(rgb);
 }
 
@@ -189,7 +189,8 @@ static void portal_read(LightReader *r)
         return;
     }
     r->light.kind = LIGHT_PORTAL;
-    r->list->failed = r->list->failed || !scene_add_portal(r->im->scene, &portal, &r->light.portal, r->list->error);
+    r->list->failed =
+        r->list->failed || !scene_add_portal(r->im->scene, &portal, &r->light.detail.portal, r->list->error);
 }
 
 void infinite_read(LightReader *r)
@@ -222,7 +223,7 @@ static void intensity_add(LightReader *r, const Image *image)
     TextureImageOptions options = {
         .encoding = ENCODING_SRGB, .gamma = 1.0f, .wrap = WRAP_CLAMP, .filter = FILTER_POINT};
     r->list->failed =
-        r->list->failed || !texture_image_add(r->im->scene, image, &options, &r->light.image, r->list->error);
+        r->list->failed || !texture_image_add(r->im->scene, image, &options, &r->light.detail.image, r->list->error);
 }
 
 static const char *intensity_open(LightReader *r, Image *image)
@@ -329,7 +330,7 @@ static void projection_directions_set(LightReader *r, const double extent[2])
 {
     const Matrix image = matrix_scale(extent[0], extent[1], 1.0);
     const Matrix square = matrix_scale(1.0 / extent[0], 1.0 / extent[1], 1.0);
-    Light *light = &r->light;
+    LightDetail *light = &r->light.detail;
     directions_set(r, matrix_multiply(&r->ctm, &image), matrix_multiply(&square, &r->inverse));
     light->direction = world_direction(r, 0.0, 0.0, 1.0);
     light->cos_total = 1.0f;

@@ -11,7 +11,7 @@ typedef struct LightReader {
     PbrtImport *im;
     ParamList *list;
     Matrix ctm, inverse; /* the current transform */
-    Light light;
+    LightData light;
 } LightReader;
 
 /* "scale"; an error if it is negative. */

@@ -44,8 +44,8 @@ void light_position_set(LightReader *r, const float from[3])
     double p[3];
     to_doubles(from, p);
     matrix_point(&r->ctm, p, p);
-    r->light.position = vec3((float)p[0], (float)p[1], (float)p[2]);
-    if (!vec3_finite(r->light.position))
+    r->light.detail.position = vec3((float)p[0], (float)p[1], (float)p[2]);
+    if (!vec3_finite(r->light.detail.position))
         param_error(r->list, "from", "the position of %s is not finite", r->list->owner);
 }
 
@@ -62,7 +62,7 @@ static void direction_set(LightReader *r, const float from[3], const float to[3]
     if (!(length > 0.0) || !isfinite(length))
         param_error(r->list, "to", "%s has no direction: \"from\" and \"to\" coincide", r->list->owner);
     else
-        r->light.direction = vec3((float)(b[0] / length), (float)(b[1] / length), (float)(b[2] / length));
+        r->light.detail.direction = vec3((float)(b[0] / length), (float)(b[1] / length), (float)(b[2] / length));
 }
 
 static void point_read(LightReader *r)
@@ -99,8 +99,8 @@ static void spot_read(LightReader *r)
         scale *= (double)power / light_spot_solid_angle(cos_total, cos_falloff);
     r->light.kind = LIGHT_SPOT;
     r->light.emission = light_emission_make(r->list, intensity, scale);
-    r->light.cos_total = (float)cos_total;
-    r->light.cos_falloff = (float)cos_falloff;
+    r->light.detail.cos_total = (float)cos_total;
+    r->light.detail.cos_falloff = (float)cos_falloff;
     light_position_set(r, from);
     direction_set(r, from, to);
 }
@@ -153,8 +153,7 @@ bool import_light(PbrtImport *im, const char *kind)
     ParamList list;
     char owner[96];
     LightReader reader = {.im = im, .list = &list};
-    reader.light = (Light){
-        .flags = im->state.outside << LIGHT_MEDIUM_SHIFT, .primitive = NONE, .image = NONE, .distribution = NONE};
+    reader.light = (LightData){.detail = {.image = NONE, .distribution = NONE, .medium = im->state.outside}};
     size_t i = 0;
     while (i < KIND_COUNT && strcmp(kind, KINDS[i].name) != 0)
         ++i;

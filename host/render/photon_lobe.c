@@ -32,7 +32,7 @@
 
 bool photon_light_is_far(const PhotonLights *lights, uint light)
 {
-    return lights->view.lights[light].kind >= LIGHT_DISTANT;
+    return light_kind(&lights->view.lights[light]) >= LIGHT_DISTANT;
 }
 
 /* Sums the areas of a shape's lights, then turns each light's into a radius. A sphere shows a quarter of its area, a
@@ -44,11 +44,11 @@ static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
     if (!areas)
         return error_memory(error, shape_count * sizeof *areas, "lights");
     for (uint i = 0; i < view->frame->scene.light_count; ++i)
-        if (view->lights[i].kind == LIGHT_AREA)
+        if (light_kind(&view->lights[i]) == LIGHT_AREA)
             areas[view->primitives[view->lights[i].primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK] +=
                 (double)view->lights[i].area;
     for (uint i = 0; i < view->frame->scene.light_count; ++i) {
-        if (view->lights[i].kind != LIGHT_AREA)
+        if (light_kind(&view->lights[i]) != LIGHT_AREA)
             continue;
         uint word = view->primitives[view->lights[i].primitive].shape_and_kind;
         uint kind = word >> PRIMITIVE_KIND_SHIFT;
@@ -61,8 +61,8 @@ static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
 
 static Vec3 light_place(const SceneView *view, const Light *light)
 {
-    if (light->kind != LIGHT_AREA)
-        return light->position;
+    if (light_kind(light) != LIGHT_AREA)
+        return light_detail(view, light)->position;
     Box box = primitive_box(view, light->primitive);
     return box_center(&box);
 }
@@ -83,7 +83,7 @@ static void reach_set(PhotonLights *lights)
             reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
         reach = fmin(reach, world);
         lights->step[i] = fmax(POINT_STEP * reach, least);
-        if (light_has_position(light->kind))
+        if (light_has_position(light_kind(light)))
             nearest = fmin(nearest, reach);
     }
     lights->params.point_radius = (float)(POINT_RADIUS * nearest);
@@ -183,7 +183,7 @@ static double far_radius(const PhotonLights *lights, uint light, Vec3 d)
 static double light_radius(const PhotonLights *lights, const PhotonPath *path)
 {
     const PhotonParams *params = &lights->params;
-    uint kind = lights->view.lights[path->light].kind;
+    uint kind = light_kind(&lights->view.lights[path->light]);
     if (kind == LIGHT_AREA)
         return lights->radius[path->light];
     if (kind == LIGHT_DISTANT)

@@ -120,9 +120,11 @@ bool scene_center(Scene *scene, const Box *world)
         placement_move(&instance->world_from_object, &instance->object_from_world, offset);
     }
     for (size_t i = 0; i < scene->lights.count; ++i) {
-        Light *light = &ARRAY_AT(&scene->lights, Light, i);
-        if (light_has_position(light->kind))
-            light->position = vec3_sub(light->position, offset);
+        const Light *light = &ARRAY_AT(&scene->lights, Light, i);
+        if (!light_has_position(light_kind(light)))
+            continue;
+        LightDetail *detail = scene_light_detail(scene, light);
+        detail->position = vec3_sub(detail->position, offset);
     }
     for (size_t i = 0; i < scene->portals.count; ++i) {
         Portal *portal = &ARRAY_AT(&scene->portals, Portal, i);

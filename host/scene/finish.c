@@ -186,12 +186,14 @@ static float light_reach(const Scene *scene, const Light *light)
 {
     const SceneParams *params = &scene->frame.scene;
     float portal = 0.0f;
-    if (light->kind == LIGHT_AREA)
+    uint kind = light_kind(light);
+    if (kind == LIGHT_AREA)
         return 0.0f;
-    if (light_has_position(light->kind))
-        return vec3_max_abs(light->position);
-    for (int i = 0; light->kind == LIGHT_PORTAL && i < 4; ++i) {
-        Vec3 corner = portal_corner(&ARRAY_AT(&scene->portals, Portal, light->portal), i);
+    const LightDetail *detail = scene_light_detail(scene, light);
+    if (light_has_position(kind))
+        return vec3_max_abs(detail->position);
+    for (int i = 0; kind == LIGHT_PORTAL && i < 4; ++i) {
+        Vec3 corner = portal_corner(&ARRAY_AT(&scene->portals, Portal, detail->portal), i);
         portal = fmaxf(portal, vec3_length(vec3_sub(corner, params->world_center)));
     }
     return vec3_max_abs(params->world_center) + fmaxf(1.5f * params->world_radius, portal + params->world_radius);
@@ -316,7 +318,7 @@ static ulong scene_features(const Scene *scene)
     for (size_t i = 0; i < scene->materials.count; ++i)
         features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
     for (size_t i = 0; i < scene->lights.count; ++i)
-        features |= FEATURE_OF_LIGHT[ARRAY_AT(&scene->lights, Light, i).kind];
+        features |= FEATURE_OF_LIGHT[light_kind(&ARRAY_AT(&scene->lights, Light, i))];
     for (size_t i = 0; i < scene->texture_ops.count; ++i)
         features |= ARRAY_AT(&scene->texture_ops, TextureOp, i).code >= TEXTURE_FBM ? FEATURE_PROCEDURAL : 0u;
     if (scene->camera_settings.lens_radius > 0.0f)

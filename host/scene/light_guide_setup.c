@@ -42,7 +42,7 @@ static size_t shape_guide(const Scene *scene, const SceneView *view, size_t firs
     double sum[3] = {0.0, 0.0, 0.0};
     size_t i = first;
     *guide = (LightGuide){.near = 1.0};
-    for (; i < scene->lights.count && view->lights[i].kind == LIGHT_AREA; ++i) {
+    for (; i < scene->lights.count && light_kind(&view->lights[i]) == LIGHT_AREA; ++i) {
         uint primitive = view->lights[i].primitive;
         double power = (double)view->lights[i].select_pdf;
         if ((view->primitives[primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK) != shape)
@@ -61,7 +61,8 @@ static size_t shape_guide(const Scene *scene, const SceneView *view, size_t firs
  * light's power was computed. */
 static LightGuide environment_guide(const SceneView *view, const Light *light, double radius)
 {
-    Distribution2D d = view->distributions2d[light->distribution];
+    const LightDetail *detail = light_detail(view, light);
+    Distribution2D d = view->distributions2d[detail->distribution];
     bool equirectangular = (light->flags & LIGHT_EQUIRECTANGULAR) != 0;
     double most = -1.0;
     Vec2 uv = vec2(0.5f, 0.5f);
@@ -76,7 +77,7 @@ static LightGuide environment_guide(const SceneView *view, const Light *light, d
             uv = vec2(((float)x + 0.5f) / (float)d.width, ((float)y + 0.5f) / (float)d.height);
         }
     }
-    Vec3 w = vec3_normalize(affine_vector(light->world_from_light,
+    Vec3 w = vec3_normalize(affine_vector(detail->world_from_light,
                                           equirectangular ? equirectangular_to_sphere(uv) : octahedral_to_sphere(uv)));
     return (LightGuide){.place = {(double)w.x, (double)w.y, (double)w.z},
                         .power = (double)light->select_pdf / (4.0 * radius * radius)};
@@ -100,6 +101,7 @@ void light_guide_setup(Scene *scene)
                       .quadrics = scene->quadrics.data,
                       .curves = scene->curves.data,
                       .lights = scene->lights.data,
+                      .light_details = scene->light_details.data,
                       .distributions2d = scene->distributions2d.data,
                       .lookup = scene->lookup.data};
     double radius = scene->frame.scene.world_radius > 0.0f ? (double)scene->frame.scene.world_radius : 1.0;
@@ -110,12 +112,13 @@ void light_guide_setup(Scene *scene)
         next = i + 1;
         if ((light->flags & LIGHT_INVISIBLE) != 0) /* no walk hits it */
             continue;
-        if (light->kind == LIGHT_AREA)
+        uint kind = light_kind(light);
+        if (kind == LIGHT_AREA)
             next = shape_guide(scene, &view, i, &guide);
-        else if (light->kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)
+        else if (kind == LIGHT_INFINITE_IMAGE && light->select_pdf > 0.0f)
             guide = environment_guide(&view, light, radius);
-        else if (light->kind == LIGHT_PORTAL)
-            guide = portal_guide(&ARRAY_AT(&scene->portals, Portal, light->portal), light);
+        else if (kind == LIGHT_PORTAL)
+            guide = portal_guide(&ARRAY_AT(&scene->portals, Portal, light_detail(&view, light)->portal), light);
         guide_add(scene, &guide);
     }
 }

@@ -22,6 +22,7 @@ typedef struct Environment {
     SceneView view;
     TextureImage image;
     const Light *light;
+    const LightDetail *detail;
     float *texels; /* luminance of texel times emission, width x height */
 } Environment;
 
@@ -73,13 +74,13 @@ static double projection_weight(const Environment *e, int x, int y)
 {
     int nx = 1 + PROJECTION_POINTS / (int)e->image.width, ny = 1 + PROJECTION_POINTS / (int)e->image.height;
     double sum = 0.0;
-    if (e->light->kind != LIGHT_PROJECTION)
+    if (light_kind(e->light) != LIGHT_PROJECTION)
         return 1.0;
     for (int i = 0; i < nx * ny; ++i) {
         int column = i % nx, row = i / nx;
         double px = 2.0 * (x + (column + 0.5) / nx) / (double)e->image.width - 1.0;
         double py = 1.0 - 2.0 * (y + (row + 0.5) / ny) / (double)e->image.height;
-        Vec3 w = affine_vector(e->light->world_from_light, vec3((float)px, (float)py, 1.0f));
+        Vec3 w = affine_vector(e->detail->world_from_light, vec3((float)px, (float)py, 1.0f));
         double length = (double)vec3_length(w);
         sum += 1.0 / (M_PI * length * length * length);
     }
@@ -118,9 +119,10 @@ static void environment_weights(const Environment *e, float *weights, double *me
 }
 
 /* Builds the distribution of a light's image; *mean as above, of its radiance or intensity. */
-static bool environment_setup(Scene *scene, Light *light, double *mean, Error *error)
+static bool environment_setup(Scene *scene, const Light *light, double *mean, Error *error)
 {
-    Environment e = {.light = light, .image = ARRAY_AT(&scene->images, TextureImage, light->image)};
+    LightDetail *detail = scene_light_detail(scene, light);
+    Environment e = {.light = light, .detail = detail, .image = ARRAY_AT(&scene->images, TextureImage, detail->image)};
     e.view.lookup = scene->lookup.data;
     e.view.texels = scene->texels.data;
     size_t cells = (size_t)e.image.width * e.image.height;
@@ -135,7 +137,7 @@ static bool environment_setup(Scene *scene, Light *light, double *mean, Error *e
     bool ok = environment_load(&e, error);
     if (ok) {
         environment_weights(&e, weights, mean);
-        light->distribution = (uint)scene->distributions2d.count;
+        detail->distribution = (uint)scene->distributions2d.count;
         Distribution2D *out = array_grow(&scene->distributions2d, 1, error);
         ok = out && distribution2d_build(weights, e.image.width, e.image.height, &scene->lookup, out, error);
     }
@@ -152,31 +154,31 @@ double light_spot_solid_angle(double cos_total, double cos_falloff)
 }
 
 /* Flux of delta lights whose emission has luminance 1; disk: area of the bounding sphere's disk. */
-static double point_power(const Light *light, double disk)
+static double point_power(const LightDetail *light, double disk)
 {
     (void)light;
     (void)disk;
     return 4.0 * M_PI;
 }
 
-static double spot_power(const Light *light, double disk)
+static double spot_power(const LightDetail *light, double disk)
 {
     (void)disk;
     return light_spot_solid_angle((double)light->cos_total, (double)light->cos_falloff);
 }
 
 /* Of the mean over all directions. */
-static double goniometric_power(const Light *light, double disk)
+static double goniometric_power(const LightDetail *light, double disk)
 {
     return point_power(light, disk);
 }
 
-static double projection_power(const Light *light, double disk)
+static double projection_power(const LightDetail *light, double disk)
 {
     return point_power(light, disk);
 }
 
-static double distant_power(const Light *light, double disk)
+static double distant_power(const LightDetail *light, double disk)
 {
     (void)light;
     return disk;
@@ -193,18 +195,19 @@ static double world_disk(const Scene *scene)
  * bounding sphere, or through their portal. */
 static bool light_power(Scene *scene, uint index, double *power, Error *error)
 {
-    Light *light = &ARRAY_AT(&scene->lights, Light, index);
+    const Light *light = &ARRAY_AT(&scene->lights, Light, index);
+    uint kind = light_kind(light);
     double disk = world_disk(scene), mean = luminance(light->emission);
-    bool image = light->kind == LIGHT_INFINITE_IMAGE || light_has_intensity_image(light->kind);
+    bool image = kind == LIGHT_INFINITE_IMAGE || light_has_intensity_image(kind);
     if (image && !environment_setup(scene, light, &mean, error))
         return false;
-    switch (light->kind) {
+    switch (kind) {
     case LIGHT_AREA:
         *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
         break;
 #define POWER(NAME, name, text, feature, position)                                                                     \
     case LIGHT_##NAME:                                                                                                 \
-        *power = mean * name##_power(light, disk);                                                                     \
+        *power = mean * name##_power(scene_light_detail(scene, light), disk);                                          \
         break;
         LIGHT_LIST_DELTA(POWER)
 #undef POWER
@@ -237,9 +240,9 @@ static void far_lights_bound(const Scene *scene, double *powers)
 {
     double far = 0.0, near = 0.0;
     for (size_t i = 0; i < scene->lights.count; ++i)
-        *(light_is_far(ARRAY_AT(&scene->lights, Light, i).kind) ? &far : &near) += powers[i];
+        *(light_is_far(light_kind(&ARRAY_AT(&scene->lights, Light, i))) ? &far : &near) += powers[i];
     for (size_t i = 0; near > 0.0 && far > near && i < scene->lights.count; ++i)
-        if (light_is_far(ARRAY_AT(&scene->lights, Light, i).kind))
+        if (light_is_far(light_kind(&ARRAY_AT(&scene->lights, Light, i))))
             powers[i] *= near / far;
 }
 
@@ -269,7 +272,7 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     for (size_t i = 0; i < count; ++i) {
         Light *light = &ARRAY_AT(&scene->lights, Light, i);
         light->select_pdf = (float)(powers[i] / sum);
-        if (light->kind < LIGHT_INFINITE || !(powers[i] > 0.0))
+        if (light_kind(light) < LIGHT_INFINITE || !(powers[i] > 0.0))
             continue;
         uint *index = array_grow(&scene->infinite_lights, 1, error);
         if (!index)

@@ -1,181 +1,18 @@
 #include "scene/light_tree.h"
 
-#include "geometry/box.h"
-#include "light/area.h"
+#include "geometry/surface.h"
 #include "light/delta.h"
-#include "light/light_tree.h"
-#include "scene/portal_setup.h"
+#include "scene/light_bounds.h"
+#include "scene/light_node.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Directions within `angle` of the axis; of none: angle < 0. */
-typedef struct Cone {
-    Vec3 axis;
-    double angle;
-} Cone;
-
-/* A light, or a node's lights together. */
-typedef struct Bounds {
-    Box box;
-    Cone normals;
-    double emission; /* light leaves this far from the normals */
-    double intensity;
-    bool two_sided;
-    bool infinite; /* no place; intensity: irradiance */
-} Bounds;
-
 typedef struct Leaf {
-    Bounds bounds;
+    LightBounds bounds;
     Vec3 center;
     uint light;
 } Leaf;
-
-/* ---- cones ------------------------------------------------------------------------------------------------------- */
-
-static const Cone NO_CONE = {{0.0f, 0.0f, 1.0f}, -1.0};
-
-/* The axis of a cone around both axes, turned from a by `angle` towards b; a unit. */
-static Vec3 axis_turn(Vec3 a, Vec3 b, double angle)
-{
-    double dot = (double)vec3_dot(a, b), side[3], length = 0.0;
-    const double from[3] = {(double)a.x, (double)a.y, (double)a.z}, to[3] = {(double)b.x, (double)b.y, (double)b.z};
-    for (int i = 0; i < 3; ++i) {
-        side[i] = to[i] - dot * from[i];
-        length += side[i] * side[i];
-    }
-    length = sqrt(length);
-    if (!(length > 1e-12))
-        return a;
-    double c = cos(angle), s = sin(angle) / length;
-    return vec3_normalize(vec3((float)(c * from[0] + s * side[0]), (float)(c * from[1] + s * side[1]),
-                               (float)(c * from[2] + s * side[2])));
-}
-
-/* The smallest cone around both. */
-static Cone cone_join(Cone a, Cone b)
-{
-    if (a.angle < b.angle) {
-        Cone larger = b;
-        b = a;
-        a = larger;
-    }
-    if (b.angle < 0.0 || a.angle >= M_PI)
-        return a;
-    double between = acos(fmin(fmax((double)vec3_dot(a.axis, b.axis), -1.0), 1.0));
-    if (between + b.angle <= a.angle)
-        return a;
-    double angle = 0.5 * (a.angle + between + b.angle);
-    if (angle >= M_PI || between > M_PI - 1e-3)
-        return (Cone){a.axis, M_PI};
-    return (Cone){axis_turn(a.axis, b.axis, angle - a.angle), angle};
-}
-
-/* ---- bounds ------------------------------------------------------------------------------------------------------ */
-
-static Bounds bounds_empty(void)
-{
-    return (Bounds){.box = box_empty(), .normals = NO_CONE};
-}
-
-static void bounds_join(Bounds *a, const Bounds *b)
-{
-    box_join(&a->box, &b->box);
-    a->normals = cone_join(a->normals, b->normals);
-    a->emission = fmax(a->emission, b->emission);
-    a->intensity += b->intensity;
-    a->two_sided |= b->two_sided;
-    a->infinite |= b->infinite;
-}
-
-/* The normals of an area light. Those of a bilinear patch are sums of the corners' with positive factors. */
-static Cone area_normals(const SceneView *view, uint light)
-{
-    Primitive primitive = view->primitives[view->lights[light].primitive];
-    uint kind = primitive.shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    if (kind == PRIMITIVE_SPHERE || kind == PRIMITIVE_CYLINDER)
-        return (Cone){NO_CONE.axis, M_PI};
-    Cone cone = NO_CONE;
-    for (int corner = 0; corner < (kind == PRIMITIVE_BILINEAR ? 4 : 1); ++corner) {
-        Vec2 u = vec2((corner & 1) != 0 ? 1.0f : 0.0f, (corner & 2) != 0 ? 1.0f : 0.0f);
-        u = kind == PRIMITIVE_BILINEAR ? u : vec2(0.5f, 0.5f);
-        cone = cone_join(cone, (Cone){area_light_point(view, light, &primitive, u).ng, 0.0});
-    }
-    return cone.angle > 0.5 * M_PI ? (Cone){NO_CONE.axis, M_PI} : cone;
-}
-
-/* The largest part of a surface's area that is seen from one direction, with its cosine: of a sphere, that of its disc;
- * of a cylinder, that of its silhouette, also where it is flattened to almost two sides. */
-static double area_shown(uint kind)
-{
-    return kind == PRIMITIVE_SPHERE ? 0.25 : kind == PRIMITIVE_CYLINDER ? 0.5 : 1.0;
-}
-
-/* power: its flux. intensity: the largest in any direction, so that intensity / distance^2 is what arrives there. */
-static Bounds area_bounds(const SceneView *view, uint light, double power)
-{
-    const Light *source = &view->lights[light];
-    uint kind = view->primitives[source->primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT;
-    bool two_sided = (source->flags & LIGHT_TWO_SIDED) != 0;
-    double facing = area_shown(kind);
-    return (Bounds){.box = primitive_box(view, source->primitive),
-                    .normals = area_normals(view, light),
-                    .emission = 0.5 * M_PI,
-                    .intensity = power * facing / (M_PI * (two_sided ? 2.0 : 1.0)),
-                    .two_sided = two_sided};
-}
-
-/* The largest luminance of a point light's intensity in any direction. */
-static double intensity_most(const SceneView *view, const Light *light)
-{
-    if (!light_has_intensity_image(light->kind))
-        return (double)rgb_luminance(light->emission);
-    double most = 0.0;
-    TextureImage image = view->images[light->image];
-    for (uint y = 0; y < image.height; ++y)
-        for (uint x = 0; x < image.width; ++x)
-            most = fmax(most, (double)rgb_luminance(vec3_mul(light->emission, image_texel(view, &image, x, y))));
-    return most;
-}
-
-static Bounds position_bounds(const SceneView *view, const Light *light)
-{
-    Bounds bounds = {.box = box_empty(),
-                     .normals = {NO_CONE.axis, M_PI},
-                     .emission = 0.5 * M_PI,
-                     .intensity = intensity_most(view, light)};
-    box_add(&bounds.box, light->position);
-    if (light->kind == LIGHT_SPOT || light->kind == LIGHT_PROJECTION) {
-        bounds.normals = (Cone){light->direction, acos((double)light->cos_falloff)};
-        bounds.emission = acos((double)light->cos_total) - bounds.normals.angle;
-    }
-    return bounds;
-}
-
-/* As of an area light that emits the same flux. */
-static Bounds portal_bounds(const Portal *portal, double power)
-{
-    Bounds bounds = {.box = box_empty(),
-                     .normals = {vec3_negate(portal->axes.n), 0.0},
-                     .emission = 0.5 * M_PI,
-                     .intensity = power / M_PI};
-    for (int i = 0; i < 4; ++i)
-        box_add(&bounds.box, portal_corner(portal, i));
-    return bounds;
-}
-
-static Bounds light_bounds(const SceneView *view, uint light, double power, double disk)
-{
-    const Light *source = &view->lights[light];
-    if (source->kind == LIGHT_AREA)
-        return area_bounds(view, light, power);
-    if (light_has_position(source->kind))
-        return position_bounds(view, source);
-    if (source->kind == LIGHT_PORTAL)
-        return portal_bounds(&view->portals[source->portal], power);
-    double directions = source->kind >= LIGHT_INFINITE ? 0.25 : 1.0; /* 4 pi sr, of which pi counts at a surface */
-    return (Bounds){.box = box_empty(), .normals = NO_CONE, .intensity = power * directions / disk, .infinite = true};
-}
 
 /* ---- division ---------------------------------------------------------------------------------------------------- */
 
@@ -191,7 +28,7 @@ static float component(Vec3 v, int axis)
 
 /* What a node costs: its intensity, times the square of its extent, times the measure of its directions (Conty Estevez
  * and Kulla 2018, equation 1, with the area of its sphere). */
-static double bounds_cost(const Bounds *bounds)
+static double bounds_cost(const LightBounds *bounds)
 {
     double square = 0.0, normals = fmax(bounds->normals.angle, 0.0), s = sin(normals), c = cos(normals);
     if (!(bounds->intensity > 0.0))
@@ -235,23 +72,25 @@ static bool division_begin(const Leaf *leaves, size_t count, Division *division)
     return division->width > 0.0f;
 }
 
+static const Vec3 NO_AXIS = {0.0f, 0.0f, 1.0f};
+
 /* The cone of many normals: around the mean of their axes. */
 typedef struct ConeSum {
     double axis[3], widest, cosine;
 } ConeSum;
 
-static void slices_bound(const Leaf *leaves, size_t count, const Division *division, Bounds slices[SLICES])
+static void slices_bound(const Leaf *leaves, size_t count, const Division *division, LightBounds slices[SLICES])
 {
     ConeSum sums[SLICES];
     Vec3 axes[SLICES];
     for (int i = 0; i < SLICES; ++i) {
-        slices[i] = bounds_empty();
+        slices[i] = light_bounds_empty();
         sums[i] = (ConeSum){{0.0, 0.0, 0.0}, -1.0, 1.0};
-        axes[i] = NO_CONE.axis;
+        axes[i] = NO_AXIS;
     }
     for (size_t i = 0; i < count; ++i) {
         int slice = slice_of(division, &leaves[i]);
-        const Bounds *bounds = &leaves[i].bounds;
+        const LightBounds *bounds = &leaves[i].bounds;
         box_join(&slices[slice].box, &bounds->box);
         slices[slice].emission = fmax(slices[slice].emission, bounds->emission);
         slices[slice].intensity += bounds->intensity;
@@ -261,8 +100,7 @@ static void slices_bound(const Leaf *leaves, size_t count, const Division *divis
         sums[slice].widest = fmax(sums[slice].widest, bounds->normals.angle);
     }
     for (int i = 0; i < division->slices; ++i)
-        axes[i] =
-            vec3_direction(vec3((float)sums[i].axis[0], (float)sums[i].axis[1], (float)sums[i].axis[2]), NO_CONE.axis);
+        axes[i] = vec3_direction(vec3((float)sums[i].axis[0], (float)sums[i].axis[1], (float)sums[i].axis[2]), NO_AXIS);
     for (size_t i = 0; i < count; ++i) {
         int slice = slice_of(division, &leaves[i]);
         sums[slice].cosine = fmin(sums[slice].cosine, (double)vec3_dot(axes[slice], leaves[i].bounds.normals.axis));
@@ -273,18 +111,18 @@ static void slices_bound(const Leaf *leaves, size_t count, const Division *divis
 }
 
 /* Chooses where the sum of both parts' costs is least. False if all is in one slice. */
-static bool division_choose(const Bounds slices[SLICES], Division *division)
+static bool division_choose(const LightBounds slices[SLICES], Division *division)
 {
     double above[SLICES + 1] = {0.0}, least = HUGE_VAL;
-    Bounds part = bounds_empty();
+    LightBounds part = light_bounds_empty();
     for (int i = division->slices; i-- > 1;) {
-        bounds_join(&part, &slices[i]);
+        light_bounds_join(&part, &slices[i]);
         above[i] = bounds_cost(&part);
     }
-    part = bounds_empty();
+    part = light_bounds_empty();
     division->at = 0;
     for (int i = 1; i < division->slices; ++i) {
-        bounds_join(&part, &slices[i - 1]);
+        light_bounds_join(&part, &slices[i - 1]);
         double cost = bounds_cost(&part) + above[i];
         if (part.normals.angle < 0.0 || !(cost < least))
             continue;
@@ -298,7 +136,7 @@ static bool division_choose(const Bounds slices[SLICES], Division *division)
 static size_t leaves_divide(Leaf *leaves, size_t count, int depth)
 {
     Division division = {.axis = 0};
-    Bounds slices[SLICES];
+    LightBounds slices[SLICES];
     size_t left = 0;
     if (count > 2 && depth < DEPTH_MOST && !leaves->bounds.infinite && division_begin(leaves, count, &division)) {
         slices_bound(leaves, count, &division, slices);
@@ -315,66 +153,55 @@ static size_t leaves_divide(Leaf *leaves, size_t count, int depth)
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
-/* The cosine in 15 bits, not larger than that of the angle and of the error of direction_pack beyond it. */
-static uint cosine_pack(double angle)
-{
-    double cosine = angle + 1e-3 < M_PI ? cos(fmax(angle, 0.0) + 1e-3) : -1.0;
-    return (uint)floor((cosine + 1.0) * 16383.5);
-}
+/* A node of two or more leaves, in the order of LightNode. */
+typedef struct Branch {
+    LightBounds bounds;
+    uint lower; /* leaves of the left child */
+} Branch;
 
-static LightNode node_make(const Bounds *bounds, uint link)
-{
-    LightNode node = {.radius = -1.0f, .intensity = (float)bounds->intensity, .link = link};
-    if (bounds->infinite)
-        return node;
-    double square = 0.0;
-    node.center = box_center(&bounds->box);
-    const double center[3] = {(double)node.center.x, (double)node.center.y, (double)node.center.z};
-    for (int i = 0; i < 3; ++i)
-        square += pow(fmax((double)bounds->box.high[i] - center[i], center[i] - (double)bounds->box.low[i]), 2.0);
-    node.radius = (float)(sqrt(square) * (1.0 + 1e-6));
-    node.axis = direction_pack(bounds->normals.axis);
-    node.cones = cosine_pack(bounds->normals.angle) << LIGHT_NODE_NORMALS |
-                 cosine_pack(bounds->emission) << LIGHT_NODE_EMISSION | (bounds->two_sided ? LIGHT_NODE_TWO_SIDED : 0u);
-    return node;
-}
-
-/* Whether nothing but the intensity distinguishes two nodes, as the two triangles of a square. */
-static bool nodes_alike(const LightNode *a, const LightNode *b)
-{
-    float most = 0.01f * a->radius;
-    return a->radius > 0.0f && b->radius > 0.0f && fabsf(a->radius - b->radius) <= most &&
-           vec3_length(vec3_sub(a->center, b->center)) <= most && a->cones == b->cones &&
-           vec3_dot(direction_unpack(a->axis), direction_unpack(b->axis)) > 0.9999f;
-}
-
-/* What nodes_make is at work on. */
+/* What the tree is made of. */
 typedef struct Builder {
+    Leaf *leaves;
+    Branch *branches;
     LightNode *nodes;
-    Light *lights;
-    uint node_count, leaf_count;
+    size_t lamps; /* leaves that are not at infinity; those come first, and only the root may have both */
     bool differ; /* some node's children are not alike */
 } Builder;
 
-/* Makes the nodes of the leaves, 2 count - 1, in the order of a walk that takes left children first. lamps: how many
- * leaves at the start are not at infinity; only the root may have both. */
-static Bounds nodes_make(Builder *builder, Leaf *leaves, size_t count, size_t lamps, int depth)
+/* Divides `count` leaves from `first` on, and makes the branches from `node` on. */
+static LightBounds branches_make(Builder *builder, size_t node, size_t first, size_t count, int depth)
 {
-    uint own = builder->node_count++;
-    if (count == 1) {
-        builder->lights[leaves->light].leaf = builder->leaf_count++;
-        builder->nodes[own] = node_make(&leaves->bounds, leaves->light | LIGHT_NODE_LEAF);
-        return leaves->bounds;
-    }
-    size_t left = lamps > 0 && lamps < count ? lamps : leaves_divide(leaves, count, depth);
-    Bounds bounds = nodes_make(builder, leaves, left, left, depth + 1);
-    uint right = builder->node_count;
-    Bounds other = nodes_make(builder, leaves + left, count - left, count - left, depth + 1);
-    bounds_join(&bounds, &other);
-    bool even = nodes_alike(&builder->nodes[own + 1], &builder->nodes[right]);
-    builder->differ |= !even;
-    builder->nodes[own] = node_make(&bounds, right | (even ? LIGHT_NODE_EVEN : 0u));
+    if (count == 1)
+        return builder->leaves[first].bounds;
+    size_t lamps = first < builder->lamps ? builder->lamps - first : 0;
+    size_t left = lamps > 0 && lamps < count ? lamps : leaves_divide(builder->leaves + first, count, depth);
+    LightBounds bounds = branches_make(builder, node + 1, first, left, depth + 1);
+    LightBounds other = branches_make(builder, node + left, first + left, count - left, depth + 1);
+    builder->differ |= !light_bounds_alike(&bounds, &other);
+    light_bounds_join(&bounds, &other);
+    builder->branches[node] = (Branch){bounds, (uint)left};
     return bounds;
+}
+
+static const LightBounds *subtree_bounds(const Builder *builder, size_t node, size_t first, size_t count)
+{
+    return count == 1 ? &builder->leaves[first].bounds : &builder->branches[node].bounds;
+}
+
+/* Packs the nodes of such leaves within a sphere. */
+static void nodes_pack(Builder *builder, size_t node, size_t first, size_t count, LightSphere sphere)
+{
+    if (count == 1)
+        return;
+    size_t left = builder->branches[node].lower;
+    LightNode packed = light_node_pack_far((uint)left);
+    if (!(first < builder->lamps && builder->lamps < first + count))
+        packed = light_node_pack(subtree_bounds(builder, node + 1, first, left),
+                                 subtree_bounds(builder, node + left, first + left, count - left), (uint)left, sphere);
+    builder->nodes[node] = packed;
+    nodes_pack(builder, node + 1, first, left, light_child_sphere(sphere, packed.xy[0], packed.z_size[0]));
+    nodes_pack(builder, node + left, first + left, count - left,
+               light_child_sphere(sphere, packed.xy[1], packed.z_size[1]));
 }
 
 /* ---- entry point ------------------------------------------------------------------------------------------------- */
@@ -387,7 +214,7 @@ static size_t leaves_fill(const SceneView *view, const double *powers, double di
     *count = 0;
     for (int far = 0; far < 2; ++far) {
         for (size_t i = 0; i < light_count; ++i) {
-            bool infinite = light_is_far(view->lights[i].kind);
+            bool infinite = light_is_far(light_kind(&view->lights[i]));
             if (!(powers[i] > 0.0) || infinite != (far == 1))
                 continue;
             Leaf *leaf = &leaves[(*count)++];
@@ -400,9 +227,49 @@ static size_t leaves_fill(const SceneView *view, const double *powers, double di
     return lamps;
 }
 
+/* Makes the tree of `count` leaves. */
+static LightTree tree_make(Builder *builder, size_t count)
+{
+    LightBounds none = light_bounds_empty(), all = branches_make(builder, 0, 0, count, 0);
+    size_t lamps = builder->lamps, far = count - lamps;
+    const LightBounds *near = lamps == count ? &all : lamps > 0 ? subtree_bounds(builder, 1, 0, lamps) : &none;
+    const LightBounds *beyond = far == count ? &all : far > 0 ? subtree_bounds(builder, lamps, lamps, far) : &none;
+    LightTree tree = light_tree_pack(near, beyond, (uint)count);
+    nodes_pack(builder, 0, 0, count, (LightSphere){tree.center, tree.radius});
+    return tree;
+}
+
+static void leaf_set(Scene *scene, uint light, uint leaf)
+{
+    uint *flags = &ARRAY_AT(&scene->lights, Light, light).flags;
+    *flags = (*flags & ((1u << LIGHT_LEAF_SHIFT) - 1u)) | leaf << LIGHT_LEAF_SHIFT;
+}
+
+/* Makes the scene's tree. leaves, branches: space for all lights. */
+static bool scene_tree_make(Scene *scene, const SceneView *view, const double *powers, double disk, Leaf *leaves,
+                            Branch *branches, Error *error)
+{
+    size_t count, lamps = leaves_fill(view, powers, disk, scene->lights.count, leaves, &count);
+    scene->light_tree.count = scene->light_nodes.count = scene->light_leaves.count = 0;
+    uint *lights = array_grow(&scene->light_leaves, count, error);
+    LightTree *tree = array_grow(&scene->light_tree, 1, error);
+    if (!lights || !tree || (count > 1 && !array_grow(&scene->light_nodes, count - 1, error)))
+        return false;
+    Builder builder = {.leaves = leaves, .branches = branches, .nodes = scene->light_nodes.data, .lamps = lamps};
+    *tree = tree_make(&builder, count);
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        leaf_set(scene, (uint)i, LIGHTS_MAX);
+    for (size_t i = 0; i < count; ++i) {
+        lights[i] = leaves[i].light;
+        leaf_set(scene, leaves[i].light, (uint)i);
+    }
+    scene_features_set(scene, scene->features | (builder.differ ? FEATURE_LIGHT_TREE : 0u));
+    return true;
+}
+
 bool light_tree_build(Scene *scene, const double *powers, double disk, Error *error)
 {
-    size_t count, light_count = scene->lights.count, most = 2 * light_count - 1;
+    size_t light_count = scene->lights.count;
     SceneView view = {.features = ~(FEATURE_ALPHA | FEATURE_TEXTURE),
                       .positions = scene->positions.data,
                       .normals = scene->normals.data,
@@ -411,24 +278,18 @@ bool light_tree_build(Scene *scene, const double *powers, double disk, Error *er
                       .patches = scene->patches.data,
                       .quadrics = scene->quadrics.data,
                       .lights = scene->lights.data,
+                      .light_details = scene->light_details.data,
                       .images = scene->images.data,
                       .lookup = scene->lookup.data,
                       .texels = scene->texels.data,
                       .portals = scene->portals.data};
-    scene->light_nodes.count = 0;
     Leaf *leaves = malloc(light_count * sizeof *leaves);
-    LightNode *nodes = array_grow(&scene->light_nodes, most, error);
-    if (!leaves || !nodes) {
-        free(leaves);
-        return leaves ? false : error_memory(error, light_count * sizeof *leaves, "lights");
-    }
-    for (size_t i = 0; i < light_count; ++i)
-        ARRAY_AT(&scene->lights, Light, i).leaf = NONE;
-    size_t lamps = leaves_fill(&view, powers, disk, light_count, leaves, &count);
-    Builder builder = {.nodes = nodes, .lights = scene->lights.data};
-    nodes_make(&builder, leaves, count, lamps, 0);
-    scene->light_nodes.count = builder.node_count;
-    scene_features_set(scene, scene->features | (builder.differ ? FEATURE_LIGHT_TREE : 0u));
+    Branch *branches = malloc(light_count * sizeof *branches);
+    bool ok = leaves && branches;
+    if (!ok)
+        error_memory(error, light_count * (sizeof *leaves + sizeof *branches), "lights");
+    ok = ok && scene_tree_make(scene, &view, powers, disk, leaves, branches, error);
     free(leaves);
-    return true;
+    free(branches);
+    return ok;
 }

@@ -24,8 +24,8 @@ static void media_used(const Scene *scene, bool used[MEDIA_MAX])
         uint flags = ARRAY_AT(&scene->shapes, Shape, i).flags;
         used[media_inside(flags)] = used[media_outside(flags)] = true;
     }
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        used[light_medium(&ARRAY_AT(&scene->lights, Light, i))] = true;
+    for (size_t i = 0; i < scene->light_details.count; ++i)
+        used[ARRAY_AT(&scene->light_details, LightDetail, i).medium] = true;
 }
 
 static ulong medium_features(const Medium *medium)
@@ -124,9 +124,9 @@ void media_lights_setup(Scene *scene)
     Vec3 extinction = medium->grid == 0u ? medium->extinction : vec3_splat(0.0f); /* grids end */
     for (size_t i = 0; i < scene->lights.count; ++i) {
         Light *light = &ARRAY_AT(&scene->lights, Light, i);
-        if (!light_is_far(light->kind))
+        if (!light_is_far(light_kind(light)))
             continue;
-        light->flags = (light->flags & ((1u << LIGHT_MEDIUM_SHIFT) - 1u)) | around << LIGHT_MEDIUM_SHIFT;
+        scene_light_detail(scene, light)->medium = around;
         light->emission.x = extinction.x > 0.0f ? 0.0f : light->emission.x;
         light->emission.y = extinction.y > 0.0f ? 0.0f : light->emission.y;
         light->emission.z = extinction.z > 0.0f ? 0.0f : light->emission.z;

@@ -30,8 +30,11 @@ static bool tables_pack(Scene *scene, Error *error)
            words_append(words, &scene->texture_ops, &layout->texture_ops, error) &&
            words_append(words, &scene->images, &layout->images, error) &&
            words_append(words, &scene->lights, &layout->lights, error) &&
+           words_append(words, &scene->light_details, &layout->light_details, error) &&
            words_append(words, &scene->light_alias, &layout->light_alias, error) &&
+           words_append(words, &scene->light_tree, &layout->light_tree, error) &&
            words_append(words, &scene->light_nodes, &layout->light_nodes, error) &&
+           words_append(words, &scene->light_leaves, &layout->light_leaves, error) &&
            words_append(words, &scene->infinite_lights, &layout->infinite_lights, error) &&
            words_append(words, &scene->portals, &layout->portals, error) &&
            words_append(words, &scene->aims, &layout->aims, error) &&

@@ -146,7 +146,7 @@ static bool tables_add(Scene *scene, const Rectified *r, double flux, Error *err
     double radiant = total(r->radiant, cells);
     if (!(radiant > 0.0))
         return true;
-    Light *light = &ARRAY_AT(&scene->lights, Light, r->light);
+    LightDetail *light = scene_light_detail(scene, &ARRAY_AT(&scene->lights, Light, r->light));
     Portal *portal = &ARRAY_AT(&scene->portals, Portal, light->portal);
     portal->columns = portal->rows = r->side;
     for (size_t i = 0; i < cells; ++i)
@@ -159,7 +159,7 @@ static bool tables_add(Scene *scene, const Rectified *r, double flux, Error *err
 
 /* ---- entry point ------------------------------------------------------------------------------------------------- */
 
-static uint side_choose(const Scene *scene, const Light *light)
+static uint side_choose(const Scene *scene, const LightDetail *light)
 {
     if (light->image == NONE)
         return CONSTANT_SIDE;
@@ -180,7 +180,7 @@ static bool rectified_fill(Rectified *r, Error *error)
 
 bool portal_setup(Scene *scene, uint light, double *flux, Error *error)
 {
-    const Light *source = &ARRAY_AT(&scene->lights, Light, light);
+    const LightDetail *source = scene_light_detail(scene, &ARRAY_AT(&scene->lights, Light, light));
     Rectified r = {.light = light,
                    .side = side_choose(scene, source),
                    .portal = ARRAY_AT(&scene->portals, Portal, source->portal)};
@@ -188,6 +188,7 @@ bool portal_setup(Scene *scene, uint light, double *flux, Error *error)
                          .features = ~(ulong)0,
                          .images = scene->images.data,
                          .lights = scene->lights.data,
+                         .light_details = scene->light_details.data,
                          .lookup = scene->lookup.data,
                          .texels = scene->texels.data};
     size_t cells = (size_t)r.side * r.side;

@@ -21,8 +21,11 @@
     X(texture_ops, TextureOp)                                                                                          \
     X(images, TextureImage)                                                                                            \
     X(lights, Light)                                                                                                   \
+    X(light_details, LightDetail)                                                                                      \
     X(light_alias, AliasBucket)                                                                                        \
+    X(light_tree, LightTree)                                                                                           \
     X(light_nodes, LightNode)                                                                                          \
+    X(light_leaves, uint)                                                                                              \
     X(infinite_lights, uint)                                                                                           \
     X(portals, Portal)                                                                                                 \
     X(aims, Aim)                                                                                                       \
@@ -139,18 +142,15 @@ static bool shape_emit(Scene *scene, uint shape_index, const float *emission, ui
     if (!emission || count == 0)
         return true;
     assert(scene->current_object == 0);
-    if (!count_fits(scene->lights.count + count, NONE, "lights", error))
+    if (!count_fits(scene->lights.count + count, LIGHTS_MAX, "lights", error))
         return false;
     shape->first_light = (uint)scene->lights.count;
     Light *lights = SCENE_GROW(scene, lights, Light, count, error);
     if (!lights)
         return false;
     for (size_t i = 0; i < count; ++i) {
-        lights[i].kind = LIGHT_AREA;
-        lights[i].flags = light_flags;
+        lights[i].flags = LIGHT_AREA | light_flags;
         lights[i].primitive = shape->first_primitive + (uint)i;
-        lights[i].image = NONE;
-        lights[i].distribution = NONE;
         lights[i].emission = vec3(emission[0], emission[1], emission[2]);
         lights[i].area = (float)scene_primitive_area(scene, lights[i].primitive);
     }
@@ -462,15 +462,24 @@ bool scene_add_medium(Scene *scene, const Medium *medium, uint *number, Error *e
     return true;
 }
 
-bool scene_add_light(Scene *scene, const Light *light, Error *error)
+bool scene_add_light(Scene *scene, const LightData *light, Error *error)
 {
-    if (!count_fits(scene->lights.count, NONE, "lights", error))
+    if (!count_fits(scene->lights.count, LIGHTS_MAX, "lights", error))
         return false;
     Light *stored = SCENE_GROW(scene, lights, Light, 1, error);
-    if (!stored)
+    LightDetail *detail = stored ? SCENE_GROW(scene, light_details, LightDetail, 1, error) : NULL;
+    if (!detail)
         return false;
-    *stored = *light;
+    *stored = (Light){.flags = light->kind | light->flags,
+                      .primitive = (uint)scene->light_details.count - 1,
+                      .emission = light->emission};
+    *detail = light->detail;
     return true;
+}
+
+LightDetail *scene_light_detail(const Scene *scene, const Light *light)
+{
+    return &ARRAY_AT(&scene->light_details, LightDetail, light->primitive);
 }
 
 bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *error)

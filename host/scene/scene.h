@@ -70,8 +70,11 @@ typedef struct Scene {
     Array texture_ops; /* TextureOp */
     Array images; /* TextureImage */
     Array lights; /* Light */
+    Array light_details; /* LightDetail */
     Array light_alias; /* AliasBucket, set by scene_finish */
+    Array light_tree; /* LightTree, set by scene_finish: one */
     Array light_nodes; /* LightNode, set by scene_finish; none for a single light */
+    Array light_leaves; /* uint, set by scene_finish */
     Array infinite_lights; /* uint */
     Array portals; /* Portal; scene_finish sets its sums */
     Array aims; /* Aim, set by scene_finish */
@@ -148,9 +151,18 @@ bool scene_add_instance(Scene *scene, uint object, const double world_from_objec
 
 /* Appends a material; *index: its index. */
 bool scene_add_material(Scene *scene, const Material *material, uint *index, Error *error);
-bool scene_add_light(Scene *scene, const Light *light, Error *error);
 
-/* Appends the portal of an infinite light (scene/portal_setup.h makes it); *index: Light.portal. */
+/* Appends a light that is no area light. */
+typedef struct LightData {
+    uint kind; /* LIGHT_* */
+    uint flags;
+    Vec3 emission;
+    LightDetail detail;
+} LightData;
+bool scene_add_light(Scene *scene, const LightData *light, Error *error);
+LightDetail *scene_light_detail(const Scene *scene, const Light *light);
+
+/* Appends the portal of an infinite light (scene/portal_setup.h makes it); *index: LightDetail.portal. */
 bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *error);
 
 /* Appends a medium; *number: its index, at least 1. */

@@ -1,6 +1,7 @@
 libtwinlight_host_la_SOURCES += \
 	host/scene/warnings.c host/scene/warnings.h \
 	host/scene/grid_build.c host/scene/grid_build.h \
+	host/scene/light_bounds.c host/scene/light_bounds.h \
 	host/scene/light_guide_setup.c host/scene/light_guide_setup.h \
 	host/scene/camera_setup.c host/scene/camera_setup.h \
 	host/scene/center.c host/scene/center.h \
@@ -10,6 +11,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/filter_setup.c host/scene/filter_setup.h \
 	host/scene/finish.c \
 	host/scene/format.c host/scene/format.h \
+	host/scene/light_node.c host/scene/light_node.h \
 	host/scene/light_setup.c host/scene/light_setup.h \
 	host/scene/light_tree.c host/scene/light_tree.h \
 	host/scene/media_setup.c host/scene/media_setup.h \

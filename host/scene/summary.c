@@ -1,6 +1,7 @@
 #include "scene/summary.h"
 
 #include "base/json.h"
+#include "layout/scene_view.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -26,7 +27,7 @@ void scene_summary(const Scene *scene, SceneSummary *summary)
     for (size_t i = 0; i < scene->materials.count; ++i)
         ++summary->materials[ARRAY_AT(&scene->materials, Material, i).kind];
     for (size_t i = 0; i < scene->lights.count; ++i)
-        ++summary->lights[ARRAY_AT(&scene->lights, Light, i).kind];
+        ++summary->lights[light_kind(&ARRAY_AT(&scene->lights, Light, i))];
     for (size_t i = 0; i < scene->texture_ops.count; ++i)
         summary->textures += ARRAY_AT(&scene->texture_ops, TextureOp, i).code == TEXTURE_END;
     summary->images = scene->images.count;

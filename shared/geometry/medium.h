@@ -58,12 +58,6 @@ SHARED_FUNCTION uint medium_leaving(const SceneView *scene, uint bits, Vec3 ng, 
     return SCENE_HAS(scene, FEATURE_MEDIUM) ? medium_towards(bits, ng, w) : 0u;
 }
 
-/* The medium around a light, except for area lights, which have those of their shape. */
-SHARED_FUNCTION uint light_medium(__global const Light *light)
-{
-    return light->flags >> LIGHT_MEDIUM_SHIFT;
-}
-
 /* ---- extinction -------------------------------------------------------------------------------------------------- */
 
 /* Optical depths of a part of a ray: `all` of all media, `scattering` of those that scatter light, in which alone a ray

@@ -19,7 +19,7 @@ SHARED_FUNCTION Random4 photon_random(__global const FrameParams *frame, uint nu
  * scene, in the direction that was drawn. */
 SHARED_FUNCTION bool photon_aim(const SceneView *scene, uint light, Vec3 through, LightEmission *emission)
 {
-    if (scene->lights[light].kind >= LIGHT_DISTANT) {
+    if (light_kind(scene->lights + light) >= LIGHT_DISTANT) {
         emission->p = vec3_mad(through, -2.0f * scene->frame->scene.world_radius, emission->w);
         return true;
     }
@@ -37,7 +37,7 @@ SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed
     if (light_is_invisible(scene, *light))
         return false;
     /* A light without extent may lie before the end of a ray, for which alone the optical depth is known. */
-    if (SCENE_HAS(scene, FEATURE_MEDIUM) && light_has_position(scene->lights[*light].kind))
+    if (SCENE_HAS(scene, FEATURE_MEDIUM) && light_has_position(light_kind(scene->lights + *light)))
         return false;
     if (!light_emit_aimed(scene, *light, random_float(choice.x[2]),
                           vec2(random_float(random.x[0]), random_float(random.x[1])),

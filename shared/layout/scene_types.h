@@ -333,7 +333,7 @@ typedef struct MediumGrid {
 /* ---- lights ---------------------------------------------------------------------------------------------------- */
 
 /* X(NAME, name, text, feature, position): LIGHT_NAME; its name in `twinlight info`; the group of lights that it is
- * dispatched with; whether Light.position is its place. Delta lights have functions light_name_sample, _emit,
+ * dispatched with; whether LightDetail.position is its place. Delta lights have functions light_name_sample, _emit,
  * _emit_pdf_w and _emitted (light/delta.h), name_power (host/scene/light_setup.c) and name_read (host/pbrt/lights.c, by
  * `text`). */
 #define LIGHT_LIST_DELTA(X)                                                                                            \
@@ -357,32 +357,43 @@ typedef struct MediumGrid {
 enum { LIGHT_LIST(LIGHT_ENUMERATE) LIGHT_KINDS };
 #undef LIGHT_ENUMERATE
 
-#define LIGHT_TWO_SIDED 0x1u
-#define LIGHT_EQUIRECTANGULAR 0x2u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
-#define LIGHT_INVISIBLE 0x4u /* area: its shape has alpha 0, so that no ray hits it, and the light its whole emission */
-#define LIGHT_MEDIUM_SHIFT 8 /* from here on: the medium around it; of area lights that of their shape counts */
+/* Light.flags: the kind in the lowest bits (light_kind), and: */
+#define LIGHT_KIND_MASK 0xfu
+#define LIGHT_TWO_SIDED 0x10u
+#define LIGHT_EQUIRECTANGULAR 0x20u /* infinite image: latitude-longitude; else pbrt's equal-area octahedral map */
+#define LIGHT_INVISIBLE                                                                                                \
+    0x40u /* area: its shape has alpha 0, so that no ray hits it, and the light its whole emission */
+#define LIGHT_LEAF_SHIFT 7 /* from here on: number of leaves before it in the tree of lights (light_leaf) */
 
+/* Scenes have no more lights than this; as a leaf: the light has no power. */
+#define LIGHTS_MAX 0x1ffffffu
+
+/* 28 bytes, as emissive triangles come in millions. Beside them a light takes 36 in three other tables: a bucket of the
+ * alias table, and of the tree a leaf and a node. */
 typedef struct Light {
-    uint kind;
     uint flags;
-    uint primitive; /* area */
-    uint image; /* infinite image, goniometric, projection; portal: NONE if its environment is constant */
+    uint primitive; /* of an area light; of the others: index into `light_details` (light_detail) */
     /* area, infinite: radiance. point, spot, goniometric, projection: intensity. distant: irradiance on a plane facing
      * it. With an image: its scale */
     Vec3 emission;
     float area; /* area: surface area in world space */
-    Vec3 position; /* of lights at a point */
     float select_pdf; /* probability of choosing this light (host/scene/light_setup.h) */
-    Vec3 direction; /* spot, projection: axis. distant: direction in which the light travels. unit */
-    float cos_total; /* spot, projection: no light outside this angle */
-    float cos_falloff; /* spot: full intensity inside this angle; projection: cos_total */
+} Light;
+
+/* What area lights do not have. */
+typedef struct LightDetail {
+    uint image; /* infinite image, goniometric, projection; portal: NONE if its environment is constant */
     /* of light subpaths; infinite image, portal, goniometric, projection: index into `distributions2d` */
     uint distribution;
     uint portal; /* portal: index into `portals` */
-    uint leaf; /* number of leaves before it in the tree of lights; NONE: it has no power */
+    uint medium; /* around it */
+    Vec3 position; /* of lights at a point */
+    Vec3 direction; /* spot, projection: axis. distant: direction in which the light travels. unit */
+    float cos_total; /* spot, projection: no light outside this angle */
+    float cos_falloff; /* spot: full intensity inside this angle; projection: cos_total */
     Affine world_from_light; /* infinite, goniometric, projection: of directions, scaled to a determinant of 1 or -1 */
     Affine light_from_world;
-} Light;
+} LightDetail;
 
 /* A piecewise-constant density over [0,1)^2 in `lookup`: the marginal CDF of height + 1 floats at first_marginal, then
  * one conditional CDF of width + 1 floats per row, consecutive from first_conditional. The density of cell (x,y) over
@@ -410,25 +421,39 @@ typedef struct AliasBucket {
     uint alias;
 } AliasBucket;
 
-/* A node of the tree by which a light is chosen for a point (light/light_tree.h): 32 bytes. The left child of a node
- * follows it. cones: cosines of two angles, 15 bits each (light_node_cosine): normals are this far from the axis, and
- * light leaves this far from them; LIGHT_NODE_TWO_SIDED: on both sides. link: LIGHT_NODE_LEAF and the light; or the
- * right child, and LIGHT_NODE_EVEN if the children's bounds are alike, so that only their intensities matter. */
+/* A node of the tree by which a light is chosen for a point (light/light_tree.h), of two or more leaves. Nodes are in the
+ * order of a walk that takes left children first, so that the left child follows its node, and the right one follows
+ * all those of the left. */
 typedef struct LightNode {
-    Vec3 center; /* of a sphere around its lights */
-    float radius; /* -1: lights at infinity */
-    float intensity; /* sum of the largest intensities of its lights; at infinity: of their irradiances (luminance) */
-    uint axis; /* direction_pack: the middle of the normals */
-    uint cones;
-    uint link;
+    uint left; /* leaves of the left child, and LIGHT_NODE_ flags for both children */
+    /* Each child's: 12 bits of x and y, and of z below, of the middle of a sphere around its lights, as steps from the
+     * middle of the node's own sphere, 2047 of them its radius, plus 2047. Then 8 bits of the right child's intensity
+     * over the left one's, the upper half of a float without its sign, first the higher 8 bits, then the lower. */
+    uint xy[2];
+    /* Each child's: 12 bits of z; 12 bits of the radius over the node's, a float with 4 bits of exponent
+     * (light_child_sphere); 8 bits of the cone of the normals: sine of half its angle in 255ths, LIGHT_CONE_ALL for all
+     * directions. */
+    uint z_size[2];
+    uint axes; /* 16 bits for each child: the middle of the normals (direction_pack) */
 } LightNode;
 
-#define LIGHT_NODE_NORMALS 0u /* first bit in `cones` */
-#define LIGHT_NODE_EMISSION 15u
-#define LIGHT_NODE_TWO_SIDED 0x80000000u
-#define LIGHT_NODE_LEAF 0x80000000u
-#define LIGHT_NODE_EVEN 0x40000000u
-#define LIGHT_NODE_INDEX 0x3fffffffu /* of link */
+#define LIGHT_NODE_TWO_SIDED 0x10000000u /* light may leave on both sides */
+#define LIGHT_NODE_BEAMS 0x20000000u /* light leaves within the cones; else up to a right angle from them */
+#define LIGHT_NODE_EVEN 0x40000000u /* only the children's intensities matter */
+#define LIGHT_NODE_FAR 0x80000000u /* the root, if its right child has the lights at infinity: LightTree counts */
+#define LIGHT_CONE_ALL 0xffu
+
+/* The bounds of all lights that are not at infinity. */
+typedef struct LightTree {
+    uint leaves; /* of the whole tree: lights that have power */
+    uint flags; /* as in LightNode.left */
+    uint cone; /* 8 bits, as in LightNode.z_size */
+    uint axis; /* 16 bits, as in LightNode.axes */
+    Vec3 center; /* of a sphere around the lights */
+    float radius;
+    float lamps; /* sum of the largest intensities of lights (luminance) */
+    float far; /* of the lights at infinity: sum of their irradiances */
+} LightTree;
 
 /* A sphere around smooth specular surfaces, at which light subpaths are aimed (light/aim.h). */
 typedef struct Aim {
@@ -483,8 +508,8 @@ typedef struct SceneLayout {
     /* geometry */
     uint positions, normals, uvs, primitives, shapes, patches, quadrics, curves, objects, instances;
     /* tables */
-    uint materials, texture_ops, images, lights, light_alias, light_nodes, infinite_lights, portals, aims,
-        distributions2d, lookup, media, grids;
+    uint materials, texture_ops, images, lights, light_details, light_alias, light_tree, light_nodes, light_leaves,
+        infinite_lights, portals, aims, distributions2d, lookup, media, grids;
 } SceneLayout;
 
 #endif

@@ -26,8 +26,11 @@ typedef struct SceneView {
     __global const TextureOp *texture_ops;
     __global const TextureImage *images;
     __global const Light *lights;
+    __global const LightDetail *light_details;
     __global const AliasBucket *light_alias;
+    __global const LightTree *light_tree; /* one */
     __global const LightNode *light_nodes;
+    __global const uint *light_leaves; /* the lights in the order of leaves */
     __global const uint *infinite_lights;
     __global const Portal *portals;
     __global const Aim *aims;
@@ -78,8 +81,11 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.texture_ops = (__global const TextureOp *)(tables + layout->texture_ops);
     view.images = (__global const TextureImage *)(tables + layout->images);
     view.lights = (__global const Light *)(tables + layout->lights);
+    view.light_details = (__global const LightDetail *)(tables + layout->light_details);
     view.light_alias = (__global const AliasBucket *)(tables + layout->light_alias);
+    view.light_tree = (__global const LightTree *)(tables + layout->light_tree);
     view.light_nodes = (__global const LightNode *)(tables + layout->light_nodes);
+    view.light_leaves = tables + layout->light_leaves;
     view.infinite_lights = (__global const uint *)(tables + layout->infinite_lights);
     view.portals = (__global const Portal *)(tables + layout->portals);
     view.aims = (__global const Aim *)(tables + layout->aims);
@@ -89,6 +95,24 @@ SHARED_FUNCTION SceneView scene_view(__global const FrameParams *frame, __global
     view.grids = (__global const MediumGrid *)(tables + layout->grids);
     view.texels = texels;
     return view;
+}
+
+/* LIGHT_*. */
+SHARED_FUNCTION uint light_kind(__global const Light *light)
+{
+    return light->flags & LIGHT_KIND_MASK;
+}
+
+/* Number of leaves before it in the tree of lights; LIGHTS_MAX: it has no power. */
+SHARED_FUNCTION uint light_leaf(__global const Light *light)
+{
+    return light->flags >> LIGHT_LEAF_SHIFT;
+}
+
+/* Of a light that is no area light. */
+SHARED_FUNCTION __global const LightDetail *light_detail(const SceneView *scene, __global const Light *light)
+{
+    return scene->light_details + light->primitive;
 }
 
 /* Goes at the start of a kernel: declares `scene`, a pointer to its view. The loops of the CPU backend define it

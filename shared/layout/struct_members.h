@@ -96,22 +96,22 @@
     MEMBER(Material, mix_b)                                                                                            \
     MEMBER(Material, coat_table)                                                                                       \
     STRUCT(Light)                                                                                                      \
-    MEMBER(Light, kind)                                                                                                \
     MEMBER(Light, flags)                                                                                               \
     MEMBER(Light, primitive)                                                                                           \
-    MEMBER(Light, image)                                                                                               \
     MEMBER(Light, emission)                                                                                            \
     MEMBER(Light, area)                                                                                                \
-    MEMBER(Light, position)                                                                                            \
     MEMBER(Light, select_pdf)                                                                                          \
-    MEMBER(Light, direction)                                                                                           \
-    MEMBER(Light, cos_total)                                                                                           \
-    MEMBER(Light, cos_falloff)                                                                                         \
-    MEMBER(Light, distribution)                                                                                        \
-    MEMBER(Light, portal)                                                                                              \
-    MEMBER(Light, leaf)                                                                                                \
-    MEMBER(Light, world_from_light)                                                                                    \
-    MEMBER(Light, light_from_world)                                                                                    \
+    STRUCT(LightDetail)                                                                                                \
+    MEMBER(LightDetail, image)                                                                                         \
+    MEMBER(LightDetail, distribution)                                                                                  \
+    MEMBER(LightDetail, portal)                                                                                        \
+    MEMBER(LightDetail, medium)                                                                                        \
+    MEMBER(LightDetail, position)                                                                                      \
+    MEMBER(LightDetail, direction)                                                                                     \
+    MEMBER(LightDetail, cos_total)                                                                                     \
+    MEMBER(LightDetail, cos_falloff)                                                                                   \
+    MEMBER(LightDetail, world_from_light)                                                                              \
+    MEMBER(LightDetail, light_from_world)                                                                              \
     STRUCT(Distribution2D)                                                                                             \
     MEMBER(Distribution2D, width)                                                                                      \
     MEMBER(Distribution2D, height)                                                                                     \
@@ -129,12 +129,19 @@
     MEMBER(AliasBucket, q)                                                                                             \
     MEMBER(AliasBucket, alias)                                                                                         \
     STRUCT(LightNode)                                                                                                  \
-    MEMBER(LightNode, center)                                                                                          \
-    MEMBER(LightNode, radius)                                                                                          \
-    MEMBER(LightNode, intensity)                                                                                       \
-    MEMBER(LightNode, axis)                                                                                            \
-    MEMBER(LightNode, cones)                                                                                           \
-    MEMBER(LightNode, link)                                                                                            \
+    MEMBER(LightNode, left)                                                                                            \
+    MEMBER(LightNode, xy)                                                                                              \
+    MEMBER(LightNode, z_size)                                                                                          \
+    MEMBER(LightNode, axes)                                                                                            \
+    STRUCT(LightTree)                                                                                                  \
+    MEMBER(LightTree, leaves)                                                                                          \
+    MEMBER(LightTree, flags)                                                                                           \
+    MEMBER(LightTree, cone)                                                                                            \
+    MEMBER(LightTree, axis)                                                                                            \
+    MEMBER(LightTree, center)                                                                                          \
+    MEMBER(LightTree, radius)                                                                                          \
+    MEMBER(LightTree, lamps)                                                                                           \
+    MEMBER(LightTree, far)                                                                                             \
     STRUCT(Aim)                                                                                                        \
     MEMBER(Aim, center)                                                                                                \
     MEMBER(Aim, radius)                                                                                                \
@@ -187,8 +194,11 @@
     MEMBER(SceneLayout, texture_ops)                                                                                   \
     MEMBER(SceneLayout, images)                                                                                        \
     MEMBER(SceneLayout, lights)                                                                                        \
+    MEMBER(SceneLayout, light_details)                                                                                 \
     MEMBER(SceneLayout, light_alias)                                                                                   \
+    MEMBER(SceneLayout, light_tree)                                                                                    \
     MEMBER(SceneLayout, light_nodes)                                                                                   \
+    MEMBER(SceneLayout, light_leaves)                                                                                  \
     MEMBER(SceneLayout, infinite_lights)                                                                               \
     MEMBER(SceneLayout, portals)                                                                                       \
     MEMBER(SceneLayout, aims)                                                                                          \

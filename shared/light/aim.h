@@ -38,7 +38,7 @@ SHARED_FUNCTION float aim_versine(Aim aim, Vec3 p)
  * and infinite lights: their directions are not aimed. */
 SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3 p, Vec3 ng, Vec3 w)
 {
-    uint count = scene->frame->scene.aim_count, kind = scene->lights[light].kind;
+    uint count = scene->frame->scene.aim_count, kind = light_kind(scene->lights + light);
     float unaimed = light_emit_pdf_w(scene, light, ng, w), sum = 0.0f;
     if (count == 0u || (kind != LIGHT_AREA && !light_has_position(kind)))
         return unaimed;
@@ -86,7 +86,7 @@ SHARED_FUNCTION bool aim_from_point(const SceneView *scene, __global const Light
     Vec3 axis = vec3_normalize(vec3_sub(aim.center, emission->p));
     Vec3 w = frame_to_world(frame_from_normal(axis), warp_cone(u, aim_versine(aim, emission->p)));
     emission->w = vec3_normalize(w);
-    if (source->kind != LIGHT_AREA) {
+    if (light_kind(source) != LIGHT_AREA) {
         emission->radiance = delta_light_emitted(scene, source, emission->w);
         return !vec3_is_zero(emission->radiance);
     }

@@ -9,7 +9,7 @@
 #include "light/intensity_image.h"
 #include "light/position.h"
 
-/* Whether a delta light of this kind is at Light.position; the others are at infinity. */
+/* Whether a delta light of this kind is at LightDetail.position; the others are at infinity. */
 SHARED_FUNCTION bool light_has_position(uint kind)
 {
 #define POSITION_OF(NAME, name, text, feature, position) | (position) << LIGHT_##NAME
@@ -28,9 +28,8 @@ SHARED_FUNCTION bool light_is_far(uint kind)
 SHARED_FUNCTION bool light_point_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
                                         LightSample *sample)
 {
-    (void)scene;
     float distance2;
-    if (!position_light_sample(source, ref, sample, &distance2))
+    if (!position_light_sample(scene, source, ref, sample, &distance2))
         return false;
     sample->radiance = vec3_scale(source->emission, 1.0f / distance2);
     return true;
@@ -54,9 +53,8 @@ SHARED_FUNCTION Vec3 light_point_emitted(const SceneView *scene, __global const 
 SHARED_FUNCTION bool light_point_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
                                       Vec2 u_direction, LightEmission *emission)
 {
-    (void)scene;
     (void)u_point;
-    position_light_emit(source, emission);
+    position_light_emit(scene, source, emission);
     emission->w = warp_sphere(u_direction);
     emission->pdf_w = INV_4PI;
     return true;
@@ -78,16 +76,16 @@ SHARED_FUNCTION float spot_falloff(float cosine, float cos_total, float cos_fall
 
 SHARED_FUNCTION Vec3 light_spot_emitted(const SceneView *scene, __global const Light *source, Vec3 w)
 {
-    (void)scene;
-    float cosine = vec3_dot(source->direction, w);
-    return vec3_scale(source->emission, spot_falloff(cosine, source->cos_total, source->cos_falloff));
+    __global const LightDetail *spot = light_detail(scene, source);
+    float cosine = vec3_dot(spot->direction, w);
+    return vec3_scale(source->emission, spot_falloff(cosine, spot->cos_total, spot->cos_falloff));
 }
 
 SHARED_FUNCTION bool light_spot_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
                                        LightSample *sample)
 {
     float distance2;
-    if (!position_light_sample(source, ref, sample, &distance2))
+    if (!position_light_sample(scene, source, ref, sample, &distance2))
         return false;
     sample->radiance = vec3_scale(light_spot_emitted(scene, source, vec3_negate(sample->wi)), 1.0f / distance2);
     return true;
@@ -96,12 +94,12 @@ SHARED_FUNCTION bool light_spot_sample(const SceneView *scene, __global const Li
 /* Integral over cosines of the unnormalised density from which a spot's directions are drawn: 1 inside the falloff
  * angle, linear in the cosine down to 0 at the edge. The cubic falloff has the same integral, and is at most 9/8 of the
  * line. */
-SHARED_FUNCTION float spot_emit_integral(__global const Light *spot)
+SHARED_FUNCTION float spot_emit_integral(__global const LightDetail *spot)
 {
     return (1.0f - spot->cos_falloff) + 0.5f * (spot->cos_falloff - spot->cos_total);
 }
 
-SHARED_FUNCTION float spot_emit_pdf_w(__global const Light *spot, float cosine)
+SHARED_FUNCTION float spot_emit_pdf_w(__global const LightDetail *spot, float cosine)
 {
     float pdf = INV_2PI / spot_emit_integral(spot);
     if (cosine >= spot->cos_falloff)
@@ -113,7 +111,7 @@ SHARED_FUNCTION float spot_emit_pdf_w(__global const Light *spot, float cosine)
 
 /* Mapped through the disk, as in warp_cone: the squared radius is the fraction of spot_emit_integral within the
  * angle. */
-SHARED_FUNCTION Vec3 spot_emit_direction(__global const Light *spot, Vec2 u)
+SHARED_FUNCTION Vec3 spot_emit_direction(__global const LightDetail *spot, Vec2 u)
 {
     float r;
     Vec2 d = warp_disk_polar(u, &r);
@@ -131,21 +129,20 @@ SHARED_FUNCTION Vec3 spot_emit_direction(__global const Light *spot, Vec2 u)
 
 SHARED_FUNCTION float light_spot_emit_pdf_w(const SceneView *scene, __global const Light *source, Vec3 w)
 {
-    (void)scene;
-    return spot_emit_pdf_w(source, vec3_dot(source->direction, w));
+    __global const LightDetail *spot = light_detail(scene, source);
+    return spot_emit_pdf_w(spot, vec3_dot(spot->direction, w));
 }
 
 SHARED_FUNCTION bool light_spot_emit(const SceneView *scene, __global const Light *source, Vec2 u_point,
                                      Vec2 u_direction, LightEmission *emission)
 {
-    (void)scene;
     (void)u_point;
-    position_light_emit(source, emission);
-    if (!(spot_emit_integral(source) > 0.0f))
+    position_light_emit(scene, source, emission);
+    __global const LightDetail *spot = light_detail(scene, source);
+    if (!(spot_emit_integral(spot) > 0.0f))
         return false;
-    emission->w = vec3_normalize(spot_emit_direction(source, u_direction));
-    float cosine = vec3_dot(source->direction, emission->w);
-    emission->pdf_w = spot_emit_pdf_w(source, cosine);
+    emission->w = vec3_normalize(spot_emit_direction(spot, u_direction));
+    emission->pdf_w = spot_emit_pdf_w(spot, vec3_dot(spot->direction, emission->w));
     return emission->pdf_w > 0.0f;
 }
 
@@ -154,10 +151,9 @@ SHARED_FUNCTION bool light_spot_emit(const SceneView *scene, __global const Ligh
 SHARED_FUNCTION bool light_distant_sample(const SceneView *scene, __global const Light *source, Vec3 ref,
                                           LightSample *sample)
 {
-    (void)scene;
     (void)ref;
     sample->infinite = 1u;
-    sample->wi = vec3_negate(source->direction);
+    sample->wi = vec3_negate(light_detail(scene, source)->direction);
     sample->radiance = source->emission;
     return true;
 }
@@ -181,7 +177,7 @@ SHARED_FUNCTION bool light_distant_emit(const SceneView *scene, __global const L
                                         Vec2 u_direction, LightEmission *emission)
 {
     (void)u_direction;
-    emission->w = source->direction;
+    emission->w = light_detail(scene, source)->direction;
     emission->pdf_w = 1.0f;
     emission->delta_direction = 1u;
     return light_emit_from_disc(scene, u_point, emission);
@@ -193,7 +189,7 @@ SHARED_FUNCTION bool light_distant_emit(const SceneView *scene, __global const L
 SHARED_FUNCTION bool delta_light_is(const SceneView *scene, __global const Light *source, uint kind, ulong feature)
 {
     bool used = (feature & FEATURE_INTENSITY_IMAGE) == 0u || SCENE_HAS(scene, FEATURE_INTENSITY_IMAGE);
-    return used && source->kind == kind;
+    return used && light_kind(source) == kind;
 }
 
 /* sample->radiance is the arriving radiance integrated over solid angle, so pdf_w is 1. */

@@ -14,7 +14,7 @@ SHARED_FUNCTION_APART bool portal_light_emit(const SceneView *scene, uint light,
 {
     Portal portal = light_portal(scene, light);
     float pdf, stretch;
-    Distribution2D directions = scene->distributions2d[scene->lights[light].distribution];
+    Distribution2D directions = scene->distributions2d[light_detail(scene, scene->lights + light)->distribution];
     Vec2 uv = distribution2d_sample(scene->lookup, directions, u_direction, &pdf);
     Vec3 d = portal_direction(&portal, uv, &stretch);
     Vec3 passed = vec3_mad(portal.corner, u_point.x * portal.width, portal.axes.t);
@@ -98,7 +98,7 @@ SHARED_FUNCTION bool light_emit_area(const SceneView *scene, uint light, Vec2 u_
 SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point, Vec2 u_direction,
                                 LightEmission *emission)
 {
-    uint kind = scene->lights[light].kind;
+    uint kind = light_kind(scene->lights + light);
     bool done = false;
     emission->ng = vec3_splat(0.0f);
     emission->cosine = 1.0f;
@@ -120,7 +120,7 @@ SHARED_FUNCTION bool light_emit(const SceneView *scene, uint light, Vec2 u_point
  * (light_emit_pdf_passing). Lights at a point: 1. */
 SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const Surface *hit)
 {
-    uint kind = scene->lights[light].kind;
+    uint kind = light_kind(scene->lights + light);
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA) {
         Primitive primitive = scene->primitives[scene->lights[light].primitive];
         float pdf = area_light_pdf_a(scene, light, &primitive, hit);
@@ -134,9 +134,9 @@ SHARED_FUNCTION float light_emit_pdf_p(const SceneView *scene, uint light, const
 SHARED_FUNCTION float light_emit_pdf_w(const SceneView *scene, uint light, Vec3 ng, Vec3 w)
 {
     __global const Light *source = scene->lights + light;
-    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && source->kind == LIGHT_AREA)
+    if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && light_kind(source) == LIGHT_AREA)
         return area_emit_pdf_w(source, ng, w);
-    if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && source->kind >= LIGHT_INFINITE)
+    if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && light_kind(source) >= LIGHT_INFINITE)
         return environment_pdf_w(scene, light, vec3_negate(w));
     return delta_light_emit_pdf_w(scene, source, w);
 }

@@ -12,12 +12,12 @@
 /* Whether the light has a portal. */
 SHARED_FUNCTION bool light_has_portal(const SceneView *scene, uint light)
 {
-    return SCENE_HAS(scene, FEATURE_PORTAL) && scene->lights[light].kind == LIGHT_PORTAL;
+    return SCENE_HAS(scene, FEATURE_PORTAL) && light_kind(scene->lights + light) == LIGHT_PORTAL;
 }
 
 SHARED_FUNCTION Portal light_portal(const SceneView *scene, uint light)
 {
-    return scene->portals[scene->lights[light].portal];
+    return scene->portals[light_detail(scene, scene->lights + light)->portal];
 }
 
 /* Whether a light at infinity reaches p from direction d (unit, away from the scene), occlusion ignored: not past its
@@ -35,12 +35,13 @@ SHARED_FUNCTION bool environment_reaches(const SceneView *scene, uint light, Vec
 SHARED_FUNCTION Vec3 environment_image(const SceneView *scene, uint light, Vec2 uv)
 {
     __global const Light *source = scene->lights + light;
+    uint image = light_detail(scene, source)->image;
     float v = uv.y;
     if ((source->flags & LIGHT_EQUIRECTANGULAR) != 0u) {
-        float half_texel = 0.5f / (float)scene->images[source->image].height;
+        float half_texel = 0.5f / (float)scene->images[image].height;
         v = float_clamp(v, half_texel, 1.0f - half_texel);
     }
-    Vec3 c = vec3_mul(image_lookup(scene, source->image, vec2(uv.x, 1.0f - v)), source->emission);
+    Vec3 c = vec3_mul(image_lookup(scene, image, vec2(uv.x, 1.0f - v)), source->emission);
     return vec3(float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f));
 }
 
@@ -51,7 +52,7 @@ SHARED_FUNCTION Vec3 environment_image(const SceneView *scene, uint light, Vec2 
 SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, float *pdf_uniform)
 {
     __global const Light *source = scene->lights + light;
-    Affine light_from_world = source->light_from_world;
+    Affine light_from_world = light_detail(scene, source)->light_from_world;
     Vec3 w = affine_vector(light_from_world, d);
     float length = vec3_length(w);
     w = vec3_scale(w, 1.0f / length);
@@ -68,9 +69,10 @@ SHARED_FUNCTION Vec2 environment_uv(const SceneView *scene, uint light, Vec3 d, 
 /* Radiance of an infinite light from direction d (unit, away from the scene), where it is seen. */
 SHARED_FUNCTION Vec3 environment_beyond(const SceneView *scene, uint light, Vec3 d)
 {
-    uint kind = scene->lights[light].kind;
-    if (kind == LIGHT_INFINITE || (kind == LIGHT_PORTAL && scene->lights[light].image == NONE))
-        return scene->lights[light].emission;
+    __global const Light *source = scene->lights + light;
+    uint kind = light_kind(source);
+    if (kind == LIGHT_INFINITE || (kind == LIGHT_PORTAL && light_detail(scene, source)->image == NONE))
+        return source->emission;
     float pdf_uniform;
     return environment_image(scene, light, environment_uv(scene, light, d, &pdf_uniform));
 }
@@ -97,7 +99,7 @@ SHARED_FUNCTION Vec3 environment_radiance(const SceneView *scene, Vec3 p, Vec3 d
 SHARED_FUNCTION float environment_pdf_w(const SceneView *scene, uint light, Vec3 d)
 {
     __global const Light *source = scene->lights + light;
-    if (source->kind == LIGHT_INFINITE)
+    if (light_kind(source) == LIGHT_INFINITE)
         return INV_4PI;
     float pdf_uniform, stretch;
     Vec2 uv;
@@ -111,7 +113,8 @@ SHARED_FUNCTION float environment_pdf_w(const SceneView *scene, uint light, Vec3
     }
     if (!float_finite(pdf_uniform))
         return 0.0f;
-    return distribution2d_pdf(scene->lookup, scene->distributions2d[source->distribution], uv) * pdf_uniform;
+    Distribution2D directions = scene->distributions2d[light_detail(scene, source)->distribution];
+    return distribution2d_pdf(scene->lookup, directions, uv) * pdf_uniform;
 }
 
 /* Density per solid angle with which infinite_light_sample draws d at p, given the light. */
@@ -145,11 +148,12 @@ SHARED_FUNCTION_APART void portal_light_sample(const SceneView *scene, uint ligh
 SHARED_FUNCTION void image_light_sample(const SceneView *scene, uint light, Vec2 u, LightSample *sample)
 {
     __global const Light *source = scene->lights + light;
+    __global const LightDetail *detail = light_detail(scene, source);
     float pdf;
-    Vec2 uv = distribution2d_sample(scene->lookup, scene->distributions2d[source->distribution], u, &pdf);
+    Vec2 uv = distribution2d_sample(scene->lookup, scene->distributions2d[detail->distribution], u, &pdf);
     bool equirectangular = (source->flags & LIGHT_EQUIRECTANGULAR) != 0u;
     Vec3 w = equirectangular ? equirectangular_to_sphere(uv) : octahedral_to_sphere(uv);
-    Affine world_from_light = source->world_from_light;
+    Affine world_from_light = detail->world_from_light;
     Vec3 d = affine_vector(world_from_light, w);
     float length = vec3_length(d);
     sample->wi = vec3_scale(d, 1.0f / length);
@@ -167,7 +171,7 @@ SHARED_FUNCTION bool infinite_light_sample(const SceneView *scene, uint light, V
     sample->ng = vec3_splat(0.0f);
     sample->delta = 0u;
     sample->infinite = 1u;
-    if (source->kind == LIGHT_INFINITE) {
+    if (light_kind(source) == LIGHT_INFINITE) {
         sample->wi = warp_sphere(u);
         sample->pdf_w = INV_4PI;
         sample->pdf_emit = INV_4PI;

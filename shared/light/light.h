@@ -62,7 +62,7 @@ SHARED_FUNCTION float light_choice_ratio(const SceneView *scene, uint light, Vec
  * meaningless. */
 SHARED_FUNCTION bool light_sample(const SceneView *scene, uint light, Vec3 ref, Vec2 u, LightSample *sample)
 {
-    uint kind = scene->lights[light].kind;
+    uint kind = light_kind(scene->lights + light);
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
         return area_light_sample(scene, light, ref, u, sample);
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)
@@ -91,7 +91,7 @@ SHARED_FUNCTION Ray light_shadow_ray(const SceneView *scene, Vec3 p, Vec3 ng, co
  * delta lights. */
 SHARED_FUNCTION float light_pdf_w(const SceneView *scene, uint light, Vec3 ref, Vec3 wi, const Surface *hit)
 {
-    uint kind = scene->lights[light].kind;
+    uint kind = light_kind(scene->lights + light);
     if (SCENE_HAS(scene, FEATURE_AREA_LIGHT) && kind == LIGHT_AREA)
         return area_light_pdf_w(scene, light, ref, wi, hit);
     if (SCENE_HAS(scene, FEATURE_INFINITE_LIGHT) && kind >= LIGHT_INFINITE)

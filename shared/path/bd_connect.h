@@ -87,7 +87,7 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     }
     float distance2 = vec3_length_squared(vec3_sub(sample.p, z->p));
     ends->light_z1 = light_aimed_pdf_w(scene, light, sample.p, sample.ng, vec3_negate(sample.wi)) * (at_z / distance2);
-    if (scene->lights[light].kind != LIGHT_AREA) {
+    if (light_kind(scene->lights + light) != LIGHT_AREA) {
         ends->own_y0 = select;
         ends->camera_y1 = 0.0f; /* cannot be hit */
         return true;

@@ -70,8 +70,8 @@ SHARED_FUNCTION_APART uint emitter_medium(const SceneView *scene, Walk walk)
     if (!SCENE_HAS(scene, FEATURE_MEDIUM))
         return 0u;
     __global const Light *light = scene->lights + state_load(walk.paths, walk.stride, BD_EMITTER, walk.item);
-    if (light->kind != LIGHT_AREA)
-        return light_medium(light);
+    if (light_kind(light) != LIGHT_AREA)
+        return light_detail(scene, light)->medium;
     uint media = scene->shapes[scene->primitives[light->primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK].flags;
     bool back = (state_load(walk.paths, walk.stride, BD_EMITTER_FLAGS, walk.item) & EMITTER_BACK) != 0u;
     return back ? media_inside(media) : media_outside(media);

@@ -126,7 +126,7 @@ SHARED_FUNCTION void delta_densities(const BsdfSample *sample, Vec3 wo, float *f
 SHARED_FUNCTION float light_connect_ratio(const SceneView *scene, uint light, Vec3 from, Vec3 w, float distance2,
                                           const Surface *point)
 {
-    if (scene->lights[light].kind != LIGHT_AREA)
+    if (light_kind(scene->lights + light) != LIGHT_AREA)
         return 1.0f;
     float emitted = light_emit_pdf_p(scene, light, point);
     float drawn = area_light_pdf_w(scene, light, from, w, point) * solid_angle_to_area(scene, w, point->ng, distance2);
@@ -161,7 +161,7 @@ SHARED_FUNCTION float emitter_connect_ratio(const SceneView *scene, __global con
         Vec3 travel = state_load_vec3(vertices, stride, base + VERTEX_POINT, item);
         return choice * environment_connect_ratio(scene, light, y->p, vec3_negate(travel));
     }
-    if (!SCENE_HAS(scene, FEATURE_SPHERE) || scene->lights[light].kind != LIGHT_AREA ||
+    if (!SCENE_HAS(scene, FEATURE_SPHERE) || light_kind(scene->lights + light) != LIGHT_AREA ||
         scene->primitives[scene->lights[light].primitive].shape_and_kind >> PRIMITIVE_KIND_SHIFT != PRIMITIVE_SPHERE)
         return choice;
     Surface point = {0}; /* spheres read no more than this */

@@ -77,13 +77,13 @@ SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, 
 {
     __global const Light *source = scene->lights + light;
     PhotonParams params = scene->frame->photons;
-    if (source->kind == LIGHT_DISTANT) {
+    if (light_kind(source) == LIGHT_DISTANT) {
         float sine2 = params.distant_sine * params.distant_sine;
-        bool seen = vec3_dot(ray.d, source->direction) < 0.0f &&
-                    vec3_length_squared(vec3_cross(ray.d, source->direction)) < sine2;
+        Vec3 direction = light_detail(scene, source)->direction;
+        bool seen = vec3_dot(ray.d, direction) < 0.0f && vec3_length_squared(vec3_cross(ray.d, direction)) < sine2;
         return vec3_scale(source->emission, seen && t_max == FLOAT_INFINITY ? INV_PI / sine2 : 0.0f);
     }
-    Vec3 to_light = vec3_sub(source->position, ray.o);
+    Vec3 to_light = vec3_sub(light_detail(scene, source)->position, ray.o);
     float along = vec3_dot(to_light, ray.d), radius2 = params.point_radius * params.point_radius;
     bool seen = along > 0.0f && along < t_max && vec3_length_squared(vec3_cross(to_light, ray.d)) < radius2;
     Vec3 intensity = delta_light_emitted(scene, source, vec3_negate(ray.d));

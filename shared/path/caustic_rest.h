@@ -29,7 +29,7 @@ SHARED_FUNCTION float caustic_rest_of(float p, float q)
 /* PHOTON_LIGHT of the photons of a light. */
 SHARED_FUNCTION uint caustic_light(const SceneView *scene, uint light)
 {
-    uint kind = scene->lights[light].kind;
+    uint kind = light_kind(scene->lights + light);
     return kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DISTANT ? light : NONE;
 }
 

@@ -394,7 +394,7 @@ START_TEST(test_moved)
     static const uint indices[3] = {0, 1, 2};
     const MeshData mesh = {.positions = square, .vertex_count = 3, .indices = indices, .triangle_count = 1};
     const Material material = {.kind = MATERIAL_DIFFUSE, .normal_map = NONE, .displacement.program = NONE};
-    const Light light = {.kind = LIGHT_POINT, .emission = {1, 1, 1}, .position = {9000, 0, 1}};
+    const LightData light = {.kind = LIGHT_POINT, .emission = {1, 1, 1}, .detail.position = {9000, 0, 1}};
     Case *c = case_make(GRID_ROW);
     uint index;
     Error error = {{0}, {0}};

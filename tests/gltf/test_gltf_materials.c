@@ -214,7 +214,7 @@ START_TEST(emission_has_its_strength)
                &scene);
     ck_assert_uint_eq(scene.lights.count, 3); /* two triangles and the other light */
     const Light *light = &ELEMENT(&scene, lights, Light, 2);
-    ck_assert_uint_eq(light->kind, LIGHT_AREA);
+    ck_assert_uint_eq(light_kind(light), LIGHT_AREA);
     assert_vec3(light->emission, 20, 10, 5, 1e-6);
     ck_assert_uint_eq(light->flags & LIGHT_TWO_SIDED, 0);
     scene_destroy(&scene);

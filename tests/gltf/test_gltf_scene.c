@@ -2,6 +2,7 @@
 #include "gltf/test_gltf.h"
 
 #include "base/matrix.h"
+#include "layout/scene_view.h"
 #include "support/test_files.h"
 
 #include <string.h>
@@ -241,17 +242,18 @@ START_TEST(lights_have_their_units)
                &scene);
     ck_assert_uint_eq(scene.lights.count, 4); /* one of them by two nodes */
     const Light *light = &ELEMENT(&scene, lights, Light, 0);
-    ck_assert_uint_eq(light[0].kind, LIGHT_POINT);
+    const LightDetail *detail = scene.light_details.data;
+    ck_assert_uint_eq(light_kind(&light[0]), LIGHT_POINT);
     assert_vec3(light[0].emission, 8, 4, 2, 0);
-    assert_vec3(light[0].position, 1, 2, 3, 0);
-    ck_assert_uint_eq(light[1].kind, LIGHT_DISTANT);
+    assert_vec3(detail[0].position, 1, 2, 3, 0);
+    ck_assert_uint_eq(light_kind(&light[1]), LIGHT_DISTANT);
     assert_vec3(light[1].emission, 100, 100, 100, 0);
-    assert_vec3(light[1].direction, 0, 0, -1, 0);
-    ck_assert_uint_eq(light[2].kind, LIGHT_SPOT);
-    assert_vec3(light[2].direction, 0, 1, 0, 1e-6);
-    TEST_NEAR(light[2].cos_total, cos(0.6), 1e-6);
-    TEST_NEAR(light[2].cos_falloff, cos(0.2), 1e-6);
-    assert_vec3(light[3].position, 0, 0, 0, 0);
+    assert_vec3(detail[1].direction, 0, 0, -1, 0);
+    ck_assert_uint_eq(light_kind(&light[2]), LIGHT_SPOT);
+    assert_vec3(detail[2].direction, 0, 1, 0, 1e-6);
+    TEST_NEAR(detail[2].cos_total, cos(0.6), 1e-6);
+    TEST_NEAR(detail[2].cos_falloff, cos(0.2), 1e-6);
+    assert_vec3(detail[3].position, 0, 0, 0, 0);
     gltf_says("the range of KHR_lights_punctual.lights[0] is ignored");
     scene_destroy(&scene);
 }

@@ -127,15 +127,15 @@ static void setup(LightFixture *f, int which)
     else if (which == LAMP || which == BOTH_SIDES)
         fixture_add_polygon(f, SQUARE, 4, NULL, 0, which == LAMP ? 0 : LIGHT_TWO_SIDED);
     else if (which == CONSTANT)
-        fixture_add_light(f, (Light){.kind = LIGHT_INFINITE, .emission = {1, 1, 1}});
+        fixture_add_light(f, (LightData){.kind = LIGHT_INFINITE, .emission = {1, 1, 1}});
     else
-        fixture_add_light(f, (Light){.kind = which == POINT  ? LIGHT_POINT
-                                             : which == SPOT ? LIGHT_SPOT
-                                                             : LIGHT_DISTANT,
-                                     .emission = {1, 1, 1},
-                                     .direction = {0, 0, -1},
-                                     .cos_total = -0.5f,
-                                     .cos_falloff = 0.5f});
+        fixture_add_light(f, (LightData){.kind = which == POINT  ? LIGHT_POINT
+                                                 : which == SPOT ? LIGHT_SPOT
+                                                                 : LIGHT_DISTANT,
+                                         .emission = {1, 1, 1},
+                                         .detail.direction = {0, 0, -1},
+                                         .detail.cos_total = -0.5f,
+                                         .detail.cos_falloff = 0.5f});
     fixture_finish(f);
     memcpy(array_grow(&f->scene.aims, AIM_COUNT, &error), AIMS, sizeof AIMS);
     f->view.aims = f->scene.aims.data;

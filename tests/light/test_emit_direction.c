@@ -29,14 +29,14 @@ static const double EXTENT[2] = {0.9, 0.5};
 /* Eleven chi-square tests of directions, five of points on the disc (Sidak: 1e-3 overall). */
 #define P_MIN (1e-3 / 16.0)
 
-static Light spot(double total, double falloff)
+static LightData spot(double total, double falloff)
 {
-    return (Light){.kind = LIGHT_SPOT,
-                   .emission = {2, 2, 2},
-                   .position = {1, 2, 3},
-                   .direction = {0.48f, 0.64f, -0.6f},
-                   .cos_total = (float)cos(total),
-                   .cos_falloff = (float)cos(falloff)};
+    return (LightData){.kind = LIGHT_SPOT,
+                       .emission = {2, 2, 2},
+                       .detail.position = {1, 2, 3},
+                       .detail.direction = {0.48f, 0.64f, -0.6f},
+                       .detail.cos_total = (float)cos(total),
+                       .detail.cos_falloff = (float)cos(falloff)};
 }
 
 static void add_image(LightFixture *f, uint flags)
@@ -53,7 +53,7 @@ static void add_image(LightFixture *f, uint flags)
 static void stretch(LightFixture *f)
 {
     static const float SCALE[3] = {2.0f, 1.0f, 0.5f};
-    Light *light = &ARRAY_AT(&f->scene.lights, Light, 0);
+    LightDetail *light = &ARRAY_AT(&f->scene.light_details, LightDetail, 0);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
             light->world_from_light.m[4 * i + j] *= SCALE[i];
@@ -68,7 +68,7 @@ static void setup(LightFixture *f, int which)
     f->scene.frame.scene.world_center = vec3(1.0f, -2.0f, 5.0f);
     switch (which) {
     case POINT:
-        fixture_add_light(f, (Light){.kind = LIGHT_POINT, .emission = {2, 2, 2}, .position = {1, 2, 3}});
+        fixture_add_light(f, (LightData){.kind = LIGHT_POINT, .emission = {2, 2, 2}, .detail.position = {1, 2, 3}});
         break;
     case WIDE_SPOT:
         fixture_add_light(f, spot(2.5, 0.3));
@@ -80,10 +80,11 @@ static void setup(LightFixture *f, int which)
         fixture_add_light(f, spot(0.5, 0.5));
         break;
     case CONSTANT:
-        fixture_add_light(f, (Light){.kind = LIGHT_INFINITE, .emission = {2, 2, 2}});
+        fixture_add_light(f, (LightData){.kind = LIGHT_INFINITE, .emission = {2, 2, 2}});
         break;
     case DISTANT:
-        fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {2, 2, 2}, .direction = {0.6f, 0.0f, -0.8f}});
+        fixture_add_light(
+            f, (LightData){.kind = LIGHT_DISTANT, .emission = {2, 2, 2}, .detail.direction = {0.6f, 0.0f, -0.8f}});
         break;
     default:
         add_image(f, which == LATLONG ? LIGHT_EQUIRECTANGULAR : 0u);
@@ -105,12 +106,13 @@ typedef struct Cells {
 static Cells cells_make(const LightFixture *f, int which)
 {
     Cells cells = {frame_from_normal(vec3(0.0f, 0.0f, 1.0f)), -1.0};
-    const Light *light = &ARRAY_AT(&f->scene.lights, Light, 0);
-    if (light->kind == LIGHT_SPOT) {
+    const LightDetail *light = &ARRAY_AT(&f->scene.light_details, LightDetail, 0);
+    uint kind = light_kind(f->view.lights);
+    if (kind == LIGHT_SPOT) {
         cells.frame = frame_from_normal(light->direction);
         cells.low = which == WIDE_SPOT ? -1.0 : 2.0 * (double)light->cos_total - 1.0; /* wider than the cone */
     }
-    if (light->kind == LIGHT_PROJECTION) { /* about its axis, a little further than the corners */
+    if (kind == LIGHT_PROJECTION) { /* about its axis, a little further than the corners */
         cells = (Cells){frame_from_normal(projection_direction(light, vec2(0.5f, 0.5f))), 1.0};
         for (int i = 0; i < 4; ++i) {
             Vec3 corner = projection_direction(light, vec2((float)(i & 1), (float)(i >> 1)));
@@ -173,7 +175,7 @@ START_TEST(test_records)
     LightFixture f;
     int differs = 0, count = 5000;
     setup(&f, _i);
-    uint kind = ARRAY_AT(&f.scene.lights, Light, 0).kind;
+    uint kind = light_kind(f.view.lights);
     bool far = !light_has_position(kind);
     for (uint i = 0; i < (uint)count; ++i) {
         LightEmission e;
@@ -235,12 +237,13 @@ START_TEST(test_bounds)
     LightFixture f;
     LightEmission e;
     setup(&f, WIDE_SPOT);
-    double integral = 2.0 * M_PI * (double)spot_emit_integral(f.scene.lights.data);
+    double integral = 2.0 * M_PI * (double)spot_emit_integral(f.view.light_details);
     for (uint i = 0; i < 5000; ++i) {
         TEST_TRUE(light_emit(&f.view, 0, fixture_random(2, i), fixture_random(9, i), &e));
         TEST_TRUE((double)e.radiance.x / (double)e.pdf_w < 1.1251 * 2.0 * integral);
     }
-    ARRAY_AT(&f.scene.lights, Light, 0).cos_falloff = ARRAY_AT(&f.scene.lights, Light, 0).cos_total = 1.0f;
+    LightDetail *spot = &ARRAY_AT(&f.scene.light_details, LightDetail, 0);
+    spot->cos_falloff = spot->cos_total = 1.0f;
     ck_assert(!light_emit(&f.view, 0, vec2(0.5f, 0.5f), vec2(0.5f, 0.5f), &e));
     fixture_destroy(&f);
     for (int which = CONSTANT; which <= DISTANT; ++which) {
@@ -257,7 +260,7 @@ START_TEST(test_wide_spots)
 {
     for (int k = 1; k < 20000; ++k)
         for (int j = 1; j < 5; ++j) {
-            Light spot = {.kind = LIGHT_SPOT, .direction = {0.0f, 0.0f, 1.0f}, .cos_total = -1.0f};
+            LightDetail spot = {.direction = {0.0f, 0.0f, 1.0f}, .cos_total = -1.0f};
             spot.cos_falloff = -1.0f + (float)k * 0x1p-24f;
             Vec3 w = spot_emit_direction(&spot, vec2(1.0f - (float)j * 0x1p-24f, 0.3f));
             TEST_NEAR(vec3_length(w), 1.0, 1e-5);

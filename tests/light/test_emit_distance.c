@@ -36,7 +36,8 @@ static void setup(LightFixture *f, const DistanceCase *c, bool sun, float low[3]
         fixture_add_environment(f, texels, WIDTH, HEIGHT, LIGHT_EQUIRECTANGULAR, rotation);
         free(texels);
     } else {
-        fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {1, 1, 1}, .direction = {0.36f, 0.48f, -0.8f}});
+        fixture_add_light(
+            f, (LightData){.kind = LIGHT_DISTANT, .emission = {1, 1, 1}, .detail.direction = {0.36f, 0.48f, -0.8f}});
     }
     fixture_finish(f);
 }

@@ -85,15 +85,15 @@ static double setup(LightFixture *f, int which)
         power = M_PI * 4.0 * (2.0 * M_PI * 0.4 * 0.6);
         break;
     case POINT:
-        fixture_add_light(f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
+        fixture_add_light(f, (LightData){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
         power = 4.0 * M_PI;
         break;
     case SPOT:
-        fixture_add_light(f, (Light){.kind = LIGHT_SPOT,
-                                     .emission = {1, 1, 1},
-                                     .direction = {0.36f, 0.48f, -0.8f},
-                                     .cos_total = CONE_TOTAL,
-                                     .cos_falloff = CONE_FALLOFF});
+        fixture_add_light(f, (LightData){.kind = LIGHT_SPOT,
+                                         .emission = {1, 1, 1},
+                                         .detail.direction = {0.36f, 0.48f, -0.8f},
+                                         .detail.cos_total = CONE_TOTAL,
+                                         .detail.cos_falloff = CONE_FALLOFF});
         power = 2.0 * M_PI * (1.0 - 0.5 * (0.5 + 0.8));
         break;
     case GONIOMETRIC:
@@ -101,11 +101,12 @@ static double setup(LightFixture *f, int which)
         power = add_intensity(f, which == PROJECTION);
         break;
     case DISTANT:
-        fixture_add_light(f, (Light){.kind = LIGHT_DISTANT, .emission = {1, 1, 1}, .direction = {0.36f, 0.48f, -0.8f}});
+        fixture_add_light(
+            f, (LightData){.kind = LIGHT_DISTANT, .emission = {1, 1, 1}, .detail.direction = {0.36f, 0.48f, -0.8f}});
         power = scene;
         break;
     case CONSTANT:
-        fixture_add_light(f, (Light){.kind = LIGHT_INFINITE, .emission = {1, 1, 1}});
+        fixture_add_light(f, (LightData){.kind = LIGHT_INFINITE, .emission = {1, 1, 1}});
         power = 4.0 * M_PI * scene;
         break;
     default:

@@ -12,6 +12,7 @@ int main(void)
     suite_add_tcase(suite, light_portal_case());
     suite_add_tcase(suite, light_select_case());
     suite_add_tcase(suite, light_tree_case());
+    suite_add_tcase(suite, light_bounds_case());
     suite_add_tcase(suite, camera_case());
     suite_add_tcase(suite, pixel_filter_case());
     suite_add_tcase(suite, mis_case());

@@ -10,6 +10,7 @@ TCase *light_environment_case(void);
 TCase *light_portal_case(void);
 TCase *light_select_case(void);
 TCase *light_tree_case(void);
+TCase *light_bounds_case(void);
 TCase *camera_case(void);
 TCase *pixel_filter_case(void);
 TCase *mis_case(void);

@@ -91,7 +91,7 @@ START_TEST(test_constant)
 {
     LightFixture f;
     fixture_init(&f);
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {2, 2, 2}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_INFINITE, .emission = {2, 2, 2}});
     fixture_finish(&f);
     ASSERT_IRRADIANCE(&f, 0, vec3(1, 2, 3), vec3(0.6f, 0, 0.8f), 2.0 * M_PI);
     check_density("constant", &f, 1e-5);
@@ -215,9 +215,9 @@ START_TEST(test_sum)
 {
     LightFixture f;
     fixture_init(&f);
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {1, 2, 3}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0, 0, 0}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {4, 5, 6}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_INFINITE, .emission = {1, 2, 3}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_INFINITE, .emission = {0, 0, 0}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_INFINITE, .emission = {4, 5, 6}});
     fixture_finish(&f);
     Vec3 sum = environment_radiance(&f.view, vec3_splat(0.0f), vec3(0, 0, 1));
     ck_assert(sum.x == 5.0f && sum.y == 7.0f && sum.z == 9.0f);

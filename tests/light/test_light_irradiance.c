@@ -118,14 +118,14 @@ START_TEST(test_delta_lights)
     LightFixture f;
     fixture_init(&f);
     const float cos_total = cosf(0.6f), cos_falloff = cosf(0.4f), half = 0.5f * (cos_total + cos_falloff);
-    Light point = {.kind = LIGHT_POINT, .emission = {3, 3, 3}, .position = {0, 0, 2}};
-    Light spot = {.kind = LIGHT_SPOT,
-                  .emission = {3, 3, 3},
-                  .position = {0, 0, 2},
-                  .direction = {0, 0, -1},
-                  .cos_total = cos_total,
-                  .cos_falloff = cos_falloff};
-    Light distant = {.kind = LIGHT_DISTANT, .emission = {3, 3, 3}, .direction = {0.6f, 0, -0.8f}};
+    LightData point = {.kind = LIGHT_POINT, .emission = {3, 3, 3}, .detail.position = {0, 0, 2}};
+    LightData spot = {.kind = LIGHT_SPOT,
+                      .emission = {3, 3, 3},
+                      .detail.position = {0, 0, 2},
+                      .detail.direction = {0, 0, -1},
+                      .detail.cos_total = cos_total,
+                      .detail.cos_falloff = cos_falloff};
+    LightData distant = {.kind = LIGHT_DISTANT, .emission = {3, 3, 3}, .detail.direction = {0.6f, 0, -0.8f}};
     fixture_add_light(&f, point);
     fixture_add_light(&f, spot);
     fixture_add_light(&f, distant);

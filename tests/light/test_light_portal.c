@@ -25,8 +25,8 @@ static void portal_add(LightFixture *f)
     Portal portal;
     Light *light = &ARRAY_AT(&f->scene.lights, Light, f->scene.lights.count - 1);
     ck_assert_msg(portal_make(CORNERS, &portal, &error), "%s", error.message);
-    ck_assert(scene_add_portal(&f->scene, &portal, &light->portal, &error));
-    light->kind = LIGHT_PORTAL;
+    ck_assert(scene_add_portal(&f->scene, &portal, &scene_light_detail(&f->scene, light)->portal, &error));
+    light->flags = (light->flags & ~LIGHT_KIND_MASK) | LIGHT_PORTAL;
 }
 
 static void setup(LightFixture *f, int sky)
@@ -46,7 +46,7 @@ static void setup(LightFixture *f, int sky)
             texels[3 * ((uint)(uv.y * SIDE) * SIDE + (uint)(uv.x * SIDE)) + (uint)k] = 1e4f;
     }
     if (sky == CONSTANT)
-        fixture_add_light(f, (Light){.image = NONE, .emission = {2, 2, 2}});
+        fixture_add_light(f, (LightData){.detail.image = NONE, .emission = {2, 2, 2}});
     else
         fixture_add_environment(f, texels, sky == LATLONG ? 2 * SIDE : SIDE, SIDE,
                                 sky == LATLONG ? LIGHT_EQUIRECTANGULAR : 0, ROTATION);
@@ -261,7 +261,7 @@ START_TEST(test_moved)
     const MeshData mesh = {.positions = square, .vertex_count = 3, .indices = indices, .triangle_count = 1};
     const double corners[4][3] = {{9002, -1, 0.5}, {9002, -1, 2.5}, {9002, 2, 2.5}, {9002, 2, 0.5}};
     const Material material = {.kind = MATERIAL_DIFFUSE, .normal_map = NONE, .displacement.program = NONE};
-    Light light = {.kind = LIGHT_PORTAL, .image = NONE, .emission = {1, 1, 1}};
+    LightData light = {.kind = LIGHT_PORTAL, .detail.image = NONE, .emission = {1, 1, 1}};
     Portal portal;
     Scene scene;
     Error error = {0};
@@ -269,7 +269,7 @@ START_TEST(test_moved)
     scene_init(&scene);
     ck_assert(scene_add_material(&scene, &material, &index, &error));
     ck_assert(scene_add_mesh(&scene, &mesh, fixture_shape(0), NULL, 0, &error));
-    ck_assert(portal_make(corners, &portal, &error) && scene_add_portal(&scene, &portal, &light.portal, &error));
+    ck_assert(portal_make(corners, &portal, &error) && scene_add_portal(&scene, &portal, &light.detail.portal, &error));
     ck_assert(scene_add_light(&scene, &light, &error));
     scene.movable = true;
     ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);

@@ -15,13 +15,16 @@ START_TEST(test_powers)
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     fixture_add_polygon(&f, square, 4, NULL, 0, 0);
     fixture_add_polygon(&f, square, 3, NULL, 0, LIGHT_TWO_SIDED);
-    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {0, 0, 0}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_SPOT, .emission = {1, 1, 1}, .cos_total = 0.5f, .cos_falloff = 0.75f});
-    fixture_add_light(&f, (Light){.kind = LIGHT_DISTANT,
-                                  .emission = {0.5f * bright, 0.5f * bright, 0.5f * bright},
-                                  .direction = {0, 0, 1}});
-    fixture_add_light(&f, (Light){.kind = LIGHT_INFINITE, .emission = {0.1f * bright, 0.1f * bright, 0.1f * bright}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_POINT, .emission = {0, 0, 0}});
+    fixture_add_light(
+        &f,
+        (LightData){.kind = LIGHT_SPOT, .emission = {1, 1, 1}, .detail.cos_total = 0.5f, .detail.cos_falloff = 0.75f});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_DISTANT,
+                                      .emission = {0.5f * bright, 0.5f * bright, 0.5f * bright},
+                                      .detail.direction = {0, 0, 1}});
+    fixture_add_light(&f,
+                      (LightData){.kind = LIGHT_INFINITE, .emission = {0.1f * bright, 0.1f * bright, 0.1f * bright}});
     fixture_add_environment(&f, texels, 4, 2, LIGHT_EQUIRECTANGULAR, identity);
     ARRAY_AT(&f.scene.lights, Light, 7).emission = vec3_splat(0.05f * bright);
     fixture_finish(&f);
@@ -81,7 +84,7 @@ START_TEST(test_no_light)
     ck_assert(!light_setup(&f.scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "the scene has no light"));
     /* Next to another light, the black one does not count as a light. */
-    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_POINT, .emission = {1, 1, 1}});
     fixture_finish(&f);
     LightSample s;
     ck_assert_uint_eq(f.scene.infinite_lights.count, 0);
@@ -105,7 +108,7 @@ START_TEST(test_not_finite)
     ck_assert(!light_setup(&f.scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "texel (1, 0)"));
     f.scene.lights.count = 0;
-    fixture_add_light(&f, (Light){.kind = LIGHT_POINT, .emission = {1, NAN, 1}});
+    fixture_add_light(&f, (LightData){.kind = LIGHT_POINT, .emission = {1, NAN, 1}});
     ck_assert(!light_setup(&f.scene, &error));
     ck_assert_ptr_nonnull(strstr(error.message, "power is not finite"));
     fixture_destroy(&f);

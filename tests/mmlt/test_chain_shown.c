@@ -275,7 +275,7 @@ START_TEST(test_environment)
     shown_init(&shown, 5);
     for (int i = 0; i < LIGHTS; ++i) {
         Vec3 emission = i == 2 ? vec3_splat(0.0f) : color_draw(&shown);
-        fixture_add_light(&shown.light, (Light){.kind = LIGHT_INFINITE, .emission = emission});
+        fixture_add_light(&shown.light, (LightData){.kind = LIGHT_INFINITE, .emission = emission});
     }
     fixture_finish(&shown.light);
     frame->path.strategies = STRATEGIES_BDPT;

@@ -158,7 +158,7 @@ static float emitted(const Walks *walks, const RealPath *path)
 /* Whether x_k is on an area light. */
 static bool on_area(const Walks *walks, const RealPath *path)
 {
-    return walks->view.lights[path->light].kind == LIGHT_AREA;
+    return light_kind(&walks->view.lights[path->light]) == LIGHT_AREA;
 }
 
 /* Density of x_k as sampled on the light. */

@@ -3,25 +3,30 @@
 #include "support/test_files.h"
 
 #include "image/color.h"
+#include "layout/scene_view.h"
 
 #include <string.h>
 
 #define TRIANGLE "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 2 0 0 0 1 0 ] "
 
-static Light light_of(const char *text, Scene *scene)
+static LightData light_of(const char *text, Scene *scene)
 {
     char whole[512];
     snprintf(whole, sizeof whole, "WorldBegin\n%s", text);
     import_text_in(whole, test_folder, false, scene);
     ck_assert_uint_ge(scene->lights.count, 1);
-    return ELEMENT(scene, lights, Light, 0);
+    const Light *light = &ELEMENT(scene, lights, Light, 0);
+    LightData data = {.kind = light_kind(light), .flags = light->flags & ~LIGHT_KIND_MASK, .emission = light->emission};
+    if (data.kind != LIGHT_AREA)
+        data.detail = *scene_light_detail(scene, light);
+    return data;
 }
 
 /* The emission of the first light of `text`. */
 static void emission_is(const char *text, float r, float g, float b)
 {
     Scene scene;
-    Light light = light_of(text, &scene);
+    LightData light = light_of(text, &scene);
     float tolerance = 1e-5f * (1.0f + fabsf(r) + fabsf(g) + fabsf(b));
     assert_vec3(light.emission, r, g, b, tolerance);
     scene_destroy(&scene);
@@ -48,7 +53,7 @@ START_TEST(other_spectra_have_luminance_one)
         char text[256];
         Scene scene;
         snprintf(text, sizeof text, "LightSource \"point\" \"float scale\" 3 %s", SPECTRA[i]);
-        Light light = light_of(text, &scene);
+        LightData light = light_of(text, &scene);
         ASSERT_NEAR(rgb_luminance(light.emission), 3.0f, 3e-3f);
         scene_destroy(&scene);
     }
@@ -94,24 +99,24 @@ END_TEST
 START_TEST(places_and_directions)
 {
     Scene scene;
-    Light light = light_of("Translate 1 2 3 Scale 2 2 2 LightSource \"point\" \"point3 from\" [ 1 0 0 ]", &scene);
+    LightData light = light_of("Translate 1 2 3 Scale 2 2 2 LightSource \"point\" \"point3 from\" [ 1 0 0 ]", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_POINT);
-    assert_vec3(light.position, 3, 2, 3, 0.0f);
+    assert_vec3(light.detail.position, 3, 2, 3, 0.0f);
     scene_destroy(&scene);
     light = light_of("Rotate 90 1 0 0 LightSource \"distant\"", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_DISTANT);
     /* From the origin toward +z by default; the rotation about x takes z to -y. */
-    assert_vec3(light.direction, 0, -1, 0, 1e-6f);
+    assert_vec3(light.detail.direction, 0, -1, 0, 1e-6f);
     scene_destroy(&scene);
     light = light_of("LightSource \"distant\" \"point3 from\" [ 1 1 0 ] \"point3 to\" [ 1 -3 0 ]", &scene);
-    assert_vec3(light.direction, 0, -1, 0, 1e-6f);
+    assert_vec3(light.detail.direction, 0, -1, 0, 1e-6f);
     scene_destroy(&scene);
     light = light_of("Translate 1 0 0 LightSource \"spot\" \"point3 from\" [ 0 5 0 ] \"point3 to\" [ 0 0 0 ]", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_SPOT);
-    assert_vec3(light.position, 1, 5, 0, 0.0f);
-    assert_vec3(light.direction, 0, -1, 0, 1e-6f);
-    ASSERT_NEAR(light.cos_total, 0.8660254f, 1e-6f);
-    ASSERT_NEAR(light.cos_falloff, 0.9063078f, 1e-6f);
+    assert_vec3(light.detail.position, 1, 5, 0, 0.0f);
+    assert_vec3(light.detail.direction, 0, -1, 0, 1e-6f);
+    ASSERT_NEAR(light.detail.cos_total, 0.8660254f, 1e-6f);
+    ASSERT_NEAR(light.detail.cos_falloff, 0.9063078f, 1e-6f);
     scene_destroy(&scene);
 }
 END_TEST
@@ -124,8 +129,7 @@ START_TEST(area_lights)
                  &scene);
     ck_assert_uint_eq(scene.lights.count, 2);
     const Light *light = &ELEMENT(&scene, lights, Light, 0);
-    ck_assert_uint_eq(light->kind, LIGHT_AREA);
-    ck_assert_uint_eq(light->flags, LIGHT_TWO_SIDED);
+    ck_assert_uint_eq(light->flags, LIGHT_AREA | LIGHT_TWO_SIDED);
     ck_assert_uint_eq(light->primitive, 0);
     ASSERT_NEAR(light->area, 1.0f, 1e-6f);
     ck_assert_uint_eq(ELEMENT(&scene, shapes, Shape, 1).first_light, 1);
@@ -143,7 +147,7 @@ static bool invisible(const char *shape)
              "Texture \"none\" \"float\" \"constant\" \"float value\" 0\n"
              "Texture \"holes\" \"float\" \"checkerboard\" AreaLightSource \"diffuse\" \"bool twosided\" true %s",
              shape);
-    Light light = light_of(text, &scene);
+    LightData light = light_of(text, &scene);
     ck_assert_uint_eq(light.flags & ~(uint)LIGHT_INVISIBLE, LIGHT_TWO_SIDED);
     scene_destroy(&scene);
     return (light.flags & LIGHT_INVISIBLE) != 0;
@@ -163,7 +167,7 @@ END_TEST
 START_TEST(light_attributes)
 {
     Scene scene;
-    Light light =
+    LightData light =
         light_of("Attribute \"light\" \"float scale\" 5 \"rgb L\" [ 2 2 2 ] LightSource \"infinite\"", &scene);
     assert_vec3(light.emission, 10, 10, 10, 1e-5f);
     scene_destroy(&scene);
@@ -190,13 +194,13 @@ START_TEST(environment_maps)
     Error error;
     Scene scene;
     map_write(64, 64);
-    Light light =
+    LightData light =
         light_of("Rotate 90 0 0 1 LightSource \"infinite\" \"string filename\" \"map.pfm\" \"float scale\" 3", &scene);
     ck_assert_uint_eq(light.kind, LIGHT_INFINITE_IMAGE);
     ck_assert_uint_eq(light.flags, 0);
     assert_vec3(light.emission, 3, 3, 3, 0.0f);
-    ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.image).wrap, WRAP_OCTAHEDRAL);
-    assert_vec3(affine_vector(light.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
+    ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.detail.image).wrap, WRAP_OCTAHEDRAL);
+    assert_vec3(affine_vector(light.detail.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
     scene_destroy(&scene);
     /* A constant map of radiance 1/2 lights a plane with pi / 2; pbrt measures half of that, so its scale is twice a
      * constant light's. */
@@ -209,7 +213,7 @@ START_TEST(environment_maps)
     ck_assert_ptr_nonnull(strstr(error.message, "an infinite light's image that is not square (4 x 2)"));
     scene_destroy(&scene);
     import_text_in(MAP, test_folder, true, &scene);
-    ck_assert_uint_eq(ELEMENT(&scene, lights, Light, 0).flags, LIGHT_EQUIRECTANGULAR);
+    ck_assert_uint_eq(ELEMENT(&scene, lights, Light, 0).flags, LIGHT_INFINITE_IMAGE | LIGHT_EQUIRECTANGULAR);
     scene_destroy(&scene);
 }
 END_TEST
@@ -220,12 +224,13 @@ START_TEST(latitude_longitude_maps)
 {
     Scene scene;
     map_write(64, 32);
-    Light light = light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"string mapping\" \"latlong\" "
-                           "\"float illuminance\" 5",
-                           &scene);
+    LightData light =
+        light_of("LightSource \"infinite\" \"string filename\" \"map.pfm\" \"string mapping\" \"latlong\" "
+                 "\"float illuminance\" 5",
+                 &scene);
     ck_assert_uint_eq(light.kind, LIGHT_INFINITE_IMAGE);
     ck_assert_uint_eq(light.flags, LIGHT_EQUIRECTANGULAR);
-    ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.image).wrap, WRAP_REPEAT);
+    ck_assert_uint_eq(ELEMENT(&scene, images, TextureImage, light.detail.image).wrap, WRAP_REPEAT);
     ASSERT_NEAR(light.emission.x * 0.5f, 2.0f * 5.0f / PI, 0.01f);
     scene_destroy(&scene);
     map_write(8, 8);
@@ -249,24 +254,24 @@ START_TEST(portals)
     map_write(8, 8);
     snprintf(text, sizeof text,
              "Rotate 90 0 0 1 Translate 5 6 7 LightSource \"infinite\" \"string filename\" \"map.pfm\" %s", PORTAL);
-    Light light = light_of(text, &scene);
+    LightData light = light_of(text, &scene);
     ck_assert_uint_eq(light.kind, LIGHT_PORTAL);
-    ck_assert_uint_lt(light.image, 1);
-    assert_vec3(affine_vector(light.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
-    Portal portal = ELEMENT(&scene, portals, Portal, light.portal);
+    ck_assert_uint_lt(light.detail.image, 1);
+    assert_vec3(affine_vector(light.detail.world_from_light, vec3(1, 0, 0)), 0, 1, 0, 1e-6f);
+    Portal portal = ELEMENT(&scene, portals, Portal, light.detail.portal);
     assert_vec3(portal.corner, 2, -1, 0.5f, 0.0f);
     assert_vec3(portal.axes.n, 1, 0, 0, 1e-6f);
     scene_destroy(&scene);
     snprintf(text, sizeof text, "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] %s", PORTAL);
     light = light_of(text, &scene);
     ck_assert_uint_eq(light.kind, LIGHT_PORTAL);
-    ck_assert_uint_eq(light.image, NONE);
+    ck_assert_uint_eq(light.detail.image, NONE);
     assert_vec3(light.emission, 1, 2, 3, 0.0f);
     scene_destroy(&scene);
     light = light_of("LightSource \"infinite\" \"point3 portal\" [ 9002 0 0  9002 0 1  9002 1 1  9002 1 0 ] "
                      "Translate 9000 0 0 Shape \"sphere\"",
                      &scene);
-    assert_vec3(vec3_add(ELEMENT(&scene, portals, Portal, light.portal).corner, scene.origin), 9002, 0, 0, 0.0f);
+    assert_vec3(vec3_add(ELEMENT(&scene, portals, Portal, light.detail.portal).corner, scene.origin), 9002, 0, 0, 0.0f);
     scene_destroy(&scene);
 }
 END_TEST

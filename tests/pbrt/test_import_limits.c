@@ -54,14 +54,15 @@ START_TEST(arrays_beyond_32_bits)
     static const double IDENTITY[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     Scene scene;
     Error error = {{0}, {0}};
-    Light light = {0};
+    LightData light = {0};
     Material material = {0};
     uint index;
     memory_limit();
     scene_init(&scene);
-    scene.lights.count = scene.materials.count = scene.instances.count = NONE;
+    scene.materials.count = scene.instances.count = NONE;
+    scene.lights.count = LIGHTS_MAX;
     ck_assert(!scene_add_light(&scene, &light, &error));
-    ck_assert_ptr_nonnull(strstr(error.message, "the scene has more than 4294967295 lights"));
+    ck_assert_ptr_nonnull(strstr(error.message, "the scene has more than 33554431 lights"));
     ck_assert(!scene_add_material(&scene, &material, &index, &error));
     ck_assert_ptr_nonnull(strstr(error.message, " materials"));
     ck_assert(!scene_add_instance(&scene, 0, IDENTITY, IDENTITY, &error));

@@ -257,7 +257,7 @@ START_TEST(interfaces)
                 "MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"float g\" 0.5",
                 &scene);
     ck_assert_uint_eq(scene.camera_settings.medium, 2);
-    ck_assert_uint_eq(light_medium(&ELEMENT(&scene, lights, Light, 0)), 2);
+    ck_assert_uint_eq(ELEMENT(&scene, light_details, LightDetail, 0).medium, 2);
     ck_assert_uint_eq(scene.shapes.count, 2); /* an interface between equal media is left out */
     const Shape *plain = &ELEMENT(&scene, shapes, Shape, 0), *interface = &ELEMENT(&scene, shapes, Shape, 1);
     ck_assert_uint_eq(media_inside(plain->flags), 2);
@@ -316,7 +316,7 @@ START_TEST(medium_around)
         import_text(text, &scene);
         ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
         const Light *light = &ELEMENT(&scene, lights, Light, 1);
-        ck_assert_uint_eq(light_medium(light), i == 0 ? 1 : 0);
+        ck_assert_uint_eq(scene_light_detail(&scene, light)->medium, i == 0 ? 1 : 0);
         ASSERT_FLOAT(light->emission.x, i == 0 ? 0.0f : 1.0f);
         scene_destroy(&scene);
     }
@@ -333,7 +333,7 @@ START_TEST(grid_around)
                 &scene);
     ck_assert_msg(scene_finish(&scene, &error), "%s", error.message);
     const Light *light = &ELEMENT(&scene, lights, Light, 0);
-    ck_assert_uint_eq(light_medium(light), 1);
+    ck_assert_uint_eq(scene_light_detail(&scene, light)->medium, 1);
     ASSERT_FLOAT(light->emission.x, 1.0f);
     ck_assert_float_lt(scene.ray_reach, 10.0f);
     scene_destroy(&scene);

@@ -105,7 +105,7 @@ START_TEST(far_world_is_moved)
     ck_assert_uint_eq(scene.counts.degenerate_triangles, 1);
     assert_vec3(scene.origin, 100000, 0, 0, 0.0f);
     assert_vec3(ELEMENT(&scene, positions, Vec3, 2), 0.001f, 1, 0, 1e-9f);
-    assert_vec3(ELEMENT(&scene, lights, Light, 0).position, 0.001f, 0.5f, 0.5f, 1e-9f);
+    assert_vec3(ELEMENT(&scene, light_details, LightDetail, 0).position, 0.001f, 0.5f, 0.5f, 1e-9f);
     assert_vec3(ELEMENT(&scene, quadrics, Quadric, 0).center, 0, 0, 0, 0.0f);
     ASSERT_FLOAT(ELEMENT(&scene, quadrics, Quadric, 1).center.x, 0.0f); /* within the object: not moved */
     ASSERT_NEAR(ELEMENT(&scene, instances, Instance, 0).world_from_object.m[3], 0.001f, 1e-9f);

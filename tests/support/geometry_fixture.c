@@ -156,7 +156,8 @@ void test_scene_init(TestScene *test)
                          .displacement.program = NONE,
                          .normal_map = NONE,
                          .coat_table = NONE};
-    Light light = {.kind = LIGHT_POINT, .emission = {1.0f, 1.0f, 1.0f}, .image = NONE, .distribution = NONE};
+    LightData light = {
+        .kind = LIGHT_POINT, .emission = {1.0f, 1.0f, 1.0f}, .detail.image = NONE, .detail.distribution = NONE};
     uint index;
     scene_init(&test->scene);
     ck_assert(scene_add_material(&test->scene, &material, &index, &error));

@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_TESTS_SUPPORT_LIGHT_FIXTURE_H
 #define TWINLIGHT_TESTS_SUPPORT_LIGHT_FIXTURE_H
 
+#include "support/test_files.h"
 #include "support/test_matrix.h"
 #include "support/test_util.h"
 
@@ -47,8 +48,11 @@ static inline void fixture_finish(LightFixture *f)
                           .texture_ops = s->texture_ops.data,
                           .images = s->images.data,
                           .lights = s->lights.data,
+                          .light_details = s->light_details.data,
                           .light_alias = s->light_alias.data,
+                          .light_tree = s->light_tree.data,
                           .light_nodes = s->light_nodes.data,
+                          .light_leaves = s->light_leaves.data,
                           .infinite_lights = s->infinite_lights.data,
                           .portals = s->portals.data,
                           .aims = s->aims.data,
@@ -101,7 +105,7 @@ static inline void fixture_add_sphere(LightFixture *f, float radius, double x, d
     fixture_add_quadric(f, PRIMITIVE_SPHERE, quadric, matrix, radiance, 0, light_flags);
 }
 
-static inline void fixture_add_light(LightFixture *f, Light light)
+static inline void fixture_add_light(LightFixture *f, LightData light)
 {
     Error error = {0};
     ck_assert(scene_add_light(&f->scene, &light, &error));
@@ -124,14 +128,14 @@ static inline void fixture_add_environment(LightFixture *f, const float *texels,
                             .lut = NONE};
     size_t words = 3 * (size_t)width * height;
     memcpy(array_grow(&f->scene.texels, words, &error), texels, words * sizeof *texels);
-    Light light = {.kind = LIGHT_INFINITE_IMAGE,
-                   .flags = flags,
-                   .image = (uint)f->scene.images.count - 1,
-                   .emission = {1.0f, 1.0f, 1.0f}};
+    LightData light = {.kind = LIGHT_INFINITE_IMAGE,
+                       .flags = flags,
+                       .detail.image = (uint)f->scene.images.count - 1,
+                       .emission = {1.0f, 1.0f, 1.0f}};
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            light.world_from_light.m[4 * i + j] = (float)rotation[3 * i + j];
-            light.light_from_world.m[4 * i + j] = (float)rotation[3 * j + i];
+            light.detail.world_from_light.m[4 * i + j] = (float)rotation[3 * i + j];
+            light.detail.light_from_world.m[4 * i + j] = (float)rotation[3 * j + i];
         }
     fixture_add_light(f, light);
 }
@@ -140,10 +144,11 @@ static inline void fixture_add_environment(LightFixture *f, const float *texels,
  * whose half extents at distance 1 are `extent`. */
 static inline void fixture_to_intensity(LightFixture *f, uint kind, Vec3 position, const double extent[2])
 {
-    Light *light = &ARRAY_AT(&f->scene.lights, Light, f->scene.lights.count - 1);
+    Light *stored = &ARRAY_AT(&f->scene.lights, Light, f->scene.lights.count - 1);
+    LightDetail *light = scene_light_detail(&f->scene, stored);
     TextureImage *image = &ARRAY_AT(&f->scene.images, TextureImage, light->image);
     const double shape[3] = {extent[0], extent[1], 1.0}, scale = cbrt(extent[0] * extent[1]);
-    light->kind = kind;
+    stored->flags = (stored->flags & ~LIGHT_KIND_MASK) | kind;
     light->position = position;
     image->wrap = WRAP_CLAMP;
     image->filter = FILTER_POINT;
@@ -197,5 +202,27 @@ static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 
         ck_assert_msg(fabs(got_ - e_) <= fmin(3.0 * error_ + 1e-5 * e_, 0.005 * e_),                                   \
                       "%s: irradiance %g, not %g +- %g", #expected, got_, e_, error_);                                 \
     } while (0)
+
+/* ---- random numbers from a state: in a range, in a cube of that half width, and of unit length ---------------------- */
+
+static inline double fixture_uniform(unsigned *state, double low, double high)
+{
+    return low + (high - low) * test_random_unit(state);
+}
+
+static inline Vec3 fixture_random_point(unsigned *state, double extent)
+{
+    float x = (float)fixture_uniform(state, -extent, extent), y = (float)fixture_uniform(state, -extent, extent);
+    return vec3(x, y, (float)fixture_uniform(state, -extent, extent));
+}
+
+static inline Vec3 fixture_random_unit(unsigned *state)
+{
+    Vec3 d;
+    do
+        d = fixture_random_point(state, 1.0);
+    while (!(vec3_length_squared(d) < 1.0f) || !(vec3_length_squared(d) > 0.01f));
+    return vec3_normalize(d);
+}
 
 #endif
