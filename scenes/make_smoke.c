@@ -1,5 +1,6 @@
 /* Writes scenes/parts/smoke.pbrt: the medium of smoke.pbrt, a plume that rises in a box of 1.2 x 2.4 x 1.2, as a grid
  * of densities from 0 to 99. */
+#include "base/output_file.h"
 #include "math/noise.h"
 
 #include <math.h>
@@ -45,16 +46,18 @@ static void smoke_write(FILE *file)
 int main(int argc, char **argv)
 {
     char path[4096];
+    OutputFile file;
+    Error error = {0};
     if (argc != 2) {
         fprintf(stderr, "usage: make_smoke FOLDER\n");
         return 2;
     }
     snprintf(path, sizeof path, "%s/parts/smoke.pbrt", argv[1]);
-    FILE *file = fopen(path, "w");
-    if (file)
-        smoke_write(file);
-    if (file && !ferror(file) && fclose(file) == 0)
+    FILE *stream = output_file_begin(&file, path, &error) ? output_file_stream(&file, &error) : NULL;
+    if (stream)
+        smoke_write(stream);
+    if (stream && output_file_stream_commit(&file, stream, &error))
         return 0;
-    fprintf(stderr, "make_smoke: cannot write %s\n", path);
+    fprintf(stderr, "make_smoke: %s\n", error_text(&error));
     return 1;
 }

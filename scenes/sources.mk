@@ -55,7 +55,7 @@ scenes_make_hair_LDADD = -lm
 scenes_make_parts_SOURCES = scenes/make_parts.c
 scenes_make_parts_LDADD = libtwinlight_host.la -lm
 scenes_make_smoke_SOURCES = scenes/make_smoke.c
-scenes_make_smoke_LDADD = -lm
+scenes_make_smoke_LDADD = libtwinlight_host.la -lm
 CLEANFILES += scenes/average_images$(EXEEXT) scenes/make_fire$(EXEEXT) scenes/make_hair$(EXEEXT) \
 	scenes/make_parts$(EXEEXT) scenes/make_smoke$(EXEEXT)
 EXTRA_DIST += \

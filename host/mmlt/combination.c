@@ -201,8 +201,7 @@ static double error_of(const Combination *combination, const double samples[ESTI
         tile.spread[SERIES_EXCESS] *= factor;
         tile.spread[SERIES_RARE] *= factor;
         double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
-        sum += (tile_combination(&tile, &terms).variance + direct) /
-               fmax(tile.light * tile.light + DARK_PART * light * light, SPREAD_MIN);
+        sum += (tile_combination(&tile, &terms).variance + direct) / tile_relative_square(&tile, light);
     }
     return sum;
 }

@@ -73,8 +73,7 @@ typedef struct TilesSum {
     double light, dark;
 } TilesSum;
 
-/* What a tile's variance is relative to. */
-static double relative_square(const CombinationTile *tile, double mean_light)
+double tile_relative_square(const CombinationTile *tile, double mean_light)
 {
     return fmax(tile->light * tile->light + DARK_PART * mean_light * mean_light, SPREAD_MIN);
 }
@@ -89,11 +88,12 @@ static void row_correlation(const TilesSum *sum, size_t row)
     for (size_t i = patches.first; i < patches.end; ++i) {
         const CombinationTile *tile = &combination->known[combination_tile_of_patch(combination, i)];
         sums->patches +=
-            pixel_series_spread(&combination->light[ESTIMATOR_CHAINS], i) / relative_square(tile, sum->light);
+            pixel_series_spread(&combination->light[ESTIMATOR_CHAINS], i) / tile_relative_square(tile, sum->light);
     }
     for (size_t i = tiles.first; i < tiles.end; ++i) {
         const CombinationTile *tile = &combination->known[i];
-        sums->tiles += pixel_series_spread(&combination->sums[ESTIMATOR_CHAINS], i) / relative_square(tile, sum->light);
+        sums->tiles +=
+            pixel_series_spread(&combination->sums[ESTIMATOR_CHAINS], i) / tile_relative_square(tile, sum->light);
     }
 }
 
@@ -209,7 +209,7 @@ static double relative_variance(const Combination *combination, int s)
 {
     double sum = 0.0, light = combination_mean_light(combination);
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        sum += combination->known[i].spread[s] / relative_square(&combination->known[i], light);
+        sum += combination->known[i].spread[s] / tile_relative_square(&combination->known[i], light);
     return sum;
 }
 

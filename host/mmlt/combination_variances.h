@@ -7,4 +7,7 @@
 /* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none. */
 void combination_variances_update(Combination *combination, const Combination *other);
 
+/* What a tile's variance is relative to. mean_light: combination_mean_light. */
+double tile_relative_square(const CombinationTile *tile, double mean_light);
+
 #endif
