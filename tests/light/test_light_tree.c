@@ -254,7 +254,7 @@ START_TEST(test_joined)
         (LightData){
             .kind = LIGHT_SPOT,
             .emission = {1, 1, 1},
-            .detail = {.position = {-100, 0, 0}, .direction = {-1, 0, 0}, .cos_total = 0.9f, .cos_falloff = 0.95f}});
+            .detail = {.position = {-100, 0, 0}, .direction = {-1, 0, 0}, .cos_total = -0.999f, .cos_falloff = 0.95f}});
     fixture_finish(&f);
     ck_assert_uint_eq(f.scene.light_nodes.count, 2);
     unsigned state = 29, lit = 0;
