@@ -20,8 +20,9 @@ typedef enum ColorRole { COLOR_REFLECTANCE, COLOR_ILLUMINANT, COLOR_INDEX } Colo
  * temperatures below 400 K, which are invisible, have the colour of 400 K. */
 void color_blackbody(float kelvin, float rgb[3]);
 
-/* The same of a black body whose spectral radiance has the maximum 1, in the unit in which pbrt's film has it: luminance
- * is the sum over wavelengths, 1 nm apart, of radiance times the observer's response. 0 below 100 K, like pbrt. */
+/* The same of a black body whose spectral radiance has the maximum 1, in the unit in which pbrt's film has it:
+ * luminance is the sum over wavelengths, 1 nm apart, of radiance times the observer's response. 0 below 100 K, like
+ * pbrt. */
 void color_blackbody_relative(float kelvin, float rgb[3]);
 
 /* Colour of daylight of that correlated colour temperature, from 4000 to 25000 K, at luminance 1 (CIE 15, daylight

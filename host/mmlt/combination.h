@@ -48,8 +48,8 @@ void step_rates_archive(Archive *archive, StepRates *rates);
  * compared with this division of work from then on. */
 StepRates combination_rates(Combination *combination);
 
-/* Square error of path tracing alone, relative to that of the best division of the same work, which combination_rates has
- * found; infinite if that is not known. */
+/* Square error of path tracing alone, relative to that of the best division of the same work, which
+ * combination_rates has found; infinite if that is not known. */
 double combination_alone_error(const Combination *combination);
 
 #endif

@@ -44,9 +44,9 @@ bool mmlt_pilot_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 /* Runs a pool and resamples `count` chains from it. *whole: set to false if stopped before the end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 
-/* Runs a generation (a pool, `count` chains from it, path tracing; 0: path tracing alone) and adds their combination to the film. All or
- * nothing: a generation that is stopped is discarded, except that of the first the finished path tracing samples are
- * kept. */
+/* Runs a generation (a pool, `count` chains from it, path tracing; 0: path tracing alone) and adds their combination
+ * to the film. All or nothing: a generation that is stopped is discarded, except that of the first the finished path
+ * tracing samples are kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
 /* The seconds that the next generation takes with any number of chains, as far as the latest one tells: path tracing in the

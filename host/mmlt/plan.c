@@ -134,8 +134,8 @@ static double growth(const Plan *plan, uint next)
     return (width + (double)next) / (width + (double)plan->chains);
 }
 
-/* Twice as many chains if a generation may take that long; several times twice where it hardly takes longer. after_alone: the
- * latest generation was path tracing alone, which tells what work takes. */
+/* Twice as many chains if a generation may take that long; several times twice where it hardly takes longer.
+ * after_alone: the latest generation was path tracing alone, which tells what work takes. */
 static uint chains_grown(const Plan *plan, bool after_alone, double seconds, double elapsed)
 {
     double part = plan->timed ? seconds / elapsed : (double)plan->last / (double)plan->done;

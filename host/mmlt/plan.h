@@ -41,10 +41,9 @@ void plan_learn(Plan *plan, uint index, Combination *combination);
 /* Counts a generation's work. owed: Plan.owed after it. */
 void plan_count(Plan *plan, uint64_t work, double owed);
 
-/* Plans the size of generation `index`, and whether it is path tracing alone. Both of a pair, one for each replica, have the same, also the last
- * one before a limit of work. With a limit of work the
- * sizes depend on that alone, so that the image does not depend on the clock. seconds: of the latest generation;
- * elapsed: in all. */
+/* Plans the size of generation `index`, and whether it is path tracing alone. Both of a pair, one for each replica,
+ * have the same, also the last one before a limit of work. With a limit of work the sizes depend on that alone, so
+ * that the image does not depend on the clock. seconds: of the latest generation; elapsed: in all. */
 void plan_next(Plan *plan, uint index, double seconds, double elapsed);
 
 /* The seconds that the next generation takes, if the latest one took `seconds`; 0: there was none. */
@@ -63,8 +62,8 @@ uint plan_chains(const Plan *plan);
  * least one. */
 uint plan_pool_samples(const Plan *plan, uint chains);
 
-/* Samples of path tracing per pixel for `chains` chains: by the rates, but no more than the work that is left allows. Of path tracing
- * alone, with `chains` 0: Plan.alone. */
+/* Samples of path tracing per pixel for `chains` chains: by the rates, but no more than the work that is left
+ * allows. Of path tracing alone, with `chains` 0: Plan.alone. */
 double plan_paths_samples(const Plan *plan, uint chains);
 
 #endif

@@ -123,8 +123,8 @@
 #define FIRST_WORTH 0.25
 #define WORTH_MOST 2.0
 
-/* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this many
- * times the error of the best division of work, which takes longer; docs/TUNING.md. */
+/* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this
+ * many times the error of the best division of work, which takes longer; docs/TUNING.md. */
 #define ALONE_ERROR 1.15
 
 /* Its work then, in units of that of the generations between, which look for what it does not find. */

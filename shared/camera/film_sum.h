@@ -204,10 +204,10 @@ SHARED_FUNCTION void film_sums_add(__global ulong *sums, const ulong rgb[3])
             film_sum_add(sums + c, rgb[c]);
 }
 
-/* What a thread of the host has not yet added to the film: a table of pixels, in which small shares that meet in a pixel
- * are added up without atomic operations. Devices have none. It is emptied after at most FILM_PENDING_SPLATS splats, so
- * that no sum in it overflows. Its places repeat every FILM_PENDING_COLUMNS columns and FILM_PENDING_ROWS rows: more rows
- * than a band of pixels (layout/item.h) has, and the filter around it. */
+/* What a thread of the host has not yet added to the film: a table of pixels, in which small shares that meet in a
+ * pixel are added up without atomic operations. Devices have none. It is emptied after at most FILM_PENDING_SPLATS
+ * splats, so that no sum in it overflows. Its places repeat every FILM_PENDING_COLUMNS columns and FILM_PENDING_ROWS
+ * rows: more rows than a band of pixels (layout/item.h) has, and the filter around it. */
 #define FILM_PENDING_COLUMNS 32u
 #define FILM_PENDING_ROWS 16u
 #define FILM_PENDING_PIXELS (FILM_PENDING_COLUMNS * FILM_PENDING_ROWS)

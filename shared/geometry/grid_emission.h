@@ -238,8 +238,8 @@ SHARED_FUNCTION Vec3 cell_emission(const SceneView *scene, const EmissionRay *ra
     return sum;
 }
 
-/* The light that a medium whose emission varies emits towards o, from the ray's first `distance`, which may be infinite,
- * along w (unit). */
+/* The light that a medium whose emission varies emits towards o, from the ray's first `distance`, which may be
+ * infinite, along w (unit). */
 SHARED_FUNCTION_APART Vec3 grid_emission(const SceneView *scene, __global const Medium *medium, Vec3 o, Vec3 w,
                                          float distance)
 {

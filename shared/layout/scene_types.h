@@ -421,9 +421,9 @@ typedef struct AliasBucket {
     uint alias;
 } AliasBucket;
 
-/* A node of the tree by which a light is chosen for a point (light/light_tree.h), of two or more leaves. Nodes are in the
- * order of a walk that takes left children first, so that the left child follows its node, and the right one follows
- * all those of the left. */
+/* A node of the tree by which a light is chosen for a point (light/light_tree.h), of two or more leaves. Nodes are
+ * in the order of a walk that takes left children first, so that the left child follows its node, and the right one
+ * follows all those of the left. */
 typedef struct LightNode {
     uint left; /* leaves of the left child, and LIGHT_NODE_ flags for both children */
     /* Each child's: 12 bits of x and y, and of z below, of the middle of a sphere around its lights, as steps from the

@@ -293,8 +293,8 @@ START_TEST(test_plan_known)
 }
 END_TEST
 
-/* Path tracing alone shows its own rare light and has its own variance, direct light included, which is compared with that of
- * the best division of the same work. */
+/* Path tracing alone shows its own rare light and has its own variance, direct light included, which is compared
+ * with that of the best division of the same work. */
 START_TEST(test_alone_known)
 {
     Known known;

@@ -185,8 +185,8 @@ START_TEST(test_first)
 }
 END_TEST
 
-/* The mean brightness is that of the other replica's pools, also if generations without any came between; of the pilot before
- * there is one. */
+/* The mean brightness is that of the other replica's pools, also if generations without any came between; of the
+ * pilot before there is one. */
 START_TEST(test_brightness)
 {
     PoolEstimator pool = {.pilot_brightness = 5.0};
@@ -195,7 +195,10 @@ START_TEST(test_brightness)
         if (index % 4 >= 2)
             continue;
         ck_assert_double_eq_tol(pool_estimator_brightness(&pool, &generation),
-                                index == 0 ? 5.0 : index % 2 == 0 ? 3.0 : 1.0, 1e-12);
+                                index == 0       ? 5.0
+                                : index % 2 == 0 ? 3.0
+                                                 : 1.0,
+                                1e-12);
         pool.brightness = index % 2 == 0 ? 1.0 : 3.0;
         pool_estimator_count(&pool, &generation);
     }

@@ -508,8 +508,8 @@ static void traced_connections_check(Walks *walks, const char *name, Tally *tall
         }
 }
 
-/* A grid that fills the scene, with samples of 0 beside dense ones: a density taken at the wrong end of a segment is off
- * by a large factor. */
+/* A grid that fills the scene, with samples of 0 beside dense ones: a density taken at the wrong end of a segment is
+ * off by a large factor. */
 static const BidirectionalScene STEEP_SMOKE = {
     "steep smoke",
     "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 3 \"integer ny\" 4 \"integer nz\" 5\n"

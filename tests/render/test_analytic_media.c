@@ -360,8 +360,8 @@ static double ramp_value(double z, double first, double second)
     return z < 0.75 ? first + (second - first) * (2.0 * z - 0.5) : second * (2.5 - 2.0 * z);
 }
 
-/* The integral of transmittance times absorption times radiance from z = 0 to `end` in steps, for samples at z = 1/4 and
- * 3/4. */
+/* The integral of transmittance times absorption times radiance from z = 0 to `end` in steps, for samples at z = 1/4
+ * and 3/4. */
 static double ramp_light(double extinction, double absorption, const double density[2], const double radiance[2],
                          double end)
 {
