@@ -225,7 +225,8 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
     const double *samples = terms->samples;
     memset(tile->weight, 0, sizeof tile->weight);
     tile->paths_rare = 0.0;
-    if (shown == SHOWN_PATHS_ALONE && samples[ESTIMATOR_PATHS] > 0.0) {
+    const bool alone = shown == SHOWN_PATHS_ALONE || !(samples[ESTIMATOR_CHAINS] > 0.0);
+    if (alone && samples[ESTIMATOR_PATHS] > 0.0) {
         tile->weight[ESTIMATOR_PATHS] = tile->paths_rare = 1.0;
     } else if (shown > 0 && shown <= ESTIMATOR_COUNT && samples[shown - 1] > 0.0) {
         tile->weight[shown - 1] = 1.0;
