@@ -64,7 +64,7 @@ endif
 EFFORT = 8
 # Builds a copy with a BSDF and an integrator more: minutes.
 dist_check_SCRIPTS += tests/test_recipes.sh
-LONG_TESTS = tests/test_bidirectional tests/test_bvh tests/test_error tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+LONG_TESTS = tests/test_analytic tests/test_bidirectional tests/test_bvh tests/test_error tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/command/test_checkpoint.sh tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
@@ -153,8 +153,8 @@ tests_test_compare_SOURCES = tests/compare/test_compare.c
 tests_test_error_SOURCES = tests/render/test_error.c
 tests_test_group_SOURCES = tests/backend/test_group.c
 tests_test_layers_SOURCES = tests/render/test_layers.c
-tests_test_grid_emission_SOURCES = tests/geometry/test_grid_emission.c
-tests_test_medium_grid_SOURCES = tests/geometry/test_medium_grid.c
+tests_test_grid_emission_SOURCES = tests/geometry/test_grid_emission.c tests/geometry/trilinear.h
+tests_test_medium_grid_SOURCES = tests/geometry/test_medium_grid.c tests/geometry/trilinear.h
 tests_test_metrics_SOURCES = tests/compare/test_metrics.c
 tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c
 tests_test_options_SOURCES = tests/command/test_options.c

@@ -1,4 +1,5 @@
 /* Emission of grids along rays, against integrals in double precision in small steps; the table of black bodies. */
+#include "geometry/trilinear.h"
 #include "math/test_math.h"
 
 #include "geometry/grid_emission.h"
@@ -62,8 +63,9 @@ static void case_build(Case *c)
 }
 
 /* Sample i of an axis, 0 beyond the ends, as a part of the largest. */
-static double samples_at(const Samples *s, const int index[3], uint word)
+static double samples_at(const void *context, const int index[3], uint word)
 {
+    const Samples *s = context;
     uint at[3];
     float value[6];
     for (int i = 0; i < 3; ++i) {
@@ -77,23 +79,7 @@ static double samples_at(const Samples *s, const int index[3], uint word)
 
 static double samples_value(const Samples *s, const double p[3], uint word)
 {
-    int cell[3];
-    double f[3], sum = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        double x = (p[i] - s->origin[i]) / s->spacing[i] + (double)s->low - 1.0;
-        cell[i] = (int)floor(x);
-        f[i] = x - cell[i];
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-        int index[3];
-        double weight = 1.0;
-        for (int i = 0; i < 3; ++i) {
-            index[i] = cell[i] + (corner >> i & 1);
-            weight *= corner >> i & 1 ? f[i] : 1.0 - f[i];
-        }
-        sum += weight * samples_at(s, index, word);
-    }
-    return sum;
+    return trilinear_value(p, s->origin, s->spacing, s->low, samples_at, s, word);
 }
 
 /* Extinction's factor and emission at a point, of one colour. */

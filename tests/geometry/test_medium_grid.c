@@ -1,5 +1,6 @@
 /* Media of grids: integrals along rays and the distances at which they reach a target, against integrals in double
  * precision that know nothing of cells in bricks. */
+#include "geometry/trilinear.h"
 #include "math/test_math.h"
 
 #include "geometry/medium_grid.h"
@@ -46,8 +47,9 @@ static void case_build(Case *c)
 }
 
 /* Sample i of an axis, 0 beyond the ends. */
-static double case_value(const Case *c, const int index[3], uint word)
+static double case_value(const void *context, const int index[3], uint word)
 {
+    const Case *c = context;
     uint at[3];
     for (int i = 0; i < 3; ++i) {
         if (index[i] < 0 || index[i] >= (int)c->size[i])
@@ -62,23 +64,7 @@ static double case_value(const Case *c, const int index[3], uint word)
 /* The factor at a point of the world in the box. */
 static double case_factor(const Case *c, const double p[3], uint word)
 {
-    int cell[3];
-    double f[3], sum = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        double x = (p[i] - c->origin[i]) / c->spacing[i] + (double)c->low - 1.0;
-        cell[i] = (int)floor(x);
-        f[i] = x - cell[i];
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-        int index[3];
-        double weight = 1.0;
-        for (int i = 0; i < 3; ++i) {
-            index[i] = cell[i] + (corner >> i & 1);
-            weight *= corner >> i & 1 ? f[i] : 1.0 - f[i];
-        }
-        sum += weight * case_value(c, index, word);
-    }
-    return sum;
+    return trilinear_value(p, c->origin, c->spacing, c->low, case_value, c, word);
 }
 
 static int double_compare(const void *a, const void *b)
