@@ -1,5 +1,6 @@
 /* Material, MakeNamedMaterial, and the current material of a shape. */
 #include "base/log.h"
+#include "pbrt/coats.h"
 #include "pbrt/errors.h"
 #include "pbrt/late.h"
 #include "pbrt/readers.h"
@@ -12,6 +13,7 @@ typedef struct MaterialReader {
     PbrtImport *im;
     ParamList *list;
     Material material;
+    CoatMedium medium; /* of a coat over a conductor */
 } MaterialReader;
 
 static ColorParam color_constant(float value)
@@ -102,30 +104,14 @@ static void diffuse_read(MaterialReader *r)
     value_color_param(r->im, r->list, "reflectance", COLOR_REFLECTANCE, &r->material.color0);
 }
 
-/* The medium of a coat: returns its thickness. */
-static float coat_medium_read(MaterialReader *r)
-{
-    FloatParam ignored = float_constant(0.0f), thickness = float_constant(0.01f);
-    ColorParam albedo = color_constant(0.0f);
-    if (value_float_param(r->im, r->list, "thickness", &thickness) && !r->list->failed &&
-        (thickness.program != NONE || thickness.value < 0.0f))
-        param_error(r->list, "thickness", "the thickness of a coat must be a number of at least 0");
-    value_float_param(r->im, r->list, "g", &ignored);
-    param_integer(r->list, "maxdepth", 10);
-    param_integer(r->list, "nsamples", 1);
-    if (value_color_param(r->im, r->list, "albedo", COLOR_REFLECTANCE, &albedo) &&
-        (albedo.program != NONE || !vec3_is_zero(albedo.value)) && !r->list->failed)
-        r->list->failed = !import_unsupported(r->im, param_place(r->list, "albedo"), "a medium inside a coat (albedo)",
-                                              "a clear coat", NULL);
-    return thickness.value;
-}
-
 static void coated_diffuse_read(MaterialReader *r)
 {
     diffuse_read(r);
     roughness_read(r);
     r->material.eta = value_eta(r->im, r->list, "eta", 1.5f);
-    r->material.color1.value.x = coat_medium_read(r);
+    CoatMedium medium;
+    coat_medium_read(r->im, r->list, false, &medium);
+    r->material.color1.value.x = medium.thickness;
 }
 
 /* Reads eta and k, or reflectance; copper by default. Names differ for the inner layer of a coated conductor. */
@@ -164,7 +150,7 @@ static void coated_conductor_read(MaterialReader *r)
     roughness_pair_read(r, COAT, &m->roughness_u, &m->roughness_v);
     roughness_pair_read(r, BASE, &m->base_u, &m->base_v);
     m->eta = value_eta(r->im, r->list, "interface.eta", 1.5f);
-    m->scale = coat_medium_read(r);
+    coat_medium_read(r->im, r->list, true, &r->medium);
 }
 
 static void dielectric_read(MaterialReader *r)
@@ -324,6 +310,8 @@ static bool material_read(MaterialReader *r, const char *kind, SourcePlace place
             KINDS[i].read(r);
             if (KINDS[i].relief)
                 relief_read(r);
+            if (r->material.kind == MATERIAL_COATED_CONDUCTOR)
+                coat_medium_apply(im, r->list, &r->medium, &r->material);
             return param_list_finish(r->list, im->options.lenient);
         }
     for (size_t i = 0; i < sizeof UNSUPPORTED / sizeof *UNSUPPORTED; ++i)

@@ -93,6 +93,14 @@ float medium_factor_read(ParamList *list, const char *name)
     return value;
 }
 
+float medium_emission_factor_read(ParamList *list)
+{
+    if (!param_find(list, "Lescale", ~0u))
+        return medium_factor_read(list, "LeScale");
+    param_ignore(list, "LeScale");
+    return medium_factor_read(list, "Lescale");
+}
+
 void medium_g_read(ParamList *list, Medium *medium)
 {
     medium->g = param_float(list, "g", 0.0f);
@@ -132,7 +140,7 @@ static bool homogeneous_read(PbrtImport *im, ParamList *list, Medium *medium)
     Vec3 absorption;
     medium_coefficients_read(im, list, milk, medium, &absorption);
     value_color(im, list, "Le", COLOR_ILLUMINANT, emission);
-    Vec3 radiance = vec3_scale(vec3_of(emission), medium_factor_read(list, "Lescale"));
+    Vec3 radiance = vec3_scale(vec3_of(emission), medium_emission_factor_read(list));
     medium->emission = medium_coefficients_scale(list, vec3_mul(absorption, radiance), 1.0);
     return !list->failed;
 }

@@ -16,6 +16,9 @@ void medium_g_read(ParamList *list, Medium *medium);
 /* A factor that must not be negative; 1 if absent. */
 float medium_factor_read(ParamList *list, const char *name);
 
+/* The factor Lescale of emission, which older files call LeScale; 1 if absent. */
+float medium_emission_factor_read(ParamList *list);
+
 /* scale * coefficients; an error if that overflows a float. */
 Vec3 medium_coefficients_scale(ParamList *list, Vec3 coefficients, double scale);
 

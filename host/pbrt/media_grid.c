@@ -251,7 +251,7 @@ bool medium_rgb_grid_read(PbrtImport *im, ParamList *list, Medium *medium)
         param_error(list, "Le", "%s has \"Le\" and lacks \"rgb sigma_a\"", list->owner);
         error_fix(list->error, "emission is sigma_a times Le: give \"rgb sigma_a\" for each sample");
     }
-    float scale = medium_factor_read(list, "scale"), factor = medium_factor_read(list, "Lescale");
+    float scale = medium_factor_read(list, "scale"), factor = medium_emission_factor_read(list);
     medium->extinction = medium->scattering = vec3_splat(scale);
     medium_g_read(list, medium);
     if (!samples_add(im, list, &source, medium))

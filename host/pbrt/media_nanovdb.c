@@ -124,7 +124,7 @@ bool medium_nanovdb_read(PbrtImport *im, ParamList *list, Medium *medium)
     Vec3 absorption;
     medium_coefficients_read(im, list, MEDIUM_ONES, medium, &absorption);
     medium_kelvin_read(list, &kelvin);
-    medium->emission = medium_coefficients_scale(list, absorption, (double)medium_factor_read(list, "Lescale"));
+    medium->emission = medium_coefficients_scale(list, absorption, (double)medium_emission_factor_read(list));
     if (!*file)
         param_error(list, "filename", "%s lacks \"string filename\"", list->owner);
     const char *path = list->failed ? NULL : import_path(im, file);

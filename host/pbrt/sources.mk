@@ -1,4 +1,5 @@
 libtwinlight_host_la_SOURCES += \
+	host/pbrt/coats.c host/pbrt/coats.h \
 	host/pbrt/context.c host/pbrt/context.h \
 	host/pbrt/curve.c host/pbrt/curve.h \
 	host/pbrt/directives.c host/pbrt/directives.h \

@@ -1,6 +1,7 @@
 #include "pbrt/values.h"
 
 #include "base/log.h"
+#include "geometry/texture.h"
 #include "pbrt/errors.h"
 
 #include <math.h>
@@ -159,6 +160,28 @@ bool value_float_param(PbrtImport *im, ParamList *list, const char *name, FloatP
         texture_use(im, list, texture, &value, &out->program);
     out->value = value.x;
     return !list->failed;
+}
+
+/* Points per side of the square over which a texture is averaged. */
+#define MEAN_SIDE 64
+
+float value_texture_mean(const PbrtImport *im, uint program, float unread)
+{
+    const SceneView view = {.features = ~(ulong)0,
+                            .texture_ops = im->scene->texture_ops.data,
+                            .images = im->scene->images.data,
+                            .texels = im->scene->texels.data,
+                            .lookup = im->scene->lookup.data};
+    double sum = 0.0;
+    if (im->options.needs)
+        return unread;
+    for (int y = 0; y < MEAN_SIDE; ++y)
+        for (int x = 0; x < MEAN_SIDE; ++x) {
+            Vec2 uv = vec2(((float)x + 0.5f) / MEAN_SIDE, ((float)y + 0.5f) / MEAN_SIDE);
+            const TexturePoint point = {.p = vec3(uv.x, uv.y, 0.0f), .uv = uv, .n = vec3(0.0f, 0.0f, 1.0f)};
+            sum += (double)texture_eval_float(&view, program, &point);
+        }
+    return (float)(sum / (MEAN_SIDE * MEAN_SIDE));
 }
 
 /* Limits of eta are this and its inverse: no material is beyond them, and squares of eta remain normal floats. */

@@ -6,6 +6,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/camera_setup.c host/scene/camera_setup.h \
 	host/scene/center.c host/scene/center.h \
 	host/scene/coat_base_table.c host/scene/coat_base_table.h \
+	host/scene/coat_medium.c host/scene/coat_medium.h \
 	host/scene/coat_table.c host/scene/coat_table.h \
 	host/scene/distribution_build.c host/scene/distribution_build.h \
 	host/scene/filter_setup.c host/scene/filter_setup.h \

@@ -212,6 +212,13 @@ result 'a scene that is not supported, without errors, is' $?
 tr -d ' \n' <out | grep -qF '"kind":"Material","name":"measured","count":2,"status":"notsupported"'
 result 'needs as JSON' $?
 
+# A coat that scatters is approximated, and its texture is not read.
+printf '%s\n' 'WorldBegin' 'Texture "t" "float" "imagemap" "string filename" "no.png"' \
+    'Material "coatedconductor" "texture thickness" "t" "rgb albedo" [ 0.1 0.1 0.1 ]' 'Shape "sphere"' >needs.pbrt
+expect 0 '' info --needs needs.pbrt
+grep -qF ' 1  approximated   Material            coatedconductor  (needs.pbrt:3:1' out
+result 'a scattering coat is approximated' $?
+
 # Every error is reported once, in order, but not what follows from another, such as the material that line 5 fails to
 # make.
 printf '%s\n' 'Film "rgb" "integer xresolution" [ -3 ]' 'Camera "perspectiv"' 'WorldBegin' 'Material "matted"' \

@@ -137,6 +137,80 @@ START_TEST(coated_conductor)
 }
 END_TEST
 
+/* A scattering coat over a conductor becomes a mix of two coats with the same interface, of which that over the conductor
+ * is thinner; relief belongs to both. */
+START_TEST(scattering_coats)
+{
+    Scene scene;
+    Material m =
+        material_of("Texture \"d\" \"float\" \"wrinkled\" Material \"coatedconductor\" \"float thickness\" 0.4\n"
+                    "\"rgb albedo\" [ 0.5 0.5 0 ] \"float interface.roughness\" 0.2 \"float interface.eta\" 1.3\n"
+                    "\"texture displacement\" \"d\" \"float conductor.roughness\" 0.1 \"float g\" 0.5",
+                    &scene);
+    ck_assert_ptr_nonnull(strstr(import_log(), "the medium inside the coat scatters"));
+    ck_assert_uint_eq(m.kind, MATERIAL_MIX);
+    ck_assert_uint_eq(m.displacement.program, NONE);
+    Material metal = ELEMENT(&scene, materials, Material, m.mix_a),
+             base = ELEMENT(&scene, materials, Material, m.mix_b);
+    ck_assert_uint_eq(metal.kind, MATERIAL_COATED_CONDUCTOR);
+    ck_assert_uint_eq(base.kind, MATERIAL_COATED_DIFFUSE);
+    ck_assert(metal.scale > 0.3f && metal.scale < 0.4f && m.amount.value > 0.0f && m.amount.value < 0.2f);
+    ck_assert(base.color0.value.x > 0.5f && base.color0.value.z == 0.0f && base.color1.value.x == 0.0f);
+    ASSERT_FLOAT(base.eta, 1.3f);
+    ASSERT_FLOAT(base.roughness_u.value, 0.2f);
+    ASSERT_FLOAT(metal.base_v.value, 0.1f);
+    ck_assert_uint_ne(base.displacement.program, NONE);
+    ck_assert_uint_eq(metal.displacement.program, base.displacement.program);
+    ck_assert_uint_eq(base.flags, MATERIAL_REMAP_ROUGHNESS);
+    scene_destroy(&scene);
+    m = material_of("Material \"coatedconductor\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb albedo\" [ 0 0 0 ]",
+                    &scene);
+    ck_assert_uint_eq(m.kind, MATERIAL_COATED_CONDUCTOR);
+    ASSERT_FLOAT(m.scale, 0.01f);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* A texture as thickness is its mean over the square of texture coordinates. */
+START_TEST(coat_thickness_of_a_texture)
+{
+    static const char *const COATS[] = {"coatedconductor", "coateddiffuse"};
+    for (size_t i = 0; i < 2; ++i) {
+        Scene scene;
+        char text[512];
+        snprintf(text, sizeof text,
+                 "Texture \"t\" \"float\" \"bilerp\" \"float v00\" 0 \"float v01\" 1 \"float v10\" 2 \"float v11\" 5\n"
+                 "Material \"%s\" \"texture thickness\" \"t\"",
+                 COATS[i]);
+        Material m = material_of(text, &scene);
+        ASSERT_NEAR(i == 0 ? m.scale : m.color1.value.x, 2.0f, 1e-4f);
+        ck_assert_ptr_nonnull(strstr(import_log(), "the thickness of the coat is a texture: its mean, 2, is used"));
+        scene_destroy(&scene);
+    }
+}
+END_TEST
+
+START_TEST(coats_that_are_refused)
+{
+    static const char *const CASES[][2] = {
+        {"\"rgb albedo\" [ 1 1 1 ] \"texture reflectance\" \"c\"",
+         "a coat with an albedo over a metal with a texture is not supported"},
+        {"\"texture albedo\" \"c\"", "a texture as the albedo inside a coat is not supported"},
+        {"\"rgb albedo\" [ 1 1 1 ] \"float g\" 1", "the g of a coat must be a number above -1 and below 1"},
+        {"\"rgb albedo\" [ 1 1 1 ] \"texture g\" \"f\"", "the g of a coat must be a number above -1 and below 1"},
+        {"\"rgb albedo\" [ 1 2 1 ]", "\"albedo\" is an albedo and has a component above 1: 2"}};
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "WorldBegin Texture \"c\" \"spectrum\" \"checkerboard\" Texture \"f\" \"float\" \"checkerboard\"\n"
+                 "Material \"coatedconductor\" %s",
+                 CASES[i][0]);
+        const char *found = import_error(text);
+        ck_assert_msg(strstr(found, CASES[i][1]), "%s instead of %s", found, CASES[i][1]);
+    }
+}
+END_TEST
+
 /* Equal coats share a record, whatever lies below; others do not. */
 START_TEST(coats_are_shared)
 {
@@ -309,6 +383,9 @@ TCase *import_materials_case(void)
     tcase_add_test(tcase, spectra);
     tcase_add_test(tcase, coated_diffuse);
     tcase_add_test(tcase, coated_conductor);
+    tcase_add_test(tcase, scattering_coats);
+    tcase_add_test(tcase, coat_thickness_of_a_texture);
+    tcase_add_test(tcase, coats_that_are_refused);
     tcase_add_test(tcase, coats_are_shared);
     tcase_add_test(tcase, named_and_mixed);
     tcase_add_test(tcase, hair);

@@ -192,13 +192,16 @@ START_TEST(medium)
 }
 END_TEST
 
-/* A grid of temperatures makes it emit, by its own map, unless Lescale is 0 or there is none. */
+/* A grid of temperatures makes it emit, by its own map, unless Lescale is 0 or there is none. Older
+ * files call it LeScale. */
 START_TEST(temperature)
 {
     static const char *const PARAMETERS[] = {"\"string temperaturename\" \"density\" \"float Lescale\" 4",
-                                             "\"string temperaturename\" \"density\" \"float Lescale\" 0", ""};
+                                             "\"string temperaturename\" \"density\" \"float Lescale\" 0", "",
+                                             "\"string temperaturename\" \"density\" \"float LeScale\" 4"};
     nanovdb_write("grid.nvdb", 1);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 4; ++i) {
+        bool hot = i % 3 == 0;
         char text[512];
         Scene scene;
         snprintf(text, sizeof text,
@@ -207,11 +210,11 @@ START_TEST(temperature)
                  PARAMETERS[i]);
         import_text_in(text, test_folder, false, &scene);
         const MediumGrid *grid = &ELEMENT(&scene, grids, MediumGrid, 0);
-        float emission = i == 0 ? 2.0f * 0.86f * 4.0f : 0.0f;
+        float emission = hot ? 2.0f * 0.86f * 4.0f : 0.0f;
         assert_vec3(ELEMENT(&scene, media, Medium, 1).emission, emission, emission, emission, 1e-5f);
-        ck_assert_uint_eq(grid->emission, i == 0 ? 2 : 0);
-        ck_assert_uint_eq(scene.grids.count, i == 0 ? 2 : 1);
-        if (i == 0) {
+        ck_assert_uint_eq(grid->emission, hot ? 2 : 0);
+        ck_assert_uint_eq(scene.grids.count, hot ? 2 : 1);
+        if (hot) {
             TEST_NEAR(grid[1].kelvin_scale, 860.0, 1e-3);
             TEST_NEAR(grid[1].kelvin_offset, -100.0, 1e-3);
             ck_assert_uint_eq(grid[1].aligned, 1);

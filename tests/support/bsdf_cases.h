@@ -20,6 +20,7 @@
 
 TCase *bsdf_coated_tests(void);
 TCase *bsdf_coated_conductor_tests(void);
+TCase *bsdf_coat_medium_tests(void);
 TCase *bsdf_energy_tests(void);
 TCase *bsdf_formula_tests(void);
 TCase *bsdf_hair_tests(void);
