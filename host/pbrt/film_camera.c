@@ -309,7 +309,7 @@ static bool camera_other(PbrtImport *im, const char *kind, bool *substitute)
 static bool camera_transform_set(PbrtImport *im, CameraSettings *camera)
 {
     Matrix ctm, inverse;
-    if (!import_ctm_inverse(im, im->place, &ctm, &inverse))
+    if (!import_ctm_inverse(im, im->place, false, &ctm, &inverse))
         return false;
     memcpy(camera->camera_from_world, ctm.m, sizeof ctm.m);
     memcpy(camera->world_from_camera, inverse.m, sizeof inverse.m);

@@ -121,11 +121,12 @@ static void distant_read(LightReader *r)
     direction_set(r, from, to);
 }
 
-#define READER(NAME, name, text, feature, position) {text, name##_read},
+#define READER(NAME, name, text, feature, position) {text, name##_read, (position) != 0},
 static const struct {
     const char *name;
     void (*read)(LightReader *r);
-} KINDS[] = {LIGHT_LIST_DELTA(READER){"infinite", infinite_read}};
+    bool position;
+} KINDS[] = {LIGHT_LIST_DELTA(READER){"infinite", infinite_read, false}};
 #undef READER
 #define KIND_COUNT (sizeof KINDS / sizeof *KINDS)
 
@@ -159,7 +160,7 @@ bool import_light(PbrtImport *im, const char *kind)
         ++i;
     if (i == KIND_COUNT)
         return kind_missing(im, kind);
-    if (!import_ctm_inverse(im, im->place, &reader.ctm, &reader.inverse))
+    if (!import_ctm_inverse(im, im->place, !KINDS[i].position, &reader.ctm, &reader.inverse))
         return false;
     snprintf(owner, sizeof owner, "the %s light", kind);
     import_list(im, &list, owner, ATTRIBUTE_LIGHT);

@@ -53,7 +53,7 @@ bool import_object_instance(PbrtImport *im, const char *name, SourcePlace name_p
         error_at(im->error, name_place, "unknown object \"%s\"", name);
         return error_fix(im->error, "define it before this line; defined so far: %s", known);
     }
-    if (!import_ctm_inverse(im, im->place, &ctm, &inverse))
+    if (!import_ctm_inverse(im, im->place, false, &ctm, &inverse))
         return false;
     const ImportObject *object = &ARRAY_AT(&im->object_definitions, ImportObject, index);
     for (const EmissiveShape *shape = object->emissive; shape; shape = shape->next)

@@ -196,8 +196,8 @@ bool parser_matrix(PbrtImport *im, Matrix *matrix)
     if (!bracket_read(im, TOKEN_OPEN, "[ and 16 numbers") || !parser_floats(im, 16, v) ||
         !bracket_read(im, TOKEN_CLOSE, "] after 16 numbers"))
         return false;
-    if (v[3] != 0.0 || v[7] != 0.0 || v[11] != 0.0 || v[15] == 0.0) {
-        error_at(im->error, im->place, "a projective transform is not supported");
+    if (v[15] == 0.0) {
+        error_at(im->error, im->place, "the 16th number of the transform is 0");
         return error_fix(im->error, "the 4th, 8th and 12th number must be 0, the 16th 1");
     }
     for (int i = 0; i < 4; ++i)

@@ -138,13 +138,28 @@ bool state_area_light(PbrtImport *im, const char *kind)
 
 /* ---- the current transform --------------------------------------------------------------------------------------- */
 
-bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
+static bool ctm_at_start(PbrtImport *im, SourcePlace place, Matrix *ctm)
 {
     *ctm = im->state.ctm[0];
     if (matrix_equal(&im->state.ctm[0], &im->state.ctm[1]))
         return true;
     return import_unsupported(im, place, "motion (a transform that differs between StartTime and EndTime)",
                               "everything stays where it is at StartTime", NULL);
+}
+
+static bool is_projective(const Matrix *matrix)
+{
+    return matrix->m[12] != 0.0 || matrix->m[13] != 0.0 || matrix->m[14] != 0.0;
+}
+
+bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm)
+{
+    if (!ctm_at_start(im, place, ctm))
+        return false;
+    if (!is_projective(ctm))
+        return true;
+    error_at(im->error, place, "a projective transform is not supported");
+    return error_fix(im->error, "the 4th, 8th and 12th number of every Transform and ConcatTransform before must be 0");
 }
 
 void import_matrix_move(const PbrtImport *im, Matrix *matrix)
@@ -166,9 +181,21 @@ bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Mat
     return error_fix(im->error, "look for a Scale or Transform with huge or tiny numbers");
 }
 
-bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse)
+/* Leaves out what a projective transform without translation does to points. */
+static bool ctm_of_directions(PbrtImport *im, SourcePlace place, Matrix *ctm)
 {
-    if (!import_ctm(im, place, ctm))
+    static const double LAST[4] = {0.0, 0.0, 0.0, 1.0};
+    if (!ctm_at_start(im, place, ctm))
+        return false;
+    if (ctm->m[3] != 0.0 || ctm->m[7] != 0.0 || ctm->m[11] != 0.0)
+        return import_ctm(im, place, ctm);
+    memcpy(ctm->m + 12, LAST, sizeof LAST);
+    return true;
+}
+
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, bool directions, Matrix *ctm, Matrix *inverse)
+{
+    if (!(directions ? ctm_of_directions(im, place, ctm) : import_ctm(im, place, ctm)))
         return false;
     if (im->in_world)
         import_matrix_move(im, ctm);

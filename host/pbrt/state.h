@@ -27,7 +27,8 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
 /* AreaLightSource "kind" and the parameters in im->params. */
 bool state_area_light(PbrtImport *im, const char *kind);
 
-/* The current transform for use without motion blur: the one at the start. Motion is reported as unsupported. */
+/* The current transform for use without motion blur: the one at the start. Motion is reported as unsupported. Fails if it
+ * is projective. */
 bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
 
 /* Converts a transform to the file's world space into one to the scene's world space, which is offset by im->offset. */
@@ -37,7 +38,8 @@ void import_matrix_move(const PbrtImport *im, Matrix *matrix);
 bool import_inverse(PbrtImport *im, SourcePlace place, const Matrix *matrix, Matrix *inverse);
 
 /* The current transform to the scene's world space, and its inverse. Before WorldBegin, for the camera, im->offset is
- * not applied. */
-bool import_ctm_inverse(PbrtImport *im, SourcePlace place, Matrix *ctm, Matrix *inverse);
+ * not applied. directions: only directions are transformed; then a projective transform without translation is one
+ * without its last row, as in pbrt. */
+bool import_ctm_inverse(PbrtImport *im, SourcePlace place, bool directions, Matrix *ctm, Matrix *inverse);
 
 #endif

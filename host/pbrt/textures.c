@@ -123,7 +123,7 @@ static void mix_read(Builder *b)
 void builder_space(Builder *b, TextureOp *op)
 {
     Matrix ctm, inverse;
-    if (b->list->failed || !import_ctm_inverse(b->im, b->im->place, &ctm, &inverse)) {
+    if (b->list->failed || !import_ctm_inverse(b->im, b->im->place, false, &ctm, &inverse)) {
         b->list->failed = true;
         return;
     }

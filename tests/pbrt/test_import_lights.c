@@ -121,6 +121,28 @@ START_TEST(places_and_directions)
 }
 END_TEST
 
+/* What a projective transform does to points does not matter to lights without a place, unless it moves them. */
+START_TEST(projective_transforms)
+{
+    static const char *const REFUSED[] = {"[ 1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1 ] LightSource \"point\"",
+                                          "[ 1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1 ] LightSource \"goniometric\"",
+                                          "[ 1 0 0 0 0 1 0 0 0 0 1 0.5 3 0 0 1 ] LightSource \"distant\"",
+                                          "[ 1 0 0 0 0 1 0 0.5 0 0 1 0 0 0 0 1 ] Texture \"t\" \"float\" \"wrinkled\"",
+                                          "[ 1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1 ] Shape \"sphere\""};
+    Scene scene;
+    import_world("ConcatTransform [ 0 1 0 0 -1 0 0 0.5 0 0 1 8.87 0 0 0 1 ] Rotate 90 0 0 1\n"
+                 "LightSource \"distant\" \"point3 to\" [ 1 0 0 ]",
+                 &scene);
+    assert_vec3(ELEMENT(&scene, light_details, LightDetail, 0).direction, -1.0f, 0.0f, 0.0f, 1e-6f);
+    scene_destroy(&scene);
+    for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; ++i) {
+        char text[256];
+        snprintf(text, sizeof text, "WorldBegin Transform %s", REFUSED[i]);
+        ck_assert_msg(strstr(import_error(text), "a projective transform is not supported"), "%s", REFUSED[i]);
+    }
+}
+END_TEST
+
 START_TEST(area_lights)
 {
     Scene scene;
@@ -325,6 +347,7 @@ TCase *import_lights_case(void)
     tcase_add_test(tcase, power_and_illuminance);
     tcase_add_test(tcase, power_is_that_of_each_primitive);
     tcase_add_test(tcase, places_and_directions);
+    tcase_add_test(tcase, projective_transforms);
     tcase_add_test(tcase, area_lights);
     tcase_add_test(tcase, lights_of_alpha_0_are_invisible);
     tcase_add_test(tcase, light_attributes);
