@@ -343,7 +343,7 @@ static bool material_add(PbrtImport *im, ParamList *list, const char *kind, Sour
     const Material blank = material_blank(MATERIAL_DIFFUSE);
     if (strcmp(kind, "interface") == 0 || strcmp(kind, "none") == 0 || !*kind) {
         if (kind[0] != 'i')
-            log_message_at(LOG_WARNING, place, "the material \"%s\" is deprecated; use \"interface\"", kind);
+            log_message_at(LOG_INFO, place, "the material \"%s\" is an older name of \"interface\"", kind);
         *index = MATERIAL_INTERFACE;
         return true;
     }

@@ -214,8 +214,11 @@ result 'needs as JSON' $?
 
 # A coat that scatters is approximated, and its texture is not read.
 printf '%s\n' 'WorldBegin' 'Texture "t" "float" "imagemap" "string filename" "no.png"' \
-    'Material "coatedconductor" "texture thickness" "t" "rgb albedo" [ 0.1 0.1 0.1 ]' 'Shape "sphere"' >needs.pbrt
+    'Material "coatedconductor" "texture thickness" "t" "rgb albedo" [ 0.1 0.1 0.1 ]' 'Shape "sphere"' 'Material "none"' \
+    'Shape "sphere"' >needs.pbrt
 expect 0 '' info --needs needs.pbrt
+grep -qF ' 1  supported      Material            none' out
+result 'an older name of a material is supported' $?
 grep -qF ' 1  approximated   Material            coatedconductor  (needs.pbrt:3:1' out
 result 'a scattering coat is approximated' $?
 
