@@ -5,8 +5,10 @@
 #include "math/rng.h"
 
 #define WALKS 32768u
-#define STEPS_MAX 4096u
+#define STEPS_MAX 4096u /* of one walk, */
+#define STEPS_ALL (1u << 22) /* and of all: a fraction of a second */
 #define WEIGHT_MIN 1e-4f
+#define WALK_STRIDE 20219u /* odd: in its order, the first walks have all cosines, too */
 #define WALK_KEY 1u
 
 /* Largest component of a mix's diffuse reflectance, unless the layers need more: what is left of 1 keeps `amount` small,
@@ -60,20 +62,28 @@ static Vec3 walk_step(const CoatLayers *layers, Random4 u, Walk *walk)
     return leaves;
 }
 
+/* Adds what walk number n lets out after scattering; returns how many steps it took. */
+static uint walk_add(const CoatLayers *layers, uint n, Vec3 *sum)
+{
+    Walk walk;
+    uint step = 0;
+    bool goes = walk_start(layers, n, &walk);
+    for (; goes && step < STEPS_MAX; ++step) {
+        Vec3 leaves = walk_step(layers, random_four(n, step, 0, 0, WALK_KEY, 0), &walk);
+        if (walk.scattered)
+            *sum = vec3_add(*sum, leaves);
+        goes = vec3_max_component(walk.weight) > WEIGHT_MIN;
+    }
+    return step;
+}
+
 Vec3 coat_medium_scattered(const CoatLayers *layers)
 {
     Vec3 sum = vec3_splat(0.0f);
-    for (uint n = 0; n < WALKS; ++n) {
-        Walk walk;
-        bool goes = walk_start(layers, n, &walk);
-        for (uint step = 0; goes && step < STEPS_MAX; ++step) {
-            Vec3 leaves = walk_step(layers, random_four(n, step, 0, 0, WALK_KEY, 0), &walk);
-            if (walk.scattered)
-                sum = vec3_mad(sum, 1.0f / (float)WALKS, leaves);
-            goes = vec3_max_component(walk.weight) > WEIGHT_MIN;
-        }
-    }
-    return sum;
+    uint walks = 0, steps = 0;
+    for (; walks < WALKS && steps < STEPS_ALL; ++walks)
+        steps += walk_add(layers, walks * WALK_STRIDE % WALKS, &sum);
+    return vec3_scale(sum, 1.0f / (float)walks);
 }
 
 /* Albedo, in diffuse light, of what a smooth coat without absorption lets out of a diffuse base; and its inverse. */

@@ -69,6 +69,16 @@ START_TEST(test_asymmetry)
 }
 END_TEST
 
+/* Where walks are long, fewer are made: a deep white medium returns all that enters, whatever it takes. */
+START_TEST(test_long_walks)
+{
+    CoatLayers layers = layers_make(1e30f, 1.0f, 0.9f, 1.0f);
+    double scattered = (double)coat_medium_scattered(&layers).x;
+    printf("# a deep white medium, g 0.9: %.4f\n", scattered);
+    REQUIRE(scattered > 0.7 && scattered < 0.92);
+}
+END_TEST
+
 /* ---- the mix ----------------------------------------------------------------------------------------------------- */
 
 /* Its numbers are fractions, each channel has its own reflectance, and the same layers give the same mix. */
@@ -191,6 +201,7 @@ TCase *bsdf_coat_medium_tests(void)
     tcase_add_test(tcase, test_single_scattering);
     tcase_add_test(tcase, test_energy);
     tcase_add_test(tcase, test_asymmetry);
+    tcase_add_test(tcase, test_long_walks);
     tcase_add_test(tcase, test_mix_numbers);
     tcase_add_loop_test(tcase, test_mix_albedo, 0, (int)(sizeof MIXES / sizeof MIXES[0]));
     return tcase;
