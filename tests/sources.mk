@@ -199,6 +199,7 @@ tests_test_combination_SOURCES = tests/mmlt/test_combination.c \
 tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \
 	tests/bsdf/test_bsdf_coated.c \
 	tests/bsdf/test_bsdf_coat_medium.c \
+	tests/bsdf/test_bsdf_mix.c \
 	tests/bsdf/test_bsdf_coated_conductor.c \
 	tests/bsdf/test_bsdf_energy.c \
 	tests/bsdf/test_bsdf_formulas.c \

@@ -29,7 +29,7 @@ SHARED_FUNCTION TexturePoint texture_point(const Surface *surface)
 SHARED_FUNCTION uint material_choose(const SceneView *scene, uint material, const TexturePoint *point, float u)
 {
     for (uint i = 0; i < MIX_DEPTH_MAX && scene->materials[material].kind == MATERIAL_MIX; ++i) {
-        float amount = float_param_eval(scene, scene->materials[material].amount, point);
+        float amount = float_clamp(float_param_eval(scene, scene->materials[material].amount, point), 0.0f, 1.0f);
         if (u < amount) {
             u = u / amount;
             material = scene->materials[material].mix_b;

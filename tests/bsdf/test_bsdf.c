@@ -13,5 +13,6 @@ int main(void)
     suite_add_tcase(suite, bsdf_coated_tests());
     suite_add_tcase(suite, bsdf_coated_conductor_tests());
     suite_add_tcase(suite, bsdf_coat_medium_tests());
+    suite_add_tcase(suite, bsdf_mix_tests());
     return test_run(suite);
 }

@@ -26,6 +26,7 @@ TCase *bsdf_formula_tests(void);
 TCase *bsdf_hair_tests(void);
 TCase *bsdf_identity_tests(void);
 TCase *bsdf_inverse_tests(void);
+TCase *bsdf_mix_tests(void);
 TCase *bsdf_phase_tests(void);
 TCase *bsdf_sampling_tests(void);
 
