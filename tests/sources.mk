@@ -110,6 +110,7 @@ EXTRA_DIST += \
 	tests/mmlt/test_chain.h \
 	tests/mmlt/test_partition.h \
 	tests/mmlt/test_partition_state.h \
+	tests/film/test_film.h \
 	tests/light/test_emit.h \
 	tests/support/test_files.h \
 	tests/gltf/test_gltf.h \
@@ -230,9 +231,11 @@ tests_test_emit_SOURCES = tests/light/test_emit.c \
 	tests/light/test_emit_splat.c
 
 tests_test_film_SOURCES = tests/film/test_film.c \
+	tests/film/test_film_complete.c \
 	tests/film/test_film_files.c \
 	tests/film/test_film_output.c \
 	tests/film/test_film_spread.c \
+	tests/film/test_film_units.c \
 	tests/film/test_film_words.c
 
 tests_test_geometry_SOURCES = tests/geometry/test_geometry.c \
@@ -289,6 +292,7 @@ tests_test_math_SOURCES = tests/math/test_math.c \
 	tests/math/test_math_warp.c
 
 tests_test_mmlt_SOURCES = tests/mmlt/test_mmlt.c \
+	tests/mmlt/test_mmlt_easy.c \
 	tests/mmlt/test_mmlt_shown.c
 
 tests_test_numerics_SOURCES = tests/render/test_numerics.c \

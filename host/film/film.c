@@ -293,6 +293,7 @@ bool film_merge(Film *film, const Film *from, Error *error)
     rows_run(film, row_merge, &adding);
     counters_add(&adding);
     film->light_samples += from->light_samples;
+    film->complete_samples += from->complete_samples;
     film->every_count += from->every_count;
     return true;
 }
@@ -364,6 +365,27 @@ static void sums_clear(int64_t *sums, size_t first, size_t end)
         memset(sums + 3 * first, 0, 3 * (end - first) * sizeof *sums);
 }
 
+typedef struct LightAdding {
+    Film *film;
+    const float *change;
+} LightAdding;
+
+static void row_light_add(void *context, size_t row)
+{
+    const LightAdding *adding = context;
+    int64_t *sums = adding->film->light_sums;
+    size_t values = 3 * (size_t)(adding->film->crop[2] - adding->film->crop[0]);
+    for (size_t i = row * values; i < (row + 1) * values; ++i)
+        sums[i] = film_sum_rounded((double)film_sum_shown(sums[i]) + (double)adding->change[i]);
+}
+
+void film_light_add(Film *film, const float *change, int64_t samples)
+{
+    LightAdding adding = {film, change};
+    rows_run(film, row_light_add, &adding);
+    film->light_samples += (uint64_t)samples;
+}
+
 void film_pixels_clear(Film *film, size_t first, size_t end)
 {
     sums_clear(film->sums, first, end);
@@ -386,7 +408,7 @@ static void row_clear(void *context, size_t row)
 
 void film_counters_clear(Film *film)
 {
-    film->light_samples = film->saturated = film->vanished = film->not_finite = 0;
+    film->light_samples = film->complete_samples = film->saturated = film->vanished = film->not_finite = 0;
     film->every_count = 0;
 }
 

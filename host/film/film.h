@@ -26,6 +26,9 @@ typedef struct Film {
     int64_t *depth_sums;
     uint depth_kinds, depth_last;
     uint64_t light_samples; /* number of paths behind light_sums; 0: as many as samples of pixels */
+    /* Of all pixels' samples together, those that are complete: their `sums` hold all of their light. The rest are shown with
+     * what is in light_sums, which counts in proportion to their number. 0, or all pixels have the same number of samples. */
+    uint64_t complete_samples;
     uint reconstruction; /* RECONSTRUCTION_*, with the pixel filter: film_filter_set */
     FilmAxis axis_x, axis_y;
     /* Samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h), and more that every pixel has
@@ -74,6 +77,9 @@ static inline uint32_t film_count(const Film *film, size_t pixel)
     return film->counts[pixel] + film->every_count;
 }
 
+/* Samples of all pixels together. Reads all counts. */
+uint64_t film_samples(const Film *film);
+
 /* Number of pixels of the crop. */
 size_t film_pixels(const Film *film);
 
@@ -105,6 +111,9 @@ void film_swap_own(Film *a, Film *b);
  * sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes unless the
  * film spreads splats. */
 void film_normalize(Film *film, uint64_t samples);
+
+/* Adds `change`, 3 values a pixel in units of the sums, to light_sums, and `samples` to light_samples. */
+void film_light_add(Film *film, const float *change, int64_t samples);
 
 /* Resets all sums and counters to zero; size and quantum stay. The next two: only the sums and counts of pixels [first, end),
  * and only what the film counts as a whole. */
@@ -158,8 +167,9 @@ void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_
 /* The same pixels of the light sums of paths of `segments` segments. */
 void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb);
 
-/* rgb[3 * crop pixels] = scale * (sum / count + light sum / (light samples / pixels)); the first term is zero for
- * pixels without samples. Paths from the light can reach every pixel, whatever the sample count of the single pixel. */
+/* rgb[3 * crop pixels] = scale * (sum / count + c light sum / (light samples / pixels)); the first term is zero for
+ * pixels without samples; c is the part of the samples that are not complete. Paths from the light can reach every pixel,
+ * whatever the sample count of the single pixel. */
 void film_resolve(const Film *film, float scale, float *rgb);
 
 #endif

@@ -32,6 +32,7 @@ void film_archive(Archive *archive, Film *film)
     archive_bytes(archive, film->counts, film_pixels(film) * sizeof *film->counts);
     ARCHIVE_FIELD(archive, film->every_count);
     ARCHIVE_FIELD(archive, film->light_samples);
+    ARCHIVE_FIELD(archive, film->complete_samples);
     ARCHIVE_FIELD(archive, film->saturated);
     ARCHIVE_FIELD(archive, film->vanished);
     ARCHIVE_FIELD(archive, film->not_finite);

@@ -21,6 +21,35 @@ bool combined_image_init(CombinedImage *image, const Film *film, Error *error)
            error_memory(error, (values + depths) * sizeof(float), "a generation's picture");
 }
 
+bool paths_change_init(PathsChange *change, size_t values, Error *error)
+{
+    paths_change_forget(change);
+    change->values = calloc(values, sizeof *change->values);
+    return change->values || error_memory(error, values * sizeof *change->values, "the picture by path tracing");
+}
+
+void paths_change_forget(PathsChange *change)
+{
+    free(change->values);
+    *change = (PathsChange){NULL, 0};
+}
+
+void paths_change_archive(Archive *archive, PathsChange *change, size_t values)
+{
+    bool known = change->values != NULL;
+    Error error;
+    archive_flags(archive, &known, 1, "whether path tracing is kept");
+    if (archive->failed)
+        return;
+    if (!known)
+        paths_change_forget(change);
+    else if (!change->values && !paths_change_init(change, values, &error))
+        archive_fail(archive, "%s", error_text(&error));
+    else
+        archive_floats(archive, change->values, values, RANGE_FLOATS, "the picture by path tracing");
+    ARCHIVE_FIELD(archive, change->samples);
+}
+
 void combined_image_destroy(CombinedImage *image)
 {
     free(image->light);
@@ -115,6 +144,21 @@ static EstimatorSums film_sums_of(const ImageAdding *adding, uint segments)
                            adding->image->depths + depths_before(film, segments)};
 }
 
+/* Path tracing alone would show all of its light, rare light included ... */
+static void change_add_paths(const ImageAdding *adding, RowRange pixels)
+{
+    float *values = adding->image->change->values;
+    for (size_t i = 3 * pixels.first; i < 3 * pixels.end; ++i)
+        values[i] = (float)((double)values[i] + (double)film_sum_shown(adding->film->light_sums[i]));
+}
+
+/* ... and not the image. */
+static void change_subtract_image(const CombinedImage *image, RowRange pixels)
+{
+    for (size_t i = 3 * pixels.first; i < 3 * pixels.end; ++i)
+        image->change->values[i] -= image->light[i];
+}
+
 static void row_add(void *context, size_t row)
 {
     const ImageAdding *adding = context;
@@ -123,6 +167,8 @@ static void row_add(void *context, size_t row)
     learner->rows[row].full = film_full_pixels_of(adding->film, pixels.first, pixels.end);
     combination_row_learn(&adding->learning, row);
     sums_add(adding, film_sums(adding), pixels);
+    if (adding->kind == ESTIMATOR_PATHS && adding->image->change)
+        change_add_paths(adding, pixels);
     for (uint segments = SPLAT_DEPTH_MIN; adding->image->depths && segments <= adding->film->depth_last; ++segments)
         sums_add(adding, film_sums_of(adding, segments), pixels);
     if (adding->take)
@@ -173,6 +219,8 @@ static void row_finish(void *context, size_t row)
     Film *film = finishing->film;
     RowRange pixels = combination_row_pixels(image->learner, row);
     sums_set(film->light_sums, image->light, pixels);
+    if (image->change)
+        change_subtract_image(image, pixels);
     for (uint segments = SPLAT_DEPTH_MIN; image->depths && segments <= film->depth_last; ++segments)
         sums_set(film_depth_sums(film, segments, FILM_KIND_LIGHT), image->depths + depths_before(film, segments),
                  pixels);
@@ -182,6 +230,8 @@ void combined_image_finish(const CombinedImage *image, Film *film)
 {
     ImageFinishing finishing = {image, film};
     combination_rows_run(image->learner, row_finish, &finishing);
+    if (image->change)
+        image->change->samples += (int64_t)image->samples[ESTIMATOR_PATHS] - (int64_t)image->worth;
     film->light_samples = image->worth;
     film->saturated = image->saturated;
     film->vanished = image->vanished;

@@ -10,10 +10,18 @@
 
 #include "mmlt/combination.h"
 
+/* What changes in the film's light sums, 3 per pixel in units of the film's, and in their number of samples if path tracing alone is
+ * shown in some generations. */
+typedef struct PathsChange {
+    float *values; /* NULL: it is not known */
+    int64_t samples;
+} PathsChange;
+
 typedef struct CombinedImage {
     float *light; /* 3 per pixel, in units of the film's sums */
     float *depths; /* the same for each depth that the film has, or NULL */
     size_t values, depth_values; /* in `light` and in `depths` */
+    PathsChange *change; /* that the generation is added to; NULL: none */
     Combination *learner; /* learns from the generation ... */
     Combination *teacher; /* ... and this has the weights; the same if generations are independent */
     double samples[ESTIMATOR_COUNT];
@@ -24,6 +32,13 @@ typedef struct CombinedImage {
 /* Allocates for films like `film`. Call combined_image_destroy even on failure. */
 bool combined_image_init(CombinedImage *image, const Film *film, Error *error);
 void combined_image_destroy(CombinedImage *image);
+
+/* Begins with no change for `values` values; or forgets what it was. */
+bool paths_change_init(PathsChange *change, size_t values, Error *error);
+void paths_change_forget(PathsChange *change);
+
+/* Saves what changes, or restores it. */
+void paths_change_archive(Archive *archive, PathsChange *change, size_t values);
 
 /* An empty image of a generation in which the estimators have `samples` (0: none), by the weights that the teacher now has
  * for them. */

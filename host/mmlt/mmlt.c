@@ -43,6 +43,12 @@ static bool chains_due(const Mmlt *mmlt)
     return chains_needed(mmlt) && plan_chains(&mmlt->plan) > 0;
 }
 
+/* Whether the generation is path tracing alone, with nothing to combine it with or to learn from. */
+static bool complete_due(const Mmlt *mmlt)
+{
+    return mmlt->paths.completes && chains_needed(mmlt) && !chains_due(mmlt);
+}
+
 /* Makes the film, like that of the image; unless chains are alone, with what estimators leave to each other. */
 static bool generation_film_init(Mmlt *mmlt, Error *error)
 {
@@ -62,7 +68,8 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
     bool alone = mmlt->options.chains_only;
     const Guide *guide = &mmlt->guide.shown;
     Film *film = &mmlt->film;
-    if (!paths_estimator_init(&mmlt->paths, run, film, alone, guide, error))
+    bool completes = !alone && !mmlt->options.shown && !render_layers_split(run->options->layers);
+    if (!paths_estimator_init(&mmlt->paths, run, film, alone, completes, guide, error))
         return false;
     frame_complete(mmlt, &run->frame);
     pool_estimator_init(&mmlt->pool, run, film, alone, guide);
@@ -70,6 +77,22 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
     return !chains_needed(mmlt) ||
            (pool_estimator_list(&mmlt->pool, run, error) &&
             chains_estimator_list(&mmlt->chains, run, mmlt->options.steps, guide, mmlt->scheme->groups, error));
+}
+
+void mmlt_changes_forget(Mmlt *mmlt)
+{
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        paths_change_forget(&mmlt->changes[replica]);
+}
+
+bool mmlt_changes_init(Mmlt *mmlt, Error *error)
+{
+    mmlt_changes_forget(mmlt);
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        if (mmlt->paths.completes && film_pixels(&mmlt->film) <= PATHS_KEPT_PIXELS &&
+            !paths_change_init(&mmlt->changes[replica], mmlt->combined.values, error))
+            return false;
+    return true;
 }
 
 static bool combinations_init(Mmlt *mmlt, Error *error)
@@ -81,7 +104,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
         mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;
     }
     combination_share(&mmlt->combinations[1], &mmlt->combinations[0]);
-    return combined_image_init(&mmlt->combined, &mmlt->film, error);
+    return combined_image_init(&mmlt->combined, &mmlt->film, error) && mmlt_changes_init(mmlt, error);
 }
 
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error)
@@ -107,6 +130,7 @@ void mmlt_destroy(Mmlt *mmlt)
     for (int replica = 0; replica < REPLICAS; ++replica)
         combination_destroy(&mmlt->combinations[replica]);
     combined_image_destroy(&mmlt->combined);
+    mmlt_changes_forget(mmlt);
     film_destroy(&mmlt->film);
     archive_memory_destroy(&mmlt->kept);
 }
@@ -201,7 +225,7 @@ static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     Film *film = &mmlt->film, *image = mmlt->run->film;
     if ((chains_needed(mmlt) && !mmlt_pilot_run(mmlt, count, whole, error)) ||
-        (*whole && !paths_estimator_run(&mmlt->paths, &mmlt->generation, whole, error)))
+        (*whole && !paths_estimator_run(&mmlt->paths, &mmlt->generation, false, whole, error)))
         return false;
     mmlt->run->done = mmlt->paths.delivered;
     if (!*whole)
@@ -228,7 +252,7 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
         return false;
     if (chains_due(mmlt) && *whole && !chains_follow(mmlt, count, whole, error))
         return false;
-    return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, whole, error);
+    return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, complete_due(mmlt), whole, error);
 }
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
@@ -265,7 +289,9 @@ static void generation_begin(Mmlt *mmlt)
     mmlt_guide_show(&mmlt->guide, generation->replica);
     clamp_threshold_set(mmlt);
     film_clear(&mmlt->film);
-    if (!mmlt->options.chains_only)
+    PathsChange *change = &mmlt->changes[generation->replica];
+    mmlt->combined.change = change->values && generation->index < PATHS_REPLACED ? change : NULL;
+    if (!mmlt->options.chains_only && !complete_due(mmlt))
         combined_image_begin(&mmlt->combined, &mmlt->combinations[generation->replica],
                              &mmlt->combinations[generation->other], mmlt->samples);
 }
@@ -289,6 +315,20 @@ static void films_combine(Mmlt *mmlt)
     plan_learn(&mmlt->plan, generation->index, own); /* the other replica is next, and learns from this one */
 }
 
+/* Where the generation tells that light is easy, path tracing alone is shown in the first generations of the other replica, whose
+ * weights were not those of known variances. What is shown must not be chosen by its own errors: light that it has missed would
+ * make it look good. */
+static void first_paths_show(Mmlt *mmlt)
+{
+    PathsChange *change = &mmlt->changes[mmlt->generation.other];
+    if (change->values && combination_alone_error(&mmlt->combinations[mmlt->generation.replica]) < ALONE_ERROR) {
+        film_light_add(mmlt->run->film, change->values, change->samples);
+        paths_change_forget(change);
+    }
+    if (mmlt->generation.index + 1 >= PATHS_KEPT)
+        mmlt_changes_forget(mmlt);
+}
+
 /* Adds the generation to the picture and its layers. */
 static bool generation_take(Mmlt *mmlt, Error *error)
 {
@@ -296,12 +336,15 @@ static bool generation_take(Mmlt *mmlt, Error *error)
     Film *film = &mmlt->film;
     if (mmlt->options.chains_only)
         film->light_samples = mmlt->chains.own.samples;
-    else
+    else if (!complete_due(mmlt))
         films_combine(mmlt);
     if (mmlt->generation.index == 0)
         film_clear(mmlt->run->film);
-    return film_merge(mmlt->run->film, film, error) &&
-           (!layers || render_layers_add(layers, film, mmlt->generation.index % 2, error));
+    if (!film_merge(mmlt->run->film, film, error) ||
+        (layers && !render_layers_add(layers, film, mmlt->generation.index % 2, error)))
+        return false;
+    first_paths_show(mmlt);
+    return true;
 }
 
 static void generation_count(Mmlt *mmlt, uint count, uint64_t work)

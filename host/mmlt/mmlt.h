@@ -20,6 +20,8 @@ typedef struct Mmlt {
     Film film; /* of the estimator that runs; at the end, of the generation */
     Combination combinations[REPLICAS];
     CombinedImage combined;
+    PathsChange
+        changes[REPLICAS]; /* by path tracing alone in the first generations of each, as long as it may be shown */
     MmltGuide guide;
     Plan plan;
     Generation generation; /* under way */
@@ -36,6 +38,10 @@ typedef struct Mmlt {
  * stay where it is. Call mmlt_destroy even on failure. */
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error);
 void mmlt_destroy(Mmlt *mmlt);
+
+/* Begins to keep what path tracing alone would change in the first generations, if it may be shown; or forgets it. */
+bool mmlt_changes_init(Mmlt *mmlt, Error *error);
+void mmlt_changes_forget(Mmlt *mmlt);
 
 /* Runs the pilot pool of a first generation of `count` chains (pool_estimator_pilot), if there is a clamping threshold
  * to set. *whole: set to false if stopped before the end. */

@@ -19,6 +19,10 @@ static void mmlt_archive(Archive *archive, Mmlt *mmlt)
     mmlt_guide_archive(archive, &mmlt->guide, size);
     for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica)
         combination_archive(archive, &mmlt->combinations[replica]);
+    for (int replica = 0; replica < REPLICAS && !mmlt->options.chains_only; ++replica)
+        paths_change_archive(archive, &mmlt->changes[replica], mmlt->combined.values);
+    if (!mmlt->paths.completes)
+        mmlt_changes_forget(mmlt);
     ARCHIVE_FIELD(archive, mmlt->run->chains);
     ARCHIVE_FIELD(archive, mmlt->seconds);
     if (!archive->saves)
@@ -76,7 +80,8 @@ static void pilot_archive(void *context, Archive *archive)
 
 bool mmlt_pilot_adopt(Mmlt *mmlt, Error *error)
 {
-    return !mmlt->run->pilot || pilot_file_restore(mmlt->run, (CheckpointState){pilot_archive, mmlt}, error);
+    return !mmlt->run->pilot || (pilot_file_restore(mmlt->run, (CheckpointState){pilot_archive, mmlt}, error) &&
+                                 mmlt_changes_init(mmlt, error));
 }
 
 bool mmlt_keep(Mmlt *mmlt, Error *error)

@@ -11,25 +11,37 @@
 #include <float.h>
 #include <math.h>
 
-bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
-                          Error *error)
+/* Makes the estimator's list for `frame`, which is complete then. */
+static bool list_make(Estimator *estimator, FrameParams *frame, const RenderRun *run, const Guide *guide, Error *error)
 {
-    *paths = (PathsEstimator){.own = {.film = film}, .frame = run->frame};
+    frame->path.strategies = integrator_pt()->strategies;
+    estimator_film_params(estimator, &frame->film);
+    bool made = integrator_pt()->list(frame, &estimator->list, error);
+    estimator->list.guide = guide;
+    estimator->list.photons = &run->photons;
+    return made;
+}
+
+bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
+                          const Guide *guide, Error *error)
+{
+    *paths = (PathsEstimator){.own = {.film = film},
+                              .frame = run->frame,
+                              .complete = {.film = film},
+                              .complete_frame = run->frame,
+                              .completes = completes};
     paths->sequences = render_layers_compare_halves(run->options->layers) ? REPLICAS : 1;
-    paths->frame.path.strategies = integrator_pt()->strategies;
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
-    estimator_film_params(&paths->own, &paths->frame.film);
-    bool made = integrator_pt()->list(&paths->frame, &paths->own.list, error);
-    paths->own.list.guide = guide;
-    paths->own.list.photons = &run->photons;
-    return made;
+    return list_make(&paths->own, &paths->frame, run, guide, error) &&
+           (!completes || list_make(&paths->complete, &paths->complete_frame, run, guide, error));
 }
 
 void paths_estimator_destroy(PathsEstimator *paths)
 {
     step_list_destroy(&paths->own.list);
+    step_list_destroy(&paths->complete.list);
 }
 
 /* Whether the samples so far are those that were wanted: not fewer, which would all be due at once. */
@@ -72,15 +84,14 @@ void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, d
 }
 
 /* A pass of one path that is not shown: a device builds its kernels now, and not while passes are timed. */
-static bool kernels_prepare(PathsEstimator *paths, RenderRun *run, Error *error)
+static bool kernels_prepare(Estimator *estimator, FrameParams frame, RenderRun *run, Error *error)
 {
-    FrameParams frame = paths->frame;
     uint64_t delivered;
     frame.pass.first_item = 0;
     frame.pass.item_count = 1;
-    paths->own.hidden = true;
-    bool done = estimator_pass(&paths->own, run, &frame, true, &delivered, error);
-    paths->own.hidden = false;
+    estimator->hidden = true;
+    bool done = estimator_pass(estimator, run, &frame, true, &delivered, error);
+    estimator->hidden = false;
     return done;
 }
 
@@ -107,30 +118,45 @@ void paths_estimator_count(PathsEstimator *paths, const Generation *generation)
     paths->of_sequence[sequence_of(paths, generation)] += paths->fresh;
 }
 
-bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error)
+/* Runs the generation's passes. */
+static bool passes_run(PathsEstimator *paths, const Generation *generation, bool complete, bool *whole, Error *error)
 {
     RenderRun *run = generation->run;
-    FrameParams *frame = &paths->frame;
-    if (generation->index == 0 && run->options->seconds > 0.0 && !kernels_prepare(paths, run, error))
-        return false;
-    double begin = timing_now();
-    paths->delivered = 0;
-    frame->partition.clamp_threshold = generation->clamp_threshold;
+    Estimator *estimator = complete ? &paths->complete : &paths->own;
+    FrameParams *frame = complete ? &paths->complete_frame : &paths->frame;
     uint64_t items = paths->own.samples;
     uint first = paths_estimator_number(paths, generation);
+    frame->partition.clamp_threshold = generation->clamp_threshold;
     frame->path.sobol = run->options->independent ? 0 : 1 + sequence_first(paths, generation);
+    paths->delivered = 0;
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
         uint64_t delivered, left = items - next;
         frame->pass.sample_index = first + (uint)(next / run->crop_pixels);
         frame->pass.first_item = (uint)(next % run->crop_pixels);
         frame->pass.item_count = left < PATHS_MAX ? (uint)left : PATHS_MAX;
-        if (!estimator_pass(&paths->own, run, frame, true, &delivered, error))
+        if (!estimator_pass(estimator, run, frame, true, &delivered, error))
             return false;
         paths->delivered += delivered;
         *whole = delivered == frame->pass.item_count;
     }
-    if (*whole && frame->partition.split_direct != 0u)
-        film_normalize(paths->own.film, paths->fresh);
+    return true;
+}
+
+bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool complete, bool *whole, Error *error)
+{
+    RenderRun *run = generation->run;
+    Film *film = paths->own.film;
+    if (generation->index == 0 && run->options->seconds > 0.0 &&
+        (!kernels_prepare(&paths->own, paths->frame, run, error) ||
+         (paths->completes && !kernels_prepare(&paths->complete, paths->complete_frame, run, error))))
+        return false;
+    double begin = timing_now();
+    if (!passes_run(paths, generation, complete, whole, error))
+        return false;
+    if (*whole && paths->frame.partition.split_direct != 0u)
+        film_normalize(film, paths->fresh);
+    if (*whole && complete)
+        film->complete_samples = paths->own.samples;
     paths_estimator_count(paths, generation);
     paths->seconds = timing_now() - begin;
     run->chains.direct_seconds += paths->seconds;

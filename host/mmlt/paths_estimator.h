@@ -6,8 +6,11 @@
 #include "mmlt/generation.h"
 
 typedef struct PathsEstimator {
-    Estimator own;
+    Estimator own; /* direct light apart from the rest, with which the other estimators are combined */
     FrameParams frame;
+    Estimator complete; /* all light together, if `completes`: it takes less time */
+    FrameParams complete_frame;
+    bool completes;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
     uint sequences; /* stratified ones: 1, or one for even and one for odd generations, so that the layers' halves are
@@ -18,10 +21,10 @@ typedef struct PathsEstimator {
     double seconds; /* that these took */
 } PathsEstimator;
 
-/* Makes the list. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of
- * paths that chains do not make. guide: for passes. Call paths_estimator_destroy even on failure. */
-bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, const Guide *guide,
-                          Error *error);
+/* Makes the lists. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of
+ * paths that chains do not make. completes: `complete`, too. guide: for passes. Call paths_estimator_destroy even on failure. */
+bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
+                          const Guide *guide, Error *error);
 void paths_estimator_destroy(PathsEstimator *paths);
 
 /* Saves what the next generation needs, or restores it. */
@@ -44,8 +47,8 @@ static inline double paths_estimator_owed(const PathsEstimator *paths)
  * 2^30. */
 uint paths_estimator_number(const PathsEstimator *paths, const Generation *generation);
 
-/* Runs these. *whole: set to false if stopped before the end. */
-bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool *whole, Error *error);
+/* Runs these. complete: by `complete`, and the film says that its samples are. *whole: set to false if stopped before the end. */
+bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool complete, bool *whole, Error *error);
 
 /* Counts the generation's samples. */
 void paths_estimator_count(PathsEstimator *paths, const Generation *generation);

@@ -130,6 +130,13 @@
 /* Its work then, in units of that of the generations between, which look for what it does not find. */
 #define ALONE_WORK 4.0
 
+/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if so many generations or
+ * fewer tell that light is easy. Its difference from their image is kept until then, which takes 24 bytes a pixel; pictures of more
+ * pixels than this do without; docs/TUNING.md. */
+#define PATHS_REPLACED 3u
+#define PATHS_KEPT 8u
+#define PATHS_KEPT_PIXELS ((size_t)1 << 20)
+
 /* Plans are searched on a grid that divides time into this many parts. */
 #define PLAN_PARTS 20
 

@@ -25,6 +25,11 @@ bool render_layers_compare_halves(const RenderLayers *layers)
     return layers && (has_halves(layers) || wants(layers, LAYER_VARIANCE));
 }
 
+bool render_layers_split(const RenderLayers *layers)
+{
+    return layers && (has_halves(layers) || (layers->wanted & ~LAYERS_AOV) != 0);
+}
+
 #define LAYER_OF(NAME, ...) [AOV_##NAME] = LAYER_##NAME,
 static const Layer LAYER_OF_AOV[AOV_COUNT] = {AOV_LIST(LAYER_OF)};
 #undef LAYER_OF

@@ -50,6 +50,9 @@ typedef struct RenderLayers {
  * may be NULL. */
 bool render_layers_compare_halves(const RenderLayers *layers);
 
+/* Whether layers, or the halves, tell parts of the light apart: FILM_OWN and FILM_LIGHT, or depths. layers: may be NULL. */
+bool render_layers_split(const RenderLayers *layers);
+
 /* Allocates the layers in `wanted`, and the halves if they are to be kept, for a film like `film`. Call render_layers_destroy even on failure. */
 bool render_layers_init(RenderLayers *layers, unsigned wanted, bool keep_halves, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);

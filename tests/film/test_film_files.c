@@ -1,6 +1,6 @@
 /* Writing of files: all or nothing, under the intended name, without overwriting anything else. */
 #include "support/test_files.h"
-#include "support/test_util.h"
+#include "film/test_film.h"
 
 #include "base/output_file.h"
 #include "base/path_name.h"
@@ -11,8 +11,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-
-TCase *film_files_tcase(void);
 
 /* A cancelled write leaves the old file; a link remains a link. */
 START_TEST(test_output_file)

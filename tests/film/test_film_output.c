@@ -1,6 +1,6 @@
 /* Output files: EXR, PNG, as a whole and in bands. */
 #include "support/test_files.h"
-#include "support/test_util.h"
+#include "film/test_film.h"
 
 #include "image/color.h"
 #include "image/despeckle.h"
@@ -13,8 +13,6 @@
 #include <openexr.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-TCase *film_output_tcase(void);
 
 #define WIDTH 37
 #define HEIGHT 21

@@ -1,12 +1,11 @@
 /* Splats that are spread over the pixels whose filter covers them (camera/film_spread.h). */
+#include "film/test_film.h"
+
 #include "camera/film_splat.h"
 #include "camera/film_spread.h"
-#include "film/film.h"
 #include "support/filter_cases.h"
 
 #include <math.h>
-
-TCase *film_spread_tcase(void);
 
 /* A film of 12 x 11 pixels whose crop window touches the film's left edge only. */
 enum { WIDTH = 12, HEIGHT = 11, X0 = 0, X1 = 6, Y0 = 3, Y1 = 8, ROWS = Y1 - Y0, COLUMNS = X1 - X0 };

@@ -1,13 +1,11 @@
 /* Films in one buffer of words (film/film_words.h): splats divided among several, whose words are added up, give the film
  * that gets all splats. */
-#include "support/test_util.h"
+#include "film/test_film.h"
 
 #include "camera/film_sum.h"
 #include "film/film_words.h"
 
 #include <string.h>
-
-TCase *film_words_tcase(void);
 
 enum { WIDTH = 9, HEIGHT = 7, PARTS = 3, SPLATS = 400, DEPTH = 5 };
 
@@ -36,7 +34,7 @@ static FrameParams frame_of(const Kinds *kinds)
     return frame;
 }
 
-static void film_make(Film *film, const FrameParams *frame, const Kinds *kinds)
+static void film_of_kinds(Film *film, const FrameParams *frame, const Kinds *kinds)
 {
     Error error;
     ck_assert(film_init(film, WIDTH, HEIGHT, CROP, &error));
@@ -99,8 +97,8 @@ START_TEST(test_parts)
     const FrameParams frame = frame_of(kinds);
     Film expected, film;
     FilmWords parts[PARTS];
-    film_make(&expected, &frame, kinds);
-    film_make(&film, &frame, kinds);
+    film_of_kinds(&expected, &frame, kinds);
+    film_of_kinds(&film, &frame, kinds);
     size_t count = film_sum_words(&film);
     for (int part = 0; part < PARTS; ++part) {
         film_words_begin(&parts[part], &frame, NULL, calloc(count, sizeof(ulong)), count);
@@ -134,7 +132,7 @@ START_TEST(test_large)
     const FrameParams frame = frame_of(&KINDS);
     FilmWords parts[2];
     Film film;
-    film_make(&film, &frame, &KINDS);
+    film_of_kinds(&film, &frame, &KINDS);
     size_t count = film_sum_words(&film);
     for (int part = 0; part < 2; ++part) {
         film_words_begin(&parts[part], &frame, NULL, calloc(count, sizeof(ulong)), count);

@@ -299,6 +299,48 @@ START_TEST(test_alone)
 }
 END_TEST
 
+/* The difference of what path tracing finds alone, rare light included, from the image, over the generations in which it is
+ * kept. */
+START_TEST(test_paths_kept)
+{
+    Estimators estimators;
+    CombinedImage image;
+    PathsChange kept = {NULL, 0};
+    Error error = {0};
+    static double change[3 * PIXELS];
+    int64_t more = 0;
+    memset(change, 0, sizeof change);
+    estimators_init(&estimators);
+    Film *films = estimators.films;
+    ck_assert(combined_image_init(&image, &films[ESTIMATOR_PATHS], &error));
+    ck_assert(paths_change_init(&kept, 3 * PIXELS, &error));
+    for (int g = 0; g < 4; ++g) {
+        const double samples[ESTIMATOR_COUNT] = {4.0 * PIXELS, 1.0 * PIXELS, 2.0 * PIXELS};
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 2.0, 0.5);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 3.0, 1.0);
+        rare_set(&estimators, (size_t)g, 5.0, 7.0);
+        image.change = g != 2 ? &kept : NULL;
+        for (size_t i = 0; i < 3 * PIXELS && g != 2; ++i)
+            change[i] += (double)films[ESTIMATOR_PATHS].light_sums[i];
+        combined_image_begin(&image, &estimators.combination, &estimators.combination, samples);
+        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+            combined_image_take(&image, (EstimatorKind)s, &films[s]);
+        combined_image_finish(&image, &films[ESTIMATOR_PATHS]);
+        for (size_t i = 0; i < 3 * PIXELS && g != 2; ++i)
+            change[i] -= (double)films[ESTIMATOR_PATHS].light_sums[i];
+        more += g != 2 ? (int64_t)samples[ESTIMATOR_PATHS] - (int64_t)image.worth : 0;
+    }
+    ck_assert_int_eq(kept.samples, more);
+    for (size_t i = 0; i < 3 * PIXELS; ++i)
+        TEST_NEAR((double)kept.values[i], change[i], 1e-6 * 0x1p34);
+    paths_change_forget(&kept);
+    ck_assert(kept.values == NULL && kept.samples == 0);
+    combined_image_destroy(&image);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
 /* Bright dots in one tile are expected in adjacent tiles as well, but not elsewhere. */
 START_TEST(test_beside)
 {
@@ -539,6 +581,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
     tcase_add_loop_test(tcase, test_absent, 0, 6);
     tcase_add_test(tcase, test_alone);
+    tcase_add_test(tcase, test_paths_kept);
     tcase_add_test(tcase, test_beside);
     tcase_add_test(tcase, test_dot);
     tcase_add_test(tcase, test_excess);

@@ -441,6 +441,7 @@ int main(void)
     tcase_add_loop_test(case_make(suite, "estimators"), test_estimators, 0,
                         BIDIRECTIONAL_SCENE_COUNT * ESTIMATOR_COUNT);
     suite_add_tcase(suite, mmlt_shown_case());
+    suite_add_tcase(suite, mmlt_easy_case());
     tcase_add_loop_test(case_make(suite, "depths"), test_depths, 0, BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_test(case_make(suite, "modes"), test_modes);
     tcase_add_loop_test(case_make(suite, "shared"), test_shared, 0, 2);

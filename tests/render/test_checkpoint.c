@@ -131,6 +131,7 @@ static void films_compare(const Film *a, const Film *b)
     ck_assert(memcmp(a->counts, b->counts, film_pixels(a) * sizeof *a->counts) == 0);
     ck_assert_uint_eq(a->every_count, b->every_count);
     ck_assert_uint_eq(a->light_samples, b->light_samples);
+    ck_assert_uint_eq(a->complete_samples, b->complete_samples);
     ck_assert_uint_eq(a->vanished, b->vanished);
     ck_assert_uint_eq(a->saturated, b->saturated);
     for (uint depth = SPLAT_DEPTH_MIN; a->depth_sums && depth <= a->depth_last; ++depth)

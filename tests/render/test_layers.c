@@ -273,7 +273,7 @@ START_TEST(test_halves)
 END_TEST
 
 /* Halves are compared only if their errors are independent: their path tracing is then of two stratified sequences, and of one
- * if none are wanted, which is less noise. So layers of halves and of variance change the image; others do not. */
+ * if none are wanted, which is less noise. So layers of halves and of variance change the image of direct light; others do not. */
 START_TEST(test_sequences)
 {
     const Layer wanted[] = {LAYER_HALVES, LAYER_VARIANCE, LAYER_DIRECT, LAYER_ALBEDO};

@@ -99,5 +99,6 @@ TCase *bidirectional_film_case(void);
 TCase *bidirectional_spread_case(void);
 TCase *bidirectional_hard_case(void);
 TCase *mmlt_shown_case(void);
+TCase *mmlt_easy_case(void);
 
 #endif
