@@ -3,7 +3,7 @@
 
 #include "backend/step_recorder.h"
 #include "layout/kernel_list.h"
-#include "path/caustic_rest.h"
+#include "path/caustic.h"
 #include "path/path_state.h"
 
 #include <assert.h>
@@ -14,18 +14,27 @@ typedef struct PathSteps {
     bool split; /* direct light is splatted apart */
     bool split_depths; /* what each segment brings is splatted apart */
     bool caustics;
+    bool caustic_shadows; /* caustic_has_shadows */
     bool keeps; /* with `split`: direct light is splatted at the end, in a sum with other light */
 } PathSteps;
 
-/* Directions drawn by photons. */
-static void caustics_record(Recorder *recorder)
+/* Steps of caustics_record. The first segment has no skip and no shadow ray. */
+static size_t caustics_count(const PathSteps *steps)
 {
-    size_t end = recorder->count + 1 + 3 * (CAUSTIC_VERTICES + 1) - 1;
+    return 1 + 2 + (steps->caustic_shadows ? 4 : 3) * (size_t)CAUSTIC_VERTICES;
+}
+
+/* Directions drawn by photons. */
+static void caustics_record(Recorder *recorder, const PathSteps *steps)
+{
+    size_t end = recorder->count + caustics_count(steps);
     recorder_kernel(recorder, KERNEL_pt_start_caustics, false);
     for (uint i = 0; i <= CAUSTIC_VERTICES; ++i) {
         recorder_step(recorder, STEP_TRACE_CLOSEST);
         if (i > 0)
             recorder_skip(recorder, end);
+        if (i > 0 && steps->caustic_shadows)
+            recorder_step(recorder, STEP_TRACE_SHADOW);
         recorder_kernel(recorder, KERNEL_pt_walk_caustics, true);
     }
     assert(recorder->count == end);
@@ -38,7 +47,7 @@ static void vertex_record(Recorder *recorder, const PathSteps *steps)
     recorder_step(recorder, STEP_TRACE_SHADOW);
     recorder_kernel(recorder, KERNEL_pt_add_lights, true);
     if (steps->caustics)
-        caustics_record(recorder);
+        caustics_record(recorder, steps);
     recorder_kernel(recorder, KERNEL_pt_extend_paths, !steps->caustics);
 }
 
@@ -150,9 +159,10 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
                              .split = frame->partition.split_direct != 0,
                              .split_depths = frame->film.split_depths != 0,
                              .caustics = frame->photons.count > 0,
+                             .caustic_shadows = caustic_has_shadows(frame_features(frame)),
                              .keeps =
                                  frame->photons.count > 0 || (frame_features(frame) & FEATURE_MEDIUM_EMISSION) != 0};
-    size_t per_segment = 11 + (steps.caustics ? 1 + 3 * (CAUSTIC_VERTICES + 1) : 0);
+    size_t per_segment = 11 + (steps.caustics ? caustics_count(&steps) : 0);
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
     steps_record(&recorder, &steps);

@@ -33,6 +33,10 @@ void scene_advise(const Scene *scene, bool photons)
                               "or mirrors both before "
                               "and after a rough surface is found by photons alone and is missing: render by mmlt, or "
                               "by pt with --photons=1048576");
+    if (scene_has_delta(scene) && (scene->features & FEATURE_DELTA_LIGHT) && (scene->features & FEATURE_SCATTERING))
+        log_message(LOG_INFO, "light of lights without extent that passes smooth glass or mirrors, is scattered in a "
+                              "medium and passes others after that is missing, and with pt all of theirs that passes "
+                              "any before it is scattered: a small sphere in their place is found by mmlt");
     if (scene_has_delta(scene) && has_invisible_light(scene))
         log_message(LOG_INFO, "light of area lights with alpha 0 that passes smooth glass or mirrors both before and "
                               "after a rough surface is missing: without alpha it is found");

@@ -1,6 +1,7 @@
 /* Light subpaths through smooth specular surfaces, of which photons are made (host/render/photon_map.c): photon_start;
  * per segment (rays traced) photon_walk; photon_end. A subpath is drawn from the lights, or follows the ray that it is
- * given with the choices of lobes of another. */
+ * given with the choices of lobes of another. Photons only say where light comes from, so media neither scatter nor
+ * attenuate these subpaths: all of their rays begin in medium 0. */
 #ifndef TWINLIGHT_PHOTON_CL
 #define TWINLIGHT_PHOTON_CL
 
@@ -35,9 +36,6 @@ SHARED_FUNCTION bool photon_emit(const SceneView *scene, uint number, bool aimed
     *light = light_select(scene, choice.x[0], choice.x[1]);
     /* No direction that photons draw would hit it. */
     if (light_is_invisible(scene, *light))
-        return false;
-    /* A light without extent may lie before the end of a ray, for which alone the optical depth is known. */
-    if (SCENE_HAS(scene, FEATURE_MEDIUM) && light_has_position(light_kind(scene->lights + *light)))
         return false;
     if (!light_emit_aimed(scene, *light, random_float(choice.x[2]),
                           vec2(random_float(random.x[0]), random_float(random.x[1])),

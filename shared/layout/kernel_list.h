@@ -70,8 +70,8 @@
     X(photon_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                          \
     X(pt_start_caustics, 7, BUFFER_FRAME, BUFFER_PHOTONS, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, \
       BUFFER_RAYS)                                                                                                     \
-    X(pt_walk_caustics, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
-      BUFFER_HITS)
+    X(pt_walk_caustics, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
+      BUFFER_SHADOWS, BUFFER_HITS)
 
 #define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \

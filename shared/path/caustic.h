@@ -71,8 +71,63 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
 
 /* ---- lights at the end ------------------------------------------------------------------------------------------- */
 
+/* How far along the ray (d unit) a light at a point is, which counts as a sphere of PhotonParams.point_radius; 0: the
+ * ray passes it by. */
+SHARED_FUNCTION float caustic_point_distance(const SceneView *scene, __global const Light *source, Ray ray)
+{
+    Vec3 to_light = vec3_sub(light_detail(scene, source)->position, ray.o);
+    float along = vec3_dot(to_light, ray.d), radius = scene->frame->photons.point_radius;
+    bool seen = along > 0.0f && vec3_length_squared(vec3_cross(to_light, ray.d)) < radius * radius;
+    return seen ? along : 0.0f;
+}
+
+/* Radiance of that sphere, which has the light's power, along a ray of direction d. */
+SHARED_FUNCTION Vec3 caustic_point_radiance(const SceneView *scene, __global const Light *source, Vec3 d)
+{
+    float radius2 = scene->frame->photons.point_radius * scene->frame->photons.point_radius;
+    return vec3_scale(delta_light_emitted(scene, source, vec3_negate(d)), INV_PI / radius2);
+}
+
+/* Whether shadow rays find lights at a point: in media, where of a ray the optical depth up to its end alone is known,
+ * and such a light may lie before that. */
+SHARED_FUNCTION bool caustic_has_shadows(ulong features)
+{
+    return (features & FEATURE_MEDIUM) != 0u && (features & FEATURE_DELTA_LIGHT) != 0u;
+}
+
+/* In scenes with such shadow rays: stores that of the caustic path's next ray, to the light at a point that the path was
+ * drawn for, if the ray meets it. */
+SHARED_FUNCTION_APART void caustic_shadow_store(const SceneView *scene, __global const uint *restrict paths,
+                                                __global const uint *restrict rays, __global uint *restrict shadows,
+                                                uint item)
+{
+    uint stride = scene->frame->pass.stride, light = state_load(paths, stride, PATH_CAUSTIC_LIGHT, item);
+    if (light == NONE || !light_has_position(light_kind(scene->lights + light)))
+        return;
+    Ray ray = ray_load(rays, stride, item);
+    ray.t_max = caustic_point_distance(scene, scene->lights + light, ray);
+    ray_store(shadows, stride, item, ray);
+    shadow_medium_store(scene, shadows, stride, item, state_load(rays, stride, RAY_MEDIUM, item));
+}
+
+/* What such a shadow ray, which has been traced, brings to the caustic path from its light; then clears it. */
+SHARED_FUNCTION_APART Vec3 caustic_shadow_radiance(const SceneView *scene, __global const uint *restrict paths,
+                                                   __global uint *restrict shadows, uint item)
+{
+    uint stride = scene->frame->pass.stride, light = state_load(paths, stride, PATH_CAUSTIC_LIGHT, item);
+    if (!(state_load_float(shadows, stride, RAY_T_MAX, item) > 0.0f))
+        return vec3_splat(0.0f);
+    state_store_float(shadows, stride, RAY_T_MAX, item, 0.0f);
+    if (state_load(shadows, stride, SHADOW_OCCLUDED, item) != 0u)
+        return vec3_splat(0.0f);
+    Vec3 radiance =
+        caustic_point_radiance(scene, scene->lights + light, state_load_vec3(shadows, stride, RAY_DIRECTION, item));
+    return vec3_mul(radiance, passage_shadow(scene, shadows, stride, item).weight);
+}
+
 /* Radiance of a light of no extent along a ray (d unit) that goes as far as t_max (FLOAT_INFINITY: misses): of a sphere
- * of PhotonParams.point_radius or a cone of distant_sine with the light's power. */
+ * (caustic_point_radiance), unless shadow rays find it, or of a cone of PhotonParams.distant_sine with the light's
+ * power. */
 SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, Ray ray, float t_max)
 {
     __global const Light *source = scene->lights + light;
@@ -83,11 +138,10 @@ SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, 
         bool seen = vec3_dot(ray.d, direction) < 0.0f && vec3_length_squared(vec3_cross(ray.d, direction)) < sine2;
         return vec3_scale(source->emission, seen && t_max == FLOAT_INFINITY ? INV_PI / sine2 : 0.0f);
     }
-    Vec3 to_light = vec3_sub(light_detail(scene, source)->position, ray.o);
-    float along = vec3_dot(to_light, ray.d), radius2 = params.point_radius * params.point_radius;
-    bool seen = along > 0.0f && along < t_max && vec3_length_squared(vec3_cross(to_light, ray.d)) < radius2;
-    Vec3 intensity = delta_light_emitted(scene, source, vec3_negate(ray.d));
-    return vec3_scale(intensity, seen ? INV_PI / radius2 : 0.0f);
+    float along = SCENE_HAS(scene, FEATURE_MEDIUM) ? 0.0f : caustic_point_distance(scene, source, ray);
+    if (!(along > 0.0f && along < t_max))
+        return vec3_splat(0.0f);
+    return caustic_point_radiance(scene, source, ray.d);
 }
 
 /* What the ray of a caustic path brings from lights that it hits, or (surface NULL) from infinity. */

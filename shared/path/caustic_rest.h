@@ -13,6 +13,7 @@
 #define TWINLIGHT_PATH_CAUSTIC_REST_H
 
 #include "bsdf/bsdf.h"
+#include "light/delta.h"
 #include "path/bd_state.h"
 #include "path/photon.h"
 
@@ -30,7 +31,7 @@ SHARED_FUNCTION float caustic_rest_of(float p, float q)
 SHARED_FUNCTION uint caustic_light(const SceneView *scene, uint light)
 {
     uint kind = light_kind(scene->lights + light);
-    return kind == LIGHT_POINT || kind == LIGHT_SPOT || kind == LIGHT_DISTANT ? light : NONE;
+    return kind == LIGHT_DISTANT || light_has_position(kind) ? light : NONE;
 }
 
 /* The density q of drawing w (unit) at p by photons of such a light. */

@@ -429,7 +429,13 @@ for by in --integrator=mmlt '--integrator=pt --photons=4096'; do
     expect 0 '' render --resolution=4x4 --samples=1 $by -o pool.exr pool.pbrt
     ! grep -q 'is found by photons alone' err
     result "photons are not counted with $by" $?
+    ! grep -q 'is scattered in a medium' err
+    result "a medium that is not there scatters with $by" $?
 done
+printf '%s\n' 'MakeNamedMedium "mist" "string type" "homogeneous" MediumInterface "mist" ""' \
+    'Material "interface" Shape "sphere" "float radius" 0.1' >>pool.pbrt
+expect 0 'is scattered in a medium and passes others after that is missing' \
+    render --resolution=4x4 --samples=1 --integrator=mmlt -o pool.exr pool.pbrt
 
 # Contributions too faint compared with the rest count as black, and a message says for how much of the image.
 printf '%s\n' 'LookAt 0 1 -6  0 0 0  0 1 0 Camera "perspective" WorldBegin' \
