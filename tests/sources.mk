@@ -250,6 +250,7 @@ tests_test_gltf_SOURCES = tests/gltf/test_gltf.c \
 	tests/gltf/test_gltf_convert.c \
 	tests/gltf/test_gltf_materials.c \
 	tests/gltf/test_gltf_scene.c \
+	tests/gltf/test_gltf_skins.c \
 	tests/gltf/test_gltf_textures.c
 
 tests_test_import_SOURCES = tests/pbrt/test_import.c \

@@ -1,14 +1,20 @@
 /* Checks of accessors, and of the primitives that use them. */
 #include "base/log.h"
-#include "gltf/meshes.h"
+#include "gltf/accessors.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-static size_t component_size(size_t type)
+size_t gltf_component_size(size_t type)
 {
     return type == GLTF_UNSIGNED_BYTE ? 1 : type == GLTF_UNSIGNED_SHORT ? 2 : 4;
+}
+
+size_t gltf_type_width(const char *type)
+{
+    size_t number = strcmp(type, "SCALAR") == 0 ? 1 : (size_t)(type[3] - '0');
+    return type[0] == 'M' ? number * number : number;
 }
 
 /* Fails if `count` elements of `size` bytes, `stride` apart (0: without gaps), do not fit the view from `offset` on. */
@@ -45,7 +51,7 @@ static void sparse_check(const Gltf *gltf, GltfReader *reader, const GltfObject 
         gltf_fail(reader, "%s has a component type that is not one of indices", indices.name);
     GltfBytes bytes = view_of(gltf, reader, &indices, &view);
     range_check(reader, indices.name, bytes, gltf_size(reader, &indices, "byteOffset", 0), replaced,
-                component_size(type), 0);
+                gltf_component_size(type), 0);
     bytes = view_of(gltf, reader, &values, &view);
     range_check(reader, values.name, bytes, gltf_size(reader, &values, "byteOffset", 0), replaced, size, 0);
 }
@@ -81,7 +87,7 @@ size_t gltf_accessor_check(const Gltf *gltf, GltfReader *reader, int accessor, c
     }
     if (count < 1 || count > INT32_MAX)
         return gltf_fail(reader, "%s.count must be from 1 to %d", object.name, INT32_MAX);
-    size_t size = component_size(component) * (strcmp(type, "SCALAR") == 0 ? 1 : (size_t)(type[3] - '0'));
+    size_t size = gltf_component_size(component) * gltf_type_width(type);
     const GltfObject sparse = gltf_object(reader, &object, "sparse");
     if (!sparse.json || json_object_get(object.json, "bufferView"))
         data_check(gltf, reader, &object, count, size);
@@ -90,13 +96,12 @@ size_t gltf_accessor_check(const Gltf *gltf, GltfReader *reader, int accessor, c
     return reader->failed ? 0 : count;
 }
 
-/* The index of `size` bytes, little-endian. */
-static size_t index_read(const unsigned char *at, size_t size)
+size_t gltf_integer_read(const unsigned char *at, size_t size)
 {
-    size_t index = 0;
+    size_t integer = 0;
     for (size_t k = 0; k < size; ++k)
-        index |= (size_t)at[k] << (8 * k);
-    return index;
+        integer |= (size_t)at[k] << (8 * k);
+    return integer;
 }
 
 size_t gltf_indices_check(const Gltf *gltf, GltfReader *reader, int accessor, size_t vertex_count)
@@ -110,11 +115,11 @@ size_t gltf_indices_check(const Gltf *gltf, GltfReader *reader, int accessor, si
         return count;
     const GltfObject view_object = gltf_entry(reader, "bufferViews", (size_t)index);
     const GltfBytes view = gltf_view(gltf, reader, (size_t)index);
-    size_t size = component_size(gltf_size(reader, &object, "componentType", 0));
+    size_t size = gltf_component_size(gltf_size(reader, &object, "componentType", 0));
     size_t given = gltf_size(reader, &view_object, "byteStride", 0), stride = given > 0 ? given : size;
     const unsigned char *data = view.data + gltf_size(reader, &object, "byteOffset", 0);
     for (size_t i = 0; i < count && !reader->failed; ++i) {
-        size_t vertex = index_read(data + i * stride, size);
+        size_t vertex = gltf_integer_read(data + i * stride, size);
         if (vertex >= vertex_count)
             gltf_fail(reader, "%s has the vertex index %zu, but there are %zu vertices", object.name, vertex,
                       vertex_count);
@@ -157,7 +162,7 @@ static bool meshes_count(Gltf *gltf, GltfReader *reader)
     gltf->mesh_count = count;
     for (size_t i = 0; i < count && !reader->failed; ++i) {
         const GltfObject object = gltf_entry(reader, "meshes", i);
-        gltf->meshes[i].first_primitive = all;
+        gltf->meshes[i] = (GltfMesh){.number = i, .first_primitive = all, .pose = -1};
         gltf_array(reader, &object, "primitives", &gltf->meshes[i].primitive_count);
         all += gltf->meshes[i].primitive_count;
     }

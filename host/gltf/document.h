@@ -52,7 +52,7 @@ typedef struct GltfMaterial {
 } GltfMaterial;
 
 typedef struct GltfPrimitive {
-    size_t mesh; /* index of its mesh, and which of its primitives it is, for messages */
+    size_t mesh; /* index of its mesh in `meshes`, and which of its primitives it is */
     size_t number;
     int material; /* the last entry of `materials` if the file names none */
     bool triangles; /* points and lines are left out */
@@ -61,8 +61,10 @@ typedef struct GltfPrimitive {
 } GltfPrimitive;
 
 typedef struct GltfMesh {
+    size_t number; /* in the file */
     size_t first_primitive, primitive_count;
     size_t uses; /* by nodes of the scene */
+    int pose; /* the only node that shows it, which has a skin or weights of its own for it; -1: none */
 } GltfMesh;
 
 /* Triangles of a primitive that have the same emission. */
@@ -76,6 +78,7 @@ typedef struct GltfNode {
     int parent; /* -1: a root */
     bool used; /* in the scene */
     int mesh, camera, light; /* -1: none */
+    int skin; /* of `mesh`, whose vertices it moves to the world (gltf_mesh_world); -1: none */
 } GltfNode;
 
 typedef struct GltfCamera {
@@ -142,7 +145,14 @@ bool gltf_materials_read(Gltf *gltf, GltfReader *reader);
 bool gltf_nodes_read(Gltf *gltf, GltfReader *reader);
 bool gltf_primitives_read(Gltf *gltf, GltfReader *reader);
 
-/* Primitive `number` of a mesh, as an object of the JSON. */
+/* Gives each node that poses its mesh, by a skin or by weights of morph targets, a mesh of its own in `meshes`, behind the
+ * file's (poses.c). */
+bool gltf_poses_make(Gltf *gltf, GltfReader *reader);
+
+/* From the space of a node's mesh to the world. */
+Matrix gltf_mesh_world(const GltfNode *node);
+
+/* Primitive `number` of the file's mesh `mesh`, as an object of the JSON. */
 GltfObject gltf_primitive_object(GltfReader *reader, size_t mesh, size_t number);
 
 /* Says what is left out, and fails for what the file requires and is not supported (extensions.c). */

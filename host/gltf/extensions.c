@@ -93,9 +93,7 @@ bool gltf_extensions_check(const Gltf *gltf, GltfReader *reader)
     used_report(reader);
     if (gltf_count(reader, "animations") > 0)
         log_message(LOG_INFO, "%s: animations are not played: nodes stay where the file puts them", gltf->path);
-    if (any_has(reader, "nodes", "skin"))
-        log_message(LOG_INFO, "%s: skins are not applied: meshes are shown as they are stored", gltf->path);
     if (any_has(reader, "meshes", "targets"))
-        log_message(LOG_INFO, "%s: morph targets have the default weights of their meshes", gltf->path);
+        log_message(LOG_INFO, "%s: morph targets have the default weights of their nodes and meshes", gltf->path);
     return !reader->failed;
 }

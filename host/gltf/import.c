@@ -12,7 +12,7 @@ static bool document_read(Gltf *gltf, GltfReader *reader)
 {
     return gltf_container_read(gltf, reader) && gltf_extensions_check(gltf, reader) &&
            gltf_buffers_read(gltf, reader) && gltf_materials_read(gltf, reader) && gltf_primitives_read(gltf, reader) &&
-           gltf_nodes_read(gltf, reader) && gltf_meshes_read(gltf, reader);
+           gltf_nodes_read(gltf, reader) && gltf_poses_make(gltf, reader) && gltf_meshes_read(gltf, reader);
 }
 
 Gltf *gltf_open(const char *path, Error *error)

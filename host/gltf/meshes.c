@@ -1,8 +1,10 @@
 #include "gltf/meshes.h"
 
 #include "base/log.h"
+#include "gltf/accessors.h"
 #include "gltf/emission.h"
 #include "gltf/memory_files.h"
+#include "gltf/skin.h"
 #include "gltf/uv_transform.h"
 
 #include <assimp/cimport.h>
@@ -13,6 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Vertices and joints of meshes that nodes pose, in all: each has its own, so that a small file could have many. */
+#define POSED_MAX (1u << 28)
+
 /* ---- the document for Assimp ------------------------------------------------------------------------------------- */
 
 typedef struct Packing {
@@ -21,6 +26,7 @@ typedef struct Packing {
     char *document; /* JSON */
     size_t *primitives; /* the primitive of each of Assimp's meshes */
     size_t count;
+    size_t posed; /* POSED_MAX */
 } Packing;
 
 /* Whether a material needs texture coordinates. */
@@ -95,13 +101,28 @@ static json_t *attributes_make(Packing *packing, const GltfObject *object, GltfP
     return out;
 }
 
-/* Adds the morph targets whose default weights are not 0 to a primitive, and these weights to its mesh. */
-static void targets_pack(Packing *packing, const GltfObject *mesh, const GltfObject *object, size_t vertex_count,
+/* The weights of a mesh's morph targets: those of the node that poses it, if it has any. */
+static const json_t *weights_find(Packing *packing, const GltfMesh *mesh, size_t *count)
+{
+    GltfObject owner = gltf_entry(packing->reader, "meshes", mesh->number);
+    if (mesh->pose >= 0) {
+        const GltfObject node = gltf_entry(packing->reader, "nodes", (size_t)mesh->pose);
+        owner = json_object_get(node.json, "weights") ? node : owner;
+    }
+    const json_t *weights = gltf_array(packing->reader, &owner, "weights", count);
+    for (size_t i = 0; i < *count && !packing->reader->failed; ++i)
+        if (!json_is_number(json_array_get(weights, i)))
+            gltf_fail(packing->reader, "%s.weights[%zu] must be a number", owner.name, i);
+    return weights;
+}
+
+/* Adds the morph targets whose weights are not 0 to a primitive, and these weights to its mesh. */
+static void targets_pack(Packing *packing, const GltfMesh *mesh, const GltfObject *object, size_t vertex_count,
                          json_t *out_mesh, json_t *out)
 {
     GltfReader *reader = packing->reader;
     size_t weight_count, count;
-    const json_t *weights = gltf_array(reader, mesh, "weights", &weight_count);
+    const json_t *weights = weights_find(packing, mesh, &weight_count);
     const json_t *targets = gltf_array(reader, object, "targets", &count);
     json_t *out_weights = json_array(), *out_targets = json_array();
     for (size_t i = 0; i < count && i < weight_count && !reader->failed; ++i) {
@@ -120,12 +141,26 @@ static void targets_pack(Packing *packing, const GltfObject *mesh, const GltfObj
     json_object_set_new(out_mesh, "weights", out_weights);
 }
 
+/* Counts what a mesh that a node poses takes. */
+static void posed_count(Packing *packing, const GltfMesh *mesh, size_t vertex_count)
+{
+    if (mesh->pose < 0 || packing->reader->failed)
+        return;
+    packing->posed += vertex_count + gltf_skin_joints(packing->gltf, packing->reader, mesh);
+    if (packing->posed <= POSED_MAX)
+        return;
+    gltf_fail(packing->reader, "the meshes that skins and weights of nodes pose have more than %u vertices and joints",
+              POSED_MAX);
+    error_fix(packing->reader->error, "let fewer nodes show them, or export them posed");
+}
+
 /* Adds a primitive to Assimp's document, as a mesh and a node of its own. */
 static void primitive_pack(Packing *packing, size_t index, json_t *meshes, json_t *nodes, json_t *scene)
 {
     GltfReader *reader = packing->reader;
     GltfPrimitive *primitive = &packing->gltf->primitives[index];
-    const GltfObject object = gltf_primitive_object(reader, primitive->mesh, primitive->number);
+    const GltfMesh *mesh = &packing->gltf->meshes[primitive->mesh];
+    const GltfObject object = gltf_primitive_object(reader, mesh->number, primitive->number);
     int indices = gltf_index(reader, &object, "indices", "accessors");
     size_t vertex_count;
     json_t *attributes = attributes_make(packing, &object, primitive, indices, &vertex_count);
@@ -136,8 +171,8 @@ static void primitive_pack(Packing *packing, size_t index, json_t *meshes, json_
     if (indices >= 0)
         json_object_set_new(out, "indices", json_integer(indices));
     json_t *out_mesh = json_object();
-    const GltfObject mesh = gltf_entry(reader, "meshes", primitive->mesh);
-    targets_pack(packing, &mesh, &object, vertex_count, out_mesh, out);
+    posed_count(packing, mesh, vertex_count);
+    targets_pack(packing, mesh, &object, vertex_count, out_mesh, out);
     json_object_set_new(out_mesh, "primitives", json_pack("[o]", out));
     json_array_append_new(meshes, out_mesh);
     json_array_append_new(nodes, json_pack("{s:I}", "mesh", (json_int_t)packing->count));
@@ -287,12 +322,17 @@ static bool mesh_copy(GltfReader *reader, const char *name, const struct aiMesh 
         reader->failed = !error_memory(reader->error, 32 * count, "a mesh");
         return false;
     }
-    if (!floats_finite(mesh->positions, 3 * count) || !floats_finite(mesh->normals, 3 * count) ||
-        !floats_finite(mesh->uvs, 2 * count)) {
-        gltf_fail(reader, "%s has vertices that are not finite", name);
-        return error_fix(reader->error, "repair the mesh in the program that made it");
-    }
     return triangles_copy(reader, name, from, mesh);
+}
+
+static bool vertices_check(GltfReader *reader, const char *name, const PlyMesh *mesh)
+{
+    size_t count = mesh->vertex_count;
+    if (floats_finite(mesh->positions, 3 * count) && floats_finite(mesh->normals, 3 * count) &&
+        floats_finite(mesh->uvs, 2 * count))
+        return true;
+    gltf_fail(reader, "%s has vertices that are not finite", name);
+    return error_fix(reader->error, "repair the mesh in the program that made it");
 }
 
 /* Adds the parts of one primitive. */
@@ -304,10 +344,11 @@ static bool primitive_unpack(Packing *packing, const struct aiMesh *from, size_t
     GltfMaterial *material = &gltf->materials[primitive->material];
     char name[96];
     PlyMesh mesh = {0};
-    snprintf(name, sizeof name, "meshes[%zu].primitives[%zu]", primitive->mesh, primitive->number);
+    snprintf(name, sizeof name, "meshes[%zu].primitives[%zu]", gltf->meshes[primitive->mesh].number, primitive->number);
     primitive->first_part = gltf->parts.count;
-    bool good =
-        mesh_copy(reader, name, from, &material->bake, &mesh) && gltf_emission_split(gltf, reader, material, &mesh);
+    bool good = mesh_copy(reader, name, from, &material->bake, &mesh) &&
+                gltf_skin_apply(gltf, reader, primitive, &mesh) && vertices_check(reader, name, &mesh) &&
+                gltf_emission_split(gltf, reader, material, &mesh);
     material->used = true;
     primitive->part_count = gltf->parts.count - primitive->first_part;
     ply_destroy(&mesh);

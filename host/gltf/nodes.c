@@ -132,6 +132,7 @@ static void node_read(Gltf *gltf, GltfReader *reader, size_t i)
     size_t children;
     node->world = local_matrix(reader, &object);
     node->mesh = gltf_index(reader, &object, "mesh", "meshes");
+    node->skin = node->mesh >= 0 ? gltf_index(reader, &object, "skin", "skins") : -1;
     node->camera = gltf_index(reader, &object, "camera", "cameras");
     const GltfObject punctual = gltf_extension(reader, &object, "KHR_lights_punctual");
     size_t light = gltf_size(reader, &punctual, "light", gltf->light_count);
@@ -223,6 +224,11 @@ static bool nodes_place(Gltf *gltf, GltfReader *reader)
         node_place(gltf, reader, order[k]);
     free(lists);
     return !reader->failed;
+}
+
+Matrix gltf_mesh_world(const GltfNode *node)
+{
+    return node->skin >= 0 ? matrix_identity() : node->world;
 }
 
 bool gltf_nodes_read(Gltf *gltf, GltfReader *reader)

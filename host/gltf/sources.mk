@@ -3,7 +3,8 @@ libtwinlight_host_la_SOURCES += \
 	host/gltf/load.c host/gltf/load.h
 
 GLTF_WITH_ASSIMP = \
-	host/gltf/accessors.c \
+	host/gltf/accessor_values.c \
+	host/gltf/accessors.c host/gltf/accessors.h \
 	host/gltf/container.c \
 	host/gltf/convert.c \
 	host/gltf/document.h \
@@ -16,6 +17,8 @@ GLTF_WITH_ASSIMP = \
 	host/gltf/memory_files.c host/gltf/memory_files.h \
 	host/gltf/meshes.c host/gltf/meshes.h \
 	host/gltf/nodes.c \
+	host/gltf/poses.c \
+	host/gltf/skin.c host/gltf/skin.h \
 	host/gltf/translate.c host/gltf/translate.h \
 	host/gltf/translate_materials.c \
 	host/gltf/uv_transform.c host/gltf/uv_transform.h

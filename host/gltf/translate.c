@@ -99,6 +99,7 @@ static bool camera_print(Translation *translation, const PlacedCamera *placed)
 static void node_bounds(const Gltf *gltf, const GltfNode *node, Box *box)
 {
     const GltfMesh *mesh = &gltf->meshes[node->mesh];
+    const Matrix world = gltf_mesh_world(node);
     for (size_t i = 0; i < mesh->primitive_count; ++i) {
         const GltfPrimitive *primitive = &gltf->primitives[mesh->first_primitive + i];
         for (size_t k = 0; k < primitive->part_count; ++k) {
@@ -106,7 +107,7 @@ static void node_bounds(const Gltf *gltf, const GltfNode *node, Box *box)
             for (size_t v = 0; v < part->vertex_count; ++v) {
                 double p[3] = {(double)part->positions[3 * v], (double)part->positions[3 * v + 1],
                                (double)part->positions[3 * v + 2]};
-                matrix_point(&node->world, p, p);
+                matrix_point(&world, p, p);
                 box_add(box, vec3((float)p[0], (float)p[1], (float)p[2]));
             }
         }
@@ -274,15 +275,16 @@ static void node_print(Translation *translation, size_t i)
     const Gltf *gltf = translation->gltf;
     const GltfNode *node = &gltf->nodes[i];
     const GltfMesh *mesh = &gltf->meshes[node->mesh];
+    const Matrix world = gltf_mesh_world(node);
     size_t dark = mesh_print(translation, mesh, false, true), emitting = mesh_print(translation, mesh, true, true);
     if (dark + emitting == 0)
         return;
-    if (matrix_flat(&node->world)) {
+    if (matrix_flat(&world)) {
         log_message(LOG_WARNING, "%s: the mesh of nodes[%zu] is scaled to nothing and is left out", gltf->path, i);
         return;
     }
     PRINT(translation, "AttributeBegin\n");
-    transform_print(translation, &node->world);
+    transform_print(translation, &world);
     if (mesh_is_object(translation, mesh))
         PRINT(translation, "ObjectInstance \"%d\"\n", node->mesh);
     else

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "support/test_files.h"
 
+#include <dirent.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -91,6 +92,16 @@ const char *gltf_write(const char *name, const char *members)
     return gltf_write_with(name, GLTF_ACCESSORS, members);
 }
 
+void gltf_folder_remove(const char *path)
+{
+    DIR *folder = opendir(path);
+    ck_assert_ptr_nonnull(folder);
+    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
+        unlinkat(dirfd(folder), entry->d_name, 0);
+    closedir(folder);
+    rmdir(path);
+}
+
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static char log_text[8192];
@@ -165,6 +176,7 @@ int main(void)
     Suite *suite = suite_create("gltf");
     log_sink_set(log_collect, NULL);
     suite_add_tcase(suite, gltf_scene_case());
+    suite_add_tcase(suite, gltf_skins_case());
     suite_add_tcase(suite, gltf_materials_case());
     suite_add_tcase(suite, gltf_textures_case());
     suite_add_tcase(suite, gltf_bad_case());

@@ -7,6 +7,7 @@
 #include "support/test_util.h"
 
 TCase *gltf_scene_case(void); /* nodes, meshes, cameras, lights */
+TCase *gltf_skins_case(void); /* skins, weights of morph targets */
 TCase *gltf_materials_case(void);
 TCase *gltf_textures_case(void);
 TCase *gltf_bad_case(void); /* damaged and hostile files */
@@ -51,6 +52,9 @@ const char *gltf_path(const char *name);
 
 /* The same with these accessors instead. */
 const char *gltf_write_with(const char *name, const char *accessors, const char *members);
+
+/* Removes a folder of files. */
+void gltf_folder_remove(const char *path);
 
 /* Reads a file with these members, which must succeed. */
 void gltf_scene(const char *members, Scene *scene);

@@ -2,7 +2,6 @@
 #include "gltf/test_gltf.h"
 #include "pbrt/import.h"
 
-#include <dirent.h>
 #include <string.h>
 
 /* Whether the packed scenes are the same, word by word. */
@@ -31,16 +30,6 @@ static void both_load(const char *path, const char *converted, Scene *read, Scen
     ck_assert_msg(pbrt_load(converted, false, written, &error), "%s", error.message);
 }
 
-static void folder_remove(const char *path)
-{
-    DIR *folder = opendir(path);
-    ck_assert_ptr_nonnull(folder);
-    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
-        unlinkat(dirfd(folder), entry->d_name, 0);
-    closedir(folder);
-    rmdir(path);
-}
-
 /* Of everything: textures of both kinds of material, alpha, emission with a texture, instances, lights. */
 #define EVERYTHING                                                                                                     \
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},\"indices\":3,"       \
@@ -64,8 +53,8 @@ START_TEST(conversions_are_the_same_scene)
     assert_same_scene(&read, &written);
     scene_destroy(&read);
     scene_destroy(&written);
-    folder_remove(gltf_path("all-meshes"));
-    folder_remove(gltf_path("all-textures"));
+    gltf_folder_remove(gltf_path("all-meshes"));
+    gltf_folder_remove(gltf_path("all-textures"));
 }
 END_TEST
 
@@ -94,8 +83,8 @@ START_TEST(deep_images_are_floats)
     TEST_NEAR(green[1], 0x4000 / 65535.0, 1e-7);
     scene_destroy(&read);
     scene_destroy(&written);
-    folder_remove(gltf_path("deep-meshes"));
-    folder_remove(gltf_path("deep-textures"));
+    gltf_folder_remove(gltf_path("deep-meshes"));
+    gltf_folder_remove(gltf_path("deep-textures"));
 }
 END_TEST
 
