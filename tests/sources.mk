@@ -119,6 +119,7 @@ EXTRA_DIST += \
 	tests/math/test_math.h \
 	tests/backend/test_opencl.h \
 	tests/support/test_matrix.h \
+	tests/serve/served.h \
 	tests/serve/test_serve.h \
 	tests/support/test_util.h \
 	tests/support/verify_fixture.h \
@@ -313,6 +314,8 @@ tests_test_partition_SOURCES = tests/mmlt/test_partition.c \
 	tests/mmlt/test_partition_replay.c
 
 tests_test_serve_SOURCES = tests/serve/test_serve.c \
+	tests/serve/served.c \
+	tests/serve/test_serve_clients.c \
 	tests/serve/test_serve_page.c \
 	tests/serve/test_serve_tev.c
 

@@ -2,6 +2,7 @@
 
 #include "base/timing.h"
 #include "render/halves_error.h"
+#include "serve/connections.h"
 #include "serve/pixels.h"
 #include "serve/quiet_thread.h"
 #include "serve/request.h"
@@ -14,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CONNECTIONS_MAX 32u
 #define IDLE_SECONDS 10u /* a connection on which nothing moves is closed */
 #define REQUEST_BYTES_MAX ((size_t)16 << 10) /* of a request's head */
 #define END_SECONDS 2.0 /* see server_end */
@@ -34,6 +34,7 @@ struct Server {
     char token[TOKEN_DIGITS + 1];
     char host[256]; /* as given */
     struct MHD_Daemon *daemon;
+    Connections connections; /* of its thread */
     ErrorCurve curve; /* with the snapshot's lock */
     _Atomic double last_request; /* with the token, in timing_now */
     atomic_bool last_sent; /* the picture of the end has been sent to somebody */
@@ -213,6 +214,29 @@ static enum MHD_Result picture_answer(Server *server, struct MHD_Connection *con
 
 /* ---- requests ---------------------------------------------------------------------------------------------------- */
 
+/* The Connection of a connection is its socket context. */
+static void connection_notify(void *argument, struct MHD_Connection *connection, void **context,
+                              enum MHD_ConnectionNotificationCode code)
+{
+    Server *server = argument;
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    if (code == MHD_CONNECTION_NOTIFY_CLOSED)
+        connection_remove(*context);
+    else if (info)
+        *context = connection_add(&server->connections, info->connect_fd, timing_now());
+}
+
+/* Notes a whole request. */
+static void request_note(Server *server, struct MHD_Connection *connection)
+{
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    Connection *known = info ? info->socket_context : NULL;
+    double now = timing_now();
+    atomic_store(&server->last_request, now);
+    if (known)
+        known->requested = now;
+}
+
 /* Called once with the head of a request, whose context is NULL, and again with its body, if any, and at its end. */
 static enum MHD_Result request_answer(void *argument, struct MHD_Connection *connection, const char *path,
                                       const char *method, const char *version, const char *data, size_t *data_size,
@@ -233,7 +257,7 @@ static enum MHD_Result request_answer(void *argument, struct MHD_Connection *con
     }
     if (*data_size > 0)
         return MHD_NO;
-    atomic_store(&server->last_request, timing_now());
+    request_note(server, connection);
     switch (kind) {
     case REQUEST_PAGE:
         return page_answer(connection);
@@ -278,10 +302,11 @@ static bool daemon_start(Server *server, const OptionAddress *address, Error *er
     unsigned flags = MHD_USE_AUTO_INTERNAL_THREAD | MHD_USE_ITC | (found->ai_family == AF_INET6 ? MHD_USE_IPv6 : 0);
     signals_block(&before); /* in the server's thread */
     errno = 0;
-    server->daemon = MHD_start_daemon(
-        flags, 0, NULL, NULL, request_answer, server, MHD_OPTION_SOCK_ADDR, found->ai_addr, MHD_OPTION_CONNECTION_LIMIT,
-        CONNECTIONS_MAX, MHD_OPTION_CONNECTION_TIMEOUT, IDLE_SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        REQUEST_BYTES_MAX, MHD_OPTION_NOTIFY_COMPLETED, request_end, server, MHD_OPTION_END);
+    server->daemon = MHD_start_daemon(flags, 0, NULL, NULL, request_answer, server, MHD_OPTION_SOCK_ADDR,
+                                      found->ai_addr, MHD_OPTION_CONNECTION_LIMIT, CONNECTIONS_WITH_CLOSING,
+                                      MHD_OPTION_CONNECTION_TIMEOUT, IDLE_SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+                                      REQUEST_BYTES_MAX, MHD_OPTION_NOTIFY_COMPLETED, request_end, server,
+                                      MHD_OPTION_NOTIFY_CONNECTION, connection_notify, server, MHD_OPTION_END);
     int failure = errno;
     signals_unblock(&before);
     freeaddrinfo(found);

@@ -1,4 +1,5 @@
 libtwinlight_host_la_SOURCES += \
+	host/serve/connections.c host/serve/connections.h \
 	host/serve/error_curve.c host/serve/error_curve.h \
 	host/serve/pixels.c host/serve/pixels.h \
 	host/serve/quiet_thread.c host/serve/quiet_thread.h \

@@ -209,5 +209,6 @@ int main(void)
     suite_add_tcase(suite, snapshots);
     suite_add_tcase(suite, tev_case());
     suite_add_tcase(suite, page_case());
+    suite_add_tcase(suite, clients_case());
     return test_run(suite);
 }

@@ -8,6 +8,7 @@
 
 TCase *tev_case(void);
 TCase *page_case(void);
+TCase *clients_case(void);
 
 /* Starts ./twinlight render --integrator=pt --no-png of scenes/cornell.pbrt with the arguments that are not NULL, at most
  * four; standard error goes to `messages`, unless that is NULL. */

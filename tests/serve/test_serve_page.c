@@ -1,4 +1,5 @@
 /* The page of a rendering: requests to the program, good and hostile, and the parts that answers are made of. */
+#include "serve/served.h"
 #include "serve/test_serve.h"
 
 #include "support/test_files.h"
@@ -12,12 +13,8 @@
 #include "serve/request.h"
 #include "serve/server.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <signal.h>
-#include <stdint.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 
 #define TOKEN "0123456789abcdef0123456789abcdef"
 
@@ -156,117 +153,6 @@ END_TEST
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
-/* A program that serves. */
-typedef struct Served {
-    pid_t process;
-    unsigned port;
-    char token[TOKEN_DIGITS + 1];
-    char exr[512];
-} Served;
-
-static void served_begin(Served *served, const char *size, const char *time)
-{
-    char output[600], limit[32], resolution[32], *messages, *found;
-    const char *path;
-    size_t bytes;
-    test_folder_make();
-    snprintf(served->exr, sizeof served->exr, "%s", test_path("a.exr"));
-    snprintf(output, sizeof output, "--output=%s", served->exr);
-    snprintf(limit, sizeof limit, "--time=%s", time);
-    snprintf(resolution, sizeof resolution, "--resolution=%s", size);
-    path = test_path("messages");
-    served->process = program_start((const char *[]){output, limit, resolution, "--serve"}, path);
-    for (int i = 0; i < 200; ++i) {
-        usleep(50000);
-        if (access(path, R_OK) != 0)
-            continue;
-        messages = (char *)test_file_read(path, &bytes);
-        messages[bytes] = '\0';
-        found = strstr(messages, "http://127.0.0.1:");
-        bool whole = found && sscanf(found, "http://127.0.0.1:%u/%32[0-9a-f]/", &served->port, served->token) == 2 &&
-                     strlen(served->token) == TOKEN_DIGITS;
-        free(messages);
-        if (whole)
-            return;
-    }
-    ck_abort_msg("no address is printed");
-}
-
-/* Waits for the program's end; returns the seconds until then. */
-static double served_end(const Served *served)
-{
-    int status;
-    double begin = timing_now();
-    ck_assert_int_eq(waitpid(served->process, &status, 0), served->process);
-    ck_assert_msg(WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 130), "%d", status);
-    return timing_now() - begin;
-}
-
-/* A connection, or -1. */
-static int served_connect(const Served *served)
-{
-    struct sockaddr_in address = {
-        .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK), .sin_port = htons((uint16_t)served->port)};
-    int made = socket(AF_INET, SOCK_STREAM, 0);
-    struct timeval limit = {.tv_sec = 5};
-    setsockopt(made, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    if (connect(made, (struct sockaddr *)&address, sizeof address) == 0)
-        return made;
-    close(made);
-    return -1;
-}
-
-typedef struct Reply {
-    int status; /* 0: none */
-    char *head;
-    unsigned char *body;
-    size_t size; /* of the body */
-} Reply;
-
-/* Sends `request` as it is and reads until the connection is closed. */
-static Reply request_send(const Served *served, const char *request)
-{
-    size_t capacity = 1 << 24, size = 0;
-    unsigned char *bytes = calloc(1, capacity);
-    int to = served_connect(served);
-    ssize_t got = to >= 0 ? send(to, request, strlen(request), MSG_NOSIGNAL) : 0;
-    while (got > 0 && (got = recv(to, bytes + size, capacity - 1 - size, 0)) > 0)
-        size += (size_t)got;
-    if (to >= 0)
-        close(to);
-    Reply reply = {.head = (char *)bytes};
-    char *end = strstr(reply.head, "\r\n\r\n");
-    if (!end || sscanf(reply.head, "HTTP/1.%*d %d", &reply.status) != 1)
-        return reply;
-    *end = '\0';
-    reply.body = (unsigned char *)end + 4;
-    reply.size = size - (size_t)(reply.body - bytes);
-    return reply;
-}
-
-/* GET /TOKEN/path. */
-static Reply get(const Served *served, const char *path)
-{
-    char request[512];
-    snprintf(request, sizeof request, "GET /%s/%s HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n",
-             served->token, path);
-    return request_send(served, request);
-}
-
-static int get_status(const Served *served, const char *path)
-{
-    Reply reply = get(served, path);
-    free(reply.head);
-    return reply.status;
-}
-
-/* The value of a header that is a whole number. */
-static long header(const Reply *reply, const char *name)
-{
-    const char *at = strstr(reply->head, name);
-    return at ? strtol(at + strlen(name) + 2, NULL, 10) : -1;
-}
-
 /* Whether the status says that the rendering has ended; false if there is no answer. */
 static bool ended(const Served *served, bool *answered)
 {
@@ -279,8 +165,8 @@ static bool ended(const Served *served, bool *answered)
 
 START_TEST(page)
 {
-    Served served;
-    served_begin(&served, "64x48", "2s");
+    Served served = {0};
+    served_begin(&served, "64x48", "--time=2s");
     Reply reply = get(&served, "");
     ck_assert_int_eq(reply.status, 200);
     ck_assert_ptr_nonnull(strstr((char *)reply.body, "<canvas"));
@@ -296,20 +182,20 @@ START_TEST(page)
     ck_assert_int_eq(get_status(&served, "nothing"), 404);
     kill(served.process, SIGINT);
     ck_assert(served_end(&served) < 4.0);
-    test_folder_remove();
+    served_remove();
 }
 END_TEST
 
 /* The last picture that a client gets has the pixels of the file, as 32-bit floats bit for bit. */
 START_TEST(picture_is_the_file)
 {
-    Served served;
+    Served served = {0};
     Reply last = {0};
     float *rgb;
     int width, height, pictures = 0;
     Error error;
     bool answered = true, done = false;
-    served_begin(&served, "331x207", "3s");
+    served_begin(&served, "331x207", "--time=3s");
     while (answered && !done) {
         /* The program ends when it has sent the last picture, which may be before it is asked for its status again. */
         done = ended(&served, &answered) || (!answered && pictures > 0);
@@ -329,15 +215,15 @@ START_TEST(picture_is_the_file)
     ck_assert_int_eq(memcmp(last.body, rgb, last.size), 0);
     free(rgb);
     free(last.head);
-    test_folder_remove();
+    served_remove();
 }
 END_TEST
 
 START_TEST(hostile_requests)
 {
-    Served served;
+    Served served = {0};
     char request[512], *large = malloc(1 << 20);
-    served_begin(&served, "64x48", "5s");
+    served_begin(&served, "64x48", "--time=5s");
     static const char *const REFUSED[] = {
         "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n",
         "GET /status.json HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n",
@@ -373,7 +259,7 @@ START_TEST(hostile_requests)
     ck_assert_int_eq(get_status(&served, "status.json"), 200);
     kill(served.process, SIGINT);
     served_end(&served);
-    test_folder_remove();
+    served_remove();
 }
 END_TEST
 
@@ -384,8 +270,8 @@ START_TEST(hanging_clients)
     enum { CLIENTS = 60 };
     int clients[CLIENTS];
     char request[512];
-    Served served;
-    served_begin(&served, "640x480", "4s");
+    Served served = {0};
+    served_begin(&served, "640x480", "--time=4s");
     double begin = timing_now();
     snprintf(request, sizeof request, "GET /%s/picture?format=float HTTP/1.1\r\nHost: localhost\r\n\r\n", served.token);
     for (int i = 0; i < CLIENTS; ++i) {
@@ -399,7 +285,7 @@ START_TEST(hanging_clients)
     for (int i = 0; i < CLIENTS; ++i)
         close(clients[i]);
     ck_assert_int_eq(access(served.exr, R_OK), 0);
-    test_folder_remove();
+    served_remove();
 }
 END_TEST
 
