@@ -17,6 +17,7 @@ typedef struct Integrator {
     bool photons; /* draws directions by caustic photons (path/caustic.h) if RenderOptions.photons says so */
     /* How many in a rendering of so many pixels that does not say; NULL: none. */
     unsigned (*photons_default)(const RenderOptions *options, uint64_t pixels);
+    float roulette_scale; /* PathParams.roulette_scale of bidirectional walks; 0: that is 1 */
     bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
     /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
      * is set. */

@@ -262,6 +262,7 @@ void render_frame(const Integrator *integrator, const Scene *scene, const Render
     frame->film.reconstruction = reconstruction_of(options, &frame->film.filter);
     frame->path.min_depth = 1;
     frame->path.roulette_depth = ROULETTE_DEPTH;
+    frame->path.roulette_scale = integrator->roulette_scale > 0.0f ? integrator->roulette_scale : 1.0f;
     if (!integrator->guides || options->chains.paper || options->chains.unguided)
         frame->scene.guide_count = 0;
 }

@@ -60,6 +60,7 @@ typedef struct PathParams {
     uint max_depth; /* largest depth of a path, >= 1 */
     uint min_depth; /* smallest depth for bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
+    float roulette_scale; /* a walk survives with this times its throughput, relative to that with which it began */
     uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */
     uint mis_exponent; /* 1: balance heuristic, 2: power heuristic */
     uint only_s, only_t; /* the one strategy to show; only_s NONE: all */

@@ -241,6 +241,7 @@
     MEMBER(PathParams, max_depth)                                                                                      \
     MEMBER(PathParams, min_depth)                                                                                      \
     MEMBER(PathParams, roulette_depth)                                                                                 \
+    MEMBER(PathParams, roulette_scale)                                                                                 \
     MEMBER(PathParams, strategies)                                                                                     \
     MEMBER(PathParams, mis_exponent)                                                                                   \
     MEMBER(PathParams, only_s)                                                                                         \

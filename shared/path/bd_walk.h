@@ -126,7 +126,8 @@ SHARED_FUNCTION bool walk_scatter(const SceneView *scene, const Vertex *vertex, 
         step->beta = vec3_scale(step->beta, adjoint_factor(scene, vertex->ng, frame_to_world(vertex->frame, vertex->wo),
                                                            wi, vertex->wo.z, sample.wi.z));
     step->roulette_scale = side == SIDE_CAMERA ? roulette.scale * sample.eta * sample.eta : roulette.scale;
-    float survival = plays ? vec3_max_component(step->beta) * step->roulette_scale : 1.0f;
+    float scale = scene->frame->path.roulette_scale * step->roulette_scale;
+    float survival = plays ? vec3_max_component(step->beta) * scale : 1.0f;
     if (survival > 0.0f) /* rejects NaN */
         survival = float_max(survival, roulette.least);
     if (!(random_float(random.x[3]) < survival) || vec3_is_zero(step->beta))

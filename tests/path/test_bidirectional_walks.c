@@ -6,6 +6,7 @@
 
 #include "kernels/bd_connect.cl"
 #include "layout/kernel_list.h"
+#include "path/bd_walk.h"
 
 #include <string.h>
 
@@ -539,6 +540,40 @@ START_TEST(test_walks_in_smoke)
 }
 END_TEST
 
+/* Whether a walk survives at a vertex of albedo 0.25 if roulette's random number is u; the walk began with 1 / relative
+ * times the throughput that it has now. */
+static bool survives(const FrameParams *frame, uint depth, float relative, float u, WalkStep *step)
+{
+    const SceneView view = {.frame = frame, .features = ~(ulong)0};
+    Vertex vertex = {
+        .beta = vec3_splat(3.0f), .wo = vec3(0.0f, 0.6f, 0.8f), .ng = vec3(0.0f, 0.0f, 1.0f), .back = 1.0f};
+    vertex.frame = frame_from_normal(vertex.ng);
+    vertex.bsdf = (Bsdf){.kind = MATERIAL_DIFFUSE, .color0 = vec3_splat(0.25f)};
+    bsdf_flags_set(&vertex.bsdf);
+    const Random4 random = {{1u << 30, 1u << 30, 3u << 29, (uint)((double)u * 0x1p32)}};
+    return walk_scatter(&view, &vertex, SIDE_CAMERA, (Roulette){depth, relative / 3.0f, 0.0f}, random, step);
+}
+
+/* Roulette's probability is the relative throughput times roulette_scale, and survivors weigh so much the more. */
+START_TEST(test_roulette)
+{
+    static const float SCALES[] = {0.5f, 1.0f, 2.0f, 3.9f, 5.0f};
+    FrameParams frame = {.path = {.roulette_depth = 3, .max_depth = 10}};
+    WalkStep step;
+    for (size_t i = 0; i < sizeof SCALES / sizeof *SCALES; ++i)
+        for (float relative = 0.125f; relative <= 1.0f; relative *= 2.0f) {
+            float survival = fminf(SCALES[i] * relative * 0.25f, 1.0f);
+            frame.path.roulette_scale = SCALES[i];
+            ck_assert(survives(&frame, 2, relative, 0.999f, &step)); /* too early */
+            ck_assert_float_eq(step.survival, 1.0f);
+            ck_assert(survives(&frame, 3, relative, 0.999f * survival, &step));
+            ck_assert_float_eq_tol(step.survival, survival, 1e-6f);
+            ck_assert_float_eq_tol(step.beta.x * survival, 0.75f, 1e-6f);
+            ck_assert(survival >= 1.0f || !survives(&frame, 3, relative, 1.001f * survival, &step));
+        }
+}
+END_TEST
+
 TCase *bidirectional_walks_case(void)
 {
     TCase *tcase = tcase_create("walks");
@@ -546,5 +581,6 @@ TCase *bidirectional_walks_case(void)
     tcase_add_unchecked_fixture(tcase, bidirectional_files_make, bidirectional_files_remove);
     tcase_add_loop_test(tcase, test_real_walks, 0, 2 * BIDIRECTIONAL_SCENE_COUNT);
     tcase_add_loop_test(tcase, test_walks_in_smoke, 0, 2);
+    tcase_add_test(tcase, test_roulette);
     return tcase;
 }

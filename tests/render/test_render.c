@@ -45,6 +45,27 @@ START_TEST(test_reconstruction)
 }
 END_TEST
 
+/* Walks of the chains' pools and of bdpt end as early as their throughput says, those of ibpt later. */
+START_TEST(test_roulette_of_integrators)
+{
+    static const struct {
+        const char *name;
+        float scale;
+    } CASES[] = {{"pt", 1.0f}, {"ibpt", 2.0f}, {"bdpt", 1.0f}, {"mmlt", 1.0f}};
+    const RenderSetup setup = {.text = "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n"};
+    const RenderOptions options = {.samples = 1, .max_depth = 1};
+    Scene scene;
+    FrameParams frame;
+    Error error;
+    fixture_scene(&setup, &scene);
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; ++i) {
+        render_frame(integrator_find(CASES[i].name, &error), &scene, &options, &frame);
+        ck_assert_float_eq(frame.path.roulette_scale, CASES[i].scale);
+    }
+    scene_destroy(&scene);
+}
+END_TEST
+
 /* ---- the order of pixels ----------------------------------------------------------------------------------------- */
 
 /* In bands, too, every pixel occurs once, whatever the last band's height. */
@@ -457,6 +478,7 @@ int main(void)
     tcase_add_loop_test(determinism, test_same_bits_in_two_parts, 0, PUBLIC_SCENE_COUNT);
     tcase_add_test(determinism, test_crop_has_the_bits_of_the_whole);
     tcase_add_test(determinism, test_seeds_differ);
+    tcase_add_test(determinism, test_roulette_of_integrators);
     tcase_add_test(determinism, test_passes_are_long_where_exchanges_are);
     tcase_add_loop_test(determinism, test_pixels_in_bands, 0, 6);
     tcase_add_loop_test(determinism, test_reconstruction, 0, 6);
