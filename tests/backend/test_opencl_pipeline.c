@@ -44,14 +44,6 @@ static void attempt_end(Attempt *attempt)
     scene_destroy(&attempt->scene);
 }
 
-static uint64_t film_samples(const Film *film)
-{
-    uint64_t sum = 0;
-    for (size_t i = 0; i < film_pixels(film); ++i)
-        sum += film->counts[i];
-    return sum;
-}
-
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
 START_TEST(test_batch_too_large)
