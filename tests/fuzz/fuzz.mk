@@ -2,7 +2,7 @@
 # runs the inputs of tests/corpus/NAME: seeds, and inputs that increased the fuzzers' coverage (fuzz-*: of 2e7 executions on
 # scenes, 7e6 on images and 3e7 on command lines; 3e5 on parts found nothing, the two of checkpoints are findings
 # of 2e5). `make fuzz` builds them with libFuzzer and sanitizers and runs each for FUZZ_SECONDS, starting from these.
-EXTRA_DIST += tests/bad tests/corpus tests/fuzz/fuzz.h tests/valgrind.supp
+EXTRA_DIST += tests/bad tests/corpus tests/fuzz/compile.sh tests/fuzz/fuzz.h tests/fuzz/run.sh tests/valgrind.supp
 FUZZ_TARGETS = scene image options part checkpoint gltf
 check_PROGRAMS += tests/fuzz_scene tests/fuzz_image tests/fuzz_options tests/fuzz_part tests/fuzz_checkpoint tests/fuzz_gltf
 tests_fuzz_scene_SOURCES = tests/fuzz/fuzz_scene.c tests/fuzz/fuzz_replay.c
@@ -31,6 +31,7 @@ FUZZ_WRAP = -Wl,--wrap=archive_reader_open
 # A larger image would take the time of thousands of others.
 FUZZ_CC = clang
 FUZZ_SECONDS = 60
+FUZZ_JOBS = 2
 FUZZ_SANITIZERS = fuzzer,address,undefined,float-cast-overflow
 FUZZ_CFLAGS = -std=c11 -O1 -g -ffp-contract=off -fsanitize=$(FUZZ_SANITIZERS) -fno-sanitize-recover=undefined,float-cast-overflow \
 	-DIMAGE_PIXELS_MAX=65536u
@@ -40,20 +41,15 @@ FUZZ_COMPILE = $(FUZZ_CC) $(FUZZ_CFLAGS) $(DEFS) -I. $(AM_CPPFLAGS) -pthread $(O
 fuzz-programs: build_commit.h
 	$(MKDIR_P) fuzz-objects
 	for file in $(libtwinlight_host_la_SOURCES) $(libtwinlight_cpu_la_SOURCES) $(libtwinlight_kernels_la_SOURCES) \
-	  $(libtwinlight_wide_la_SOURCES) tests/fuzz/fuzz_file.c; do \
-	  case $$file in *_wide.c) wide="$(WIDE_CFLAGS)";; *) wide=;; esac; \
-	  case $$file in *.c) $(FUZZ_COMPILE) $$wide -c $(srcdir)/$$file \
-	    -o fuzz-objects/$$(echo $${file%.c} | tr / _).o || exit 1;; \
-	esac; done
+	  $(libtwinlight_wide_la_SOURCES) tests/fuzz/fuzz_file.c; do case $$file in *.c) echo $$file;; esac; done | \
+	  xargs -P $(FUZZ_JOBS) -I{} $(srcdir)/tests/fuzz/compile.sh {} $(srcdir) "$(WIDE_CFLAGS)" $(FUZZ_COMPILE)
 	for target in $(FUZZ_TARGETS); do case $$target in checkpoint) wrap=$(FUZZ_WRAP);; *) wrap=;; esac; \
 	  $(FUZZ_COMPILE) $$wrap $(srcdir)/tests/fuzz/fuzz_$$target.c fuzz-objects/*.o -o fuzz_$$target \
 	  $(libtwinlight_host_la_LIBADD) || exit 1; done
 
 fuzz: fuzz-programs
-	for target in $(FUZZ_TARGETS); do $(MKDIR_P) fuzz-found/$$target; dictionary=$(srcdir)/tests/corpus/$$target.dict; \
-	  ./fuzz_$$target -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=1 \
-	    -artifact_prefix=fuzz-found/$$target- $$(test -f $$dictionary && echo -dict=$$dictionary) \
-	    fuzz-found/$$target $(srcdir)/tests/corpus/$$target || exit 1; done
+	for target in $(FUZZ_TARGETS); do echo $$target; done | \
+	  xargs -P $(FUZZ_JOBS) -I{} $(srcdir)/tests/fuzz/run.sh {} $(srcdir) $(FUZZ_SECONDS)
 CLEANFILES += fuzz_scene fuzz_image fuzz_options fuzz_part fuzz_checkpoint fuzz_gltf
 
 # The readers and small renderings on the CPU under valgrind, which detects what sanitizers do not: uninitialised

@@ -22,6 +22,7 @@ START_TEST(test_running_products)
     const BidirectionalScene *scene = &BIDIRECTIONAL_SCENES[_i / 2];
     Integrator stored = *integrator_bdpt();
     stored.strategies = STRATEGIES_IBPT;
+    stored.roulette_scale = integrator_ibpt()->roulette_scale;
     picture(scene, integrator_ibpt(), _i % 2 == 1, &a);
     picture(scene, &stored, _i % 2 == 1, &b);
     int pixels = a.width * a.height, different = 0;
