@@ -35,27 +35,19 @@ size_t film_empty_pixels(const Film *film)
     return empty;
 }
 
-/* In units of film_sample_units. */
-static uint64_t sample_units(const Film *film)
+uint64_t film_samples(const Film *film)
 {
     uint64_t units = 0;
     for (size_t i = 0; i < film_pixels(film); ++i)
         units += film_count(film, i);
-    return units;
-}
-
-uint64_t film_samples(const Film *film)
-{
-    return sample_units(film) / film_sample_units(film->reconstruction);
+    return units / film_sample_units(film->reconstruction);
 }
 
 /* Radiance per unit of the light sums. */
 static double light_unit_of(const Film *film, double unit)
 {
     bool needs_samples = film->light_samples == 0 || film->complete_samples > 0;
-    double samples = film->light_sums && needs_samples
-                         ? (double)sample_units(film) / (double)film_sample_units(film->reconstruction)
-                         : 0.0;
+    double samples = film->light_sums && needs_samples ? (double)film_samples(film) : 0.0;
     double light_samples = film->light_samples > 0 ? (double)film->light_samples : samples;
     double part = film->complete_samples > 0 ? fmax(1.0 - (double)film->complete_samples / samples, 0.0) : 1.0;
     return light_samples > 0.0 ? part * unit * (double)film_pixels(film) / light_samples : 0.0;

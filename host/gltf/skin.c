@@ -195,7 +195,7 @@ static bool vertex_matrix(Skin *skin, size_t vertex, Matrix *out)
 static bool vertex_move(const Matrix *matrix, float *position, float *normal)
 {
     double p[3] = {(double)position[0], (double)position[1], (double)position[2]};
-    bool mirrored = matrix_determinant(matrix) < 0.0;
+    bool mirrored = matrix_swaps_handedness(matrix);
     matrix_point(matrix, p, p);
     for (int i = 0; i < 3; ++i)
         position[i] = (float)p[i];

@@ -20,8 +20,8 @@ typedef struct Mmlt {
     Film film; /* of the estimator that runs; at the end, of the generation */
     Combination combinations[REPLICAS];
     CombinedImage combined;
-    PathsChange
-        changes[REPLICAS]; /* by path tracing alone in the first generations of each, as long as it may be shown */
+    /* By path tracing alone in the first generations of each, as long as it may be shown. */
+    PathsChange changes[REPLICAS];
     MmltGuide guide;
     Plan plan;
     Generation generation; /* under way */
