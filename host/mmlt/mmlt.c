@@ -296,8 +296,8 @@ static void generation_begin(Mmlt *mmlt)
                              &mmlt->combinations[generation->other], mmlt->samples);
 }
 
-/* Makes one film of the estimators: mmlt->film. */
-static void films_combine(Mmlt *mmlt)
+/* Makes one film of the estimators: mmlt->film. Whether variances have been learnt from them. */
+static bool films_combine(Mmlt *mmlt)
 {
     const Generation *generation = &mmlt->generation;
     Combination *own = &mmlt->combinations[generation->replica];
@@ -307,21 +307,23 @@ static void films_combine(Mmlt *mmlt)
         combined_image_add(&mmlt->combined, ESTIMATOR_PATHS, &mmlt->film);
     combined_image_finish(&mmlt->combined, &mmlt->film);
     if (chains_needed(mmlt) && !chains_due(mmlt)) /* what is known of path tracing tells nothing new of the others */
-        return;
+        return false;
     mmlt_guide_count(&mmlt->guide, generation->replica, own, (double)mmlt->pool.own.samples);
     if (*render_run_stop(mmlt->run) && !mmlt->run->checkpoint) /* no generation follows */
-        return;
+        return false;
     combination_variances_update(own, &mmlt->combinations[generation->other]);
     plan_learn(&mmlt->plan, generation->index, own); /* the other replica is next, and learns from this one */
+    return true;
 }
 
-/* Where the generation tells that light is easy, path tracing alone is shown in the first generations of the other replica, whose
- * weights were not those of known variances. What is shown must not be chosen by its own errors: light that it has missed would
- * make it look good. */
-static void first_paths_show(Mmlt *mmlt)
+/* Where the generation tells that light is easy, path tracing alone is shown in the first generations of the other replica,
+ * whose weights were not those of known variances. What is shown must not be chosen by its own errors: light that it has missed
+ * would make it look good. learnt: otherwise what is known comes from the other replica itself. */
+static void first_paths_show(Mmlt *mmlt, bool learnt)
 {
     PathsChange *change = &mmlt->changes[mmlt->generation.other];
-    if (change->values && combination_alone_error(&mmlt->combinations[mmlt->generation.replica]) < ALONE_ERROR) {
+    if (learnt && change->values &&
+        combination_alone_error(&mmlt->combinations[mmlt->generation.replica]) < ALONE_ERROR) {
         film_light_add(mmlt->run->film, change->values, change->samples);
         paths_change_forget(change);
     }
@@ -334,16 +336,17 @@ static bool generation_take(Mmlt *mmlt, Error *error)
 {
     RenderLayers *layers = mmlt->run->options->layers;
     Film *film = &mmlt->film;
+    bool learnt = false;
     if (mmlt->options.chains_only)
         film->light_samples = mmlt->chains.own.samples;
     else if (!complete_due(mmlt))
-        films_combine(mmlt);
+        learnt = films_combine(mmlt);
     if (mmlt->generation.index == 0)
         film_clear(mmlt->run->film);
     if (!film_merge(mmlt->run->film, film, error) ||
         (layers && !render_layers_add(layers, film, mmlt->generation.index % 2, error)))
         return false;
-    first_paths_show(mmlt);
+    first_paths_show(mmlt, learnt);
     return true;
 }
 
