@@ -49,6 +49,7 @@ check_PROGRAMS += \
 	tests/test_shard \
 	tests/test_shift \
 	tests/test_texture \
+	tests/test_tile_light \
 	tests/test_verify
 if HAVE_ASSIMP
 check_PROGRAMS += tests/test_gltf
@@ -171,6 +172,7 @@ tests_test_restore_SOURCES = tests/render/test_restore.c
 tests_test_scenes_SOURCES = tests/render/test_scenes.c
 tests_test_shard_SOURCES = tests/render/test_shard.c
 tests_test_shift_SOURCES = tests/mmlt/test_shift.c
+tests_test_tile_light_SOURCES = tests/render/test_tile_light.c
 tests_test_verify_SOURCES = tests/render/test_verify.c
 
 tests_test_analytic_SOURCES = tests/render/test_analytic.c \

@@ -24,9 +24,10 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel; with mmlt as much work (default: the scene's)"},
     [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until either is reached"},
     [OPTION_ERROR] = {"error", 0, "E",
-                      "render until the estimated relative error (square root of relMSE) is below 2% or 0.02"},
-    [OPTION_ERROR_PERCENTILE] = {"error-percentile", 0, "P",
-                                 "with --error: of all pixels but the worst, as in 99 (default: root mean square)"},
+                      "render until the estimated relative error (square root of relMSE trimmed) is below 2% or 0.02"},
+    [OPTION_ERROR_PERCENTILE] =
+        {"error-percentile", 0, "P",
+         "with --error: of all pixels but the worst, as in 99 (default: root mean square of 99.9 %)"},
     [OPTION_ERROR_OF] = {"error-of", 0, "WHAT", "with --error: of pixels (default) or of blocks of 8 x 8 pixels"},
     [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all of them together"},
     [OPTION_DEVICE] = {"device", 0, "DEVICE,...",

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #define RELATIVE_FLOOR 0.01 /* keeps the relative error of dark values finite */
-#define TRIMMED_SHARE 1000 /* one in this many pixels is left out */
 #define TILE METRICS_TILE
 
 typedef struct Pixel {
@@ -89,7 +88,7 @@ static void metrics_add(Metrics *metrics, const Pixel *p)
 /* Sets both relMSEs from the values of all pixels; sorts the array. */
 static void rel_mse_set(Metrics *metrics, double *values, size_t count)
 {
-    size_t dropped = count / TRIMMED_SHARE;
+    size_t dropped = count / METRICS_TRIMMED_SHARE;
     double kept_sum = 0.0, dropped_sum = 0.0;
     sample_sort(values, count);
     for (size_t i = 0; i < count; ++i)

@@ -20,6 +20,9 @@
 /* Pixels a side of a tile, about what an eye or a denoiser averages over. */
 #define METRICS_TILE 8
 
+/* One in this many pixels is left out of relMSE trimmed. */
+#define METRICS_TRIMMED_SHARE 1000
+
 typedef struct Metrics {
     double mse;
     double rel_mse;

@@ -36,6 +36,19 @@ static void weights_tell(const Mmlt *mmlt)
         mmlt->run->chains.weights[s] = mmlt->combinations[0].weight[s];
 }
 
+/* Looks at the error after as many generations of one replica as of the other, and enough for both to know variances. The next
+ * two are no longer than what reaches the goal. */
+static bool look_if_due(Mmlt *mmlt, Error *error)
+{
+    RenderRun *run = mmlt->run;
+    if (mmlt->generation.index < PATHS_FORCED || mmlt->generation.index % REPLICAS != 0)
+        return true;
+    if (error_watch_due(run) && !error_watch_look(run, error))
+        return false;
+    plan_shorten(&mmlt->plan, error_watch_target(run));
+    return true;
+}
+
 /* Runs a generation and plans the next one. */
 static bool generation_next(Mmlt *mmlt, Error *error)
 {
@@ -53,11 +66,7 @@ static bool generation_next(Mmlt *mmlt, Error *error)
     if (!mmlt->whole)
         return true;
     plan_next(plan, mmlt->generation.index, mmlt->seconds, render_run_seconds(run));
-    /* After as many generations of one replica as of the other, and enough for both to know variances. */
-    if (mmlt->generation.index >= PATHS_FORCED && mmlt->generation.index % REPLICAS == 0 && error_watch_due(run) &&
-        !error_watch_look(run, error))
-        return false;
-    return mmlt_keep(mmlt, error);
+    return look_if_due(mmlt, error) && mmlt_keep(mmlt, error);
 }
 
 static bool generations_run(Mmlt *mmlt, Error *error)

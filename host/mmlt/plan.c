@@ -180,6 +180,16 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
     plan->chains = left < next ? (uint)left : next;
 }
 
+void plan_shorten(Plan *plan, double work)
+{
+    double each = fmax(0.5 * (work - (double)plan->done), 0.0);
+    double sample = estimator_cost(ESTIMATOR_PATHS) * (double)plan->pixels;
+    if (plan->alone > 0.0)
+        plan->alone = fmax(fmin(plan->alone, ceil(each / sample)), 1.0);
+    else if (plan->scheme->grows)
+        plan->chains = (uint)fmax(fmin((double)plan->chains, ceil(each / chain_work(plan))), 1.0);
+}
+
 double plan_seconds(const Plan *plan, double seconds)
 {
     return plan->last > 0 ? seconds * next_work(plan) / (double)plan->last : 0.0;

@@ -13,14 +13,16 @@ void error_watch_archive(Archive *archive, ErrorWatch *watch)
         archive_fail(archive, "the estimated error is negative");
 }
 
+/* The work after which the next look is due. */
+static double due_from(const RenderRun *run)
+{
+    uint64_t latest = run->error.work;
+    return latest > 0 ? ERROR_LOOK_GROWTH * (double)latest : (double)ERROR_LOOK_FIRST * (double)run->crop_pixels;
+}
+
 bool error_watch_due(const RenderRun *run)
 {
-    const ErrorWatch *watch = &run->error;
-    if (!(run->options->error.goal > 0.0))
-        return false;
-    double from =
-        watch->work > 0 ? ERROR_LOOK_GROWTH * (double)watch->work : (double)ERROR_LOOK_FIRST * (double)run->crop_pixels;
-    return (double)run->done >= from;
+    return run->options->error.goal > 0.0 && (double)run->done >= due_from(run);
 }
 
 bool error_watch_look(RenderRun *run, Error *error)
@@ -36,6 +38,15 @@ bool error_watch_reached(const RenderRun *run)
 {
     const ErrorWatch *watch = &run->error;
     return watch->work > 0 && watch->estimate + watch->deviation <= run->options->error.goal;
+}
+
+double error_watch_target(const RenderRun *run)
+{
+    const ErrorWatch *watch = &run->error;
+    double error = (watch->estimate + watch->deviation) / run->options->error.goal;
+    if (watch->work == 0 || !(run->options->error.goal > 0.0) || !isfinite(error))
+        return (double)INFINITY;
+    return fmax((double)watch->work * error * error, due_from(run));
 }
 
 uint64_t error_watch_next(uint64_t samples)

@@ -27,6 +27,10 @@ bool error_watch_look(RenderRun *run, Error *error);
 /* Whether the latest look was below the goal. */
 bool error_watch_reached(const RenderRun *run);
 
+/* The work, as run->done counts it, after which the next look should be: where the goal will be reached if the square of the
+ * error falls with the work, but not before a look is due; infinite before the first look and without a goal. */
+double error_watch_target(const RenderRun *run);
+
 /* The number of samples per pixel at the look after that at `samples`, or the first one, for integrators whose work is in
  * whole samples: an even number. */
 uint64_t error_watch_next(uint64_t samples);

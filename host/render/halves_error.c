@@ -1,7 +1,9 @@
 #include "render/halves_error.h"
 
+#include "base/largest_values.h"
 #include "base/sample_statistics.h"
 #include "compare/metrics.h"
+#include "render/tile_light.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +23,8 @@ typedef struct Estimate {
     float *rgb[2]; /* one part of each half */
     double *squares; /* relative square of the error of each pixel, or of each tile */
     size_t count; /* of squares so far */
-    double *tiles; /* their sum in each tile */
+    LargestValues worst; /* of these, which the error of pixels leaves out */
+    size_t *tile_ends; /* `count` after each tile */
     size_t tile_count;
 } Estimate;
 
@@ -73,12 +76,6 @@ static void rows_resolve(const Estimate *estimate, size_t y, size_t rows)
 
 /* ---- a tile ------------------------------------------------------------------------------------------------------ */
 
-/* One channel of a tile. */
-typedef struct TileValues {
-    size_t count;
-    double picture[TILE * TILE], difference[TILE * TILE];
-} TileValues;
-
 static void tile_values(const Estimate *estimate, size_t x, size_t rows, size_t channel, TileValues *values)
 {
     size_t end = x + TILE < estimate->width ? x + TILE : estimate->width;
@@ -102,61 +99,62 @@ static double mean_of(const double *values, size_t count)
     return sum / (double)count;
 }
 
-/* How much of the tile's variety is the picture's, not noise: 0 ... 1. */
-static double variety_of(const TileValues *values, double mean)
-{
-    double variety = 0.0, noise = 0.0;
-    for (size_t i = 0; i < values->count; ++i) {
-        variety += (values->picture[i] - mean) * (values->picture[i] - mean);
-        noise += values->difference[i] * values->difference[i];
-    }
-    return variety > noise ? 1.0 - noise / variety : 0.0;
-}
-
 /* Adds a third of the relative squares of one channel: of the pixels, or of the tile. */
 static void channel_add(const TileValues *values, bool blocks, double *squares)
 {
-    double mean = mean_of(values->picture, values->count), difference = mean_of(values->difference, values->count);
-    double own = variety_of(values, mean);
     if (blocks) {
+        double mean = mean_of(values->picture, values->count), difference = mean_of(values->difference, values->count);
         squares[0] += metrics_relative_square(difference * difference, mean) / 3.0;
         return;
     }
+    double light[TILE_PIXELS];
+    tile_light(values, light);
     for (size_t i = 0; i < values->count; ++i)
-        squares[i] += metrics_relative_square(values->difference[i] * values->difference[i],
-                                              mean + own * (values->picture[i] - mean)) /
-                      3.0;
+        squares[i] += metrics_relative_square(values->difference[i] * values->difference[i], light[i]) / 3.0;
 }
 
 static void tile_add(Estimate *estimate, size_t x, size_t rows)
 {
     bool blocks = estimate->goal->blocks;
-    double *squares = estimate->squares + estimate->count, sum = 0.0;
+    double *squares = estimate->squares + estimate->count;
     TileValues values = {.count = 0};
     for (size_t channel = 0; channel < 3; ++channel) {
         tile_values(estimate, x, rows, channel, &values);
         channel_add(&values, blocks, squares);
     }
     size_t added = blocks ? 1 : values.count;
-    for (size_t i = 0; i < added; ++i)
-        sum += squares[i];
+    for (size_t i = 0; i < added && estimate->worst.wanted > 0; ++i)
+        largest_values_add(&estimate->worst, squares[i]);
     estimate->count += added;
-    estimate->tiles[estimate->tile_count++] = sum;
+    estimate->tile_ends[estimate->tile_count++] = estimate->count;
 }
 
 /* ---- the film ---------------------------------------------------------------------------------------------------- */
+
+/* The sum of the squares in a tile, without the film's worst: those of at least `limit`. */
+static double tile_sum(const Estimate *estimate, size_t tile, double limit)
+{
+    double sum = 0.0;
+    for (size_t i = tile > 0 ? estimate->tile_ends[tile - 1] : 0; i < estimate->tile_ends[tile]; ++i)
+        sum += estimate->squares[i] < limit ? estimate->squares[i] : 0.0;
+    return sum;
+}
 
 /* Root of the mean. Its standard error is, relative to it, half of that of the sum over the tiles, whose variance is estimated
  * from the differences between neighbours: tiles have different errors, but those of neighbours are alike. */
 static HalvesError mean_error(const Estimate *estimate)
 {
-    double sum = 0.0, spread = 0.0, tiles = (double)estimate->tile_count;
+    double sum = 0.0, spread = 0.0, tiles = (double)estimate->tile_count, before = 0.0;
+    double limit = estimate->worst.count > 0 ? largest_values_least(&estimate->worst) : (double)INFINITY;
     size_t pairs = estimate->tile_count / 2;
-    for (size_t i = 0; i < estimate->tile_count; ++i)
-        sum += estimate->tiles[i];
-    for (size_t i = 0; i < 2 * pairs; i += 2)
-        spread += (estimate->tiles[i] - estimate->tiles[i + 1]) * (estimate->tiles[i] - estimate->tiles[i + 1]);
-    double value = sqrt(sum / (double)estimate->count);
+    for (size_t i = 0; i < estimate->tile_count; ++i) {
+        double tile = tile_sum(estimate, i, limit);
+        sum += tile;
+        if (i % 2 != 0)
+            spread += (before - tile) * (before - tile);
+        before = tile;
+    }
+    double value = sqrt(sum / (double)(estimate->count - estimate->worst.count));
     double deviation = pairs > 0 ? sqrt(spread * tiles / (2.0 * (double)pairs)) : sum;
     return (HalvesError){value, sum > 0.0 ? 0.5 * value * deviation / sum : 0.0};
 }
@@ -181,6 +179,12 @@ static HalvesError percentile_error(const Estimate *estimate)
     return (HalvesError){value, percentile_of(estimate, part + sqrt(part * (1.0 - part) / independent)) - value};
 }
 
+/* Whether the worst pixels are left out. */
+static bool trimmed_of(const ErrorGoal *goal)
+{
+    return !goal->blocks && !(goal->percentile > 0.0);
+}
+
 static bool estimate_allocate(Estimate *estimate, Error *error)
 {
     size_t values = 3 * estimate->width * TILE, pixels = estimate->width * estimate->height;
@@ -192,8 +196,10 @@ static bool estimate_allocate(Estimate *estimate, Error *error)
         complete = complete && estimate->planes[i] && estimate->rgb[i];
     }
     estimate->squares = calloc(estimate->goal->blocks ? tiles : pixels, sizeof *estimate->squares);
-    estimate->tiles = malloc(tiles * sizeof *estimate->tiles);
-    complete = complete && estimate->squares && estimate->tiles;
+    estimate->tile_ends = malloc(tiles * sizeof *estimate->tile_ends);
+    estimate->worst.wanted = trimmed_of(estimate->goal) ? pixels / METRICS_TRIMMED_SHARE : 0;
+    estimate->worst.heap = malloc((estimate->worst.wanted + 1) * sizeof *estimate->worst.heap);
+    complete = complete && estimate->squares && estimate->tile_ends && estimate->worst.heap;
     return complete ||
            error_memory(error, 4 * values * sizeof(float) + pixels * sizeof(double), "the error's estimate");
 }
@@ -205,7 +211,8 @@ static void estimate_free(Estimate *estimate)
         free(estimate->rgb[i]);
     }
     free(estimate->squares);
-    free(estimate->tiles);
+    free(estimate->tile_ends);
+    free(estimate->worst.heap);
 }
 
 static bool estimate_make(Estimate *estimate, HalvesError *error_found, Error *error)

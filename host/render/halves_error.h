@@ -8,14 +8,15 @@
 #include "render/job.h"
 
 typedef struct HalvesError {
-    double value; /* relative error: sqrt(relMSE) (compare/metrics.h), of pixels or of tiles; or its percentile */
+    /* Relative error: of pixels sqrt(relMSE trimmed), of tiles sqrt(relMSE 8 x 8) (compare/metrics.h); or its percentile. */
+    double value;
     double
         deviation; /* standard error of `value`, from the differences between neighbouring tiles, or of the percentile */
 } HalvesError;
 
-/* Estimates the error of the films' sum, as `goal` measures it. Where a pixel's own value is uncertain, the relative error is
- * that to a value between it and the mean of its tile (an empirical Bayes estimate; Efron and Morris 1973): a noisy
- * pixel that is dark by chance would make its error seem small, or large. Fails out of memory. */
+/* Estimates the error of the films' sum, as `goal` measures it, relative to tile_light (render/tile_light.h). The worst pixels
+ * are left out because what they are relative to is not known: one that a single bright path has met may have that light, or be
+ * a firefly on a dark place. Fails out of memory. */
 bool halves_error(const Film halves[2], const ErrorGoal *goal, HalvesError *error_found, Error *error);
 
 /* The same of the mean of two images of width x height x 3 values. */

@@ -29,4 +29,5 @@ libtwinlight_host_la_SOURCES += \
 	host/render/run.c host/render/run.h \
 	host/render/shard.c host/render/shard.h \
 	host/render/stats.c host/render/stats.h \
+	host/render/tile_light.c host/render/tile_light.h \
 	host/render/verify.c host/render/verify.h

@@ -148,6 +148,34 @@ START_TEST(test_alone_fit)
 }
 END_TEST
 
+/* A pair of generations is shortened to end where it is wanted, with chains or, in whole samples, of path tracing alone; it
+ * never grows, and is never empty. */
+START_TEST(test_shorten)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    double work = (double)work_of(&plan);
+    plan_count(&plan, (uint64_t)work, 0.0);
+    plan_shorten(&plan, 9.0 * work);
+    ck_assert_uint_eq(plan.chains, CHAINS_FIRST);
+    plan_shorten(&plan, (double)INFINITY);
+    ck_assert_uint_eq(plan.chains, CHAINS_FIRST);
+    plan_shorten(&plan, 2.0 * work);
+    ck_assert_uint_ge(plan.chains, CHAINS_FIRST / 2);
+    ck_assert_uint_le(plan.chains, CHAINS_FIRST / 2 + 1);
+    plan_next(&plan, 3, 1e9, 1.0); /* the second of the pair */
+    ck_assert_uint_le(plan.chains, CHAINS_FIRST / 2 + 1);
+    plan_shorten(&plan, 0.5 * work);
+    ck_assert_uint_eq(plan.chains, 1);
+    plan.alone = 7.0;
+    plan_shorten(&plan, (double)plan.done + 9.0 * PIXELS);
+    ck_assert_double_eq(plan.alone, 5.0);
+    plan_shorten(&plan, 0.0);
+    ck_assert_double_eq(plan.alone, 1.0);
+}
+END_TEST
+
 /* If rates change so that a chain has ten times the work, a generation has as much as before, or a part of the work so
  * far. */
 START_TEST(test_rates)
@@ -300,6 +328,7 @@ int main(void)
     tcase_add_test(tcase, test_last);
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_rates);
+    tcase_add_test(tcase, test_shorten);
     tcase_add_loop_test(tcase, test_end, 0, 12);
     tcase_add_loop_test(tcase, test_alone, 0, 2);
     tcase_add_test(tcase, test_alone_fit);

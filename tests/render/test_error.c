@@ -30,24 +30,27 @@ typedef struct NoiseCase {
     double noise; /* standard deviation of half 0, relative to the truth ... */
     double additive; /* ... and alike in all pixels */
     double more; /* how many times the work of half 0 half 1 has: its variance is smaller */
+    double bright; /* part of the pixels of each half that has met a bright path, of 50 times its light */
     bool from_light; /* in light_sums, not as samples of the pixels */
     ErrorGoal goal;
     bool alike; /* samples are counted once for all pixels */
 } NoiseCase;
 
 static const NoiseCase CASES[] = {
-    {1.0, 0.0, 0.1, 0.0, 1.0, false, {.scale = 1.0}, false},
-    {1.0, 0.9, 0.1, 0.0, 1.0, false, {.scale = 1.0}, false},
-    {1.0, 0.9, 0.5, 0.0, 1.0, true, {.scale = 1.0}, false},
-    {0.05, 0.5, 0.0, 0.5, 1.0, false, {.scale = 1.0}, false},
-    {20.0, 0.5, 0.0, 0.5, 1.0, false, {.scale = 0.01}, false},
-    {1.0, 0.5, 0.2, 0.1, 9.0, true, {.scale = 1.0}, false},
-    {1.0, 0.5, 0.2, 0.1, 3.0, false, {.scale = 1.0}, false},
-    {1.0, 0.5, 0.2, 0.1, 3.0, false, {.scale = 1.0}, true},
-    {1.0, 0.5, 0.2, 0.1, 1.0, false, {.scale = 1.0, .blocks = true}, false},
-    {1.0, 0.5, 0.2, 0.1, 4.0, true, {.scale = 1.0, .blocks = true}, false},
-    {1.0, 0.5, 0.2, 0.1, 1.0, false, {.scale = 1.0, .percentile = 95.0}, false},
-    {1.0, 0.5, 0.2, 0.0, 1.0, false, {.scale = 1.0, .percentile = 50.0}, false},
+    {1.0, 0.0, 0.1, 0.0, 1.0, 0.0, false, {.scale = 1.0}, false},
+    {1.0, 0.9, 0.1, 0.0, 1.0, 0.0, false, {.scale = 1.0}, false},
+    {1.0, 0.9, 0.5, 0.0, 1.0, 0.0, true, {.scale = 1.0}, false},
+    {0.05, 0.5, 0.0, 0.5, 1.0, 0.0, false, {.scale = 1.0}, false},
+    {20.0, 0.5, 0.0, 0.5, 1.0, 0.0, false, {.scale = 0.01}, false},
+    {1.0, 0.5, 0.2, 0.1, 9.0, 0.0, true, {.scale = 1.0}, false},
+    {1.0, 0.5, 0.2, 0.1, 3.0, 0.0, false, {.scale = 1.0}, false},
+    {1.0, 0.5, 0.2, 0.1, 3.0, 0.0, false, {.scale = 1.0}, true},
+    {1.0, 0.5, 0.2, 0.1, 1.0, 0.0, false, {.scale = 1.0, .blocks = true}, false},
+    {1.0, 0.5, 0.2, 0.1, 4.0, 0.0, true, {.scale = 1.0, .blocks = true}, false},
+    {1.0, 0.5, 0.2, 0.1, 1.0, 0.0, false, {.scale = 1.0, .percentile = 95.0}, false},
+    {1.0, 0.5, 0.2, 0.0, 1.0, 0.0, false, {.scale = 1.0, .percentile = 50.0}, false},
+    {1.0, 0.2, 0.05, 0.0, 1.0, 0.01, false, {.scale = 1.0}, false},
+    {1.0, 0.0, 0.1, 0.0, 1.0, 0.01, true, {.scale = 1.0}, false},
 };
 
 typedef struct NoisyPicture {
@@ -66,7 +69,8 @@ static void picture_make(const NoiseCase *of, long seed, NoisyPicture *made)
     const int crop[4] = {0, 0, WIDTH, HEIGHT};
     const uint32_t samples = 4;
     const double counts[2] = {samples, of->more * samples};
-    unsigned short state[3] = {(unsigned short)seed, 17, 23};
+    unsigned short state[3] = {(unsigned short)seed, 17, 23}, paths[3] = {(unsigned short)seed, 5, 3};
+    bool met[2] = {false, false};
     Error error = {0};
     for (int half = 0; half < 2; ++half) {
         Film *film = &made->halves[half];
@@ -81,7 +85,9 @@ static void picture_make(const NoiseCase *of, long seed, NoisyPicture *made)
         for (int half = 0; half < 2; ++half) {
             Film *film = &made->halves[half];
             double deviation = (of->noise * truth + of->additive) / sqrt(counts[half] / counts[0]);
-            double total = (truth + deviation * noise(state)) * counts[half];
+            bool bright = value % 3 == 0 ? erand48(paths) < of->bright : met[half];
+            met[half] = bright;
+            double total = (truth * (bright ? 50.0 : 1.0) + deviation * noise(state)) * counts[half];
             (of->from_light ? film->light_sums : film->sums)[value] = llrint(ldexp(total, 30));
             film->counts[value / 3] = of->alike ? 0 : (uint32_t)counts[half];
             sum += total;
@@ -110,7 +116,7 @@ static double error_true(const NoisyPicture *made, const ErrorGoal *goal)
     Error error = {0};
     ck_assert(metrics_compute(made->picture, made->truth, WIDTH, HEIGHT, 1, &metrics, &error));
     if (!(goal->percentile > 0.0))
-        return sqrt(goal->blocks ? metrics.rel_mse_8x8 : metrics.rel_mse);
+        return sqrt(goal->blocks ? metrics.rel_mse_8x8 : metrics.rel_mse_trimmed);
     for (size_t pixel = 0; pixel < WIDTH * HEIGHT; ++pixel) {
         squares[pixel] = 0.0;
         for (size_t value = 3 * pixel; value < 3 * pixel + 3; ++value) {
@@ -151,6 +157,27 @@ START_TEST(test_estimate)
 }
 END_TEST
 
+/* One in METRICS_TRIMMED_SHARE pixels may differ by anything, unless all of them count. */
+START_TEST(test_worst)
+{
+    enum { SIZE = 3 * WIDTH * HEIGHT, WORST = WIDTH * HEIGHT / METRICS_TRIMMED_SHARE };
+    static float images[2][SIZE];
+    const float *const halves[2] = {images[0], images[1]};
+    const ErrorGoal pixels = {.goal = 0.1}, blocks = {.goal = 0.1, .blocks = true};
+    HalvesError found;
+    Error error = {0};
+    for (size_t value = 0; value < SIZE; ++value)
+        images[0][value] = images[1][value] = 1.0f;
+    for (size_t worst = 1; worst <= WORST + 1; ++worst) {
+        images[0][600 * worst] = 1e6f * (float)worst;
+        ck_assert(halves_error_of_images(halves, WIDTH, HEIGHT, &pixels, &found, &error));
+        ck_assert((found.value > 0.0) == (worst > WORST));
+        ck_assert(halves_error_of_images(halves, WIDTH, HEIGHT, &blocks, &found, &error));
+        ck_assert_double_gt(found.value, 0.0);
+    }
+}
+END_TEST
+
 /* ---- looks ------------------------------------------------------------------------------------------------------- */
 
 /* Looks are at even numbers of samples, and each after enough of them since the last. */
@@ -176,16 +203,19 @@ START_TEST(test_reached)
     RenderRun run = {.options = &options, .crop_pixels = 100, .done = 399};
     ck_assert(!error_watch_due(&run) && !error_watch_reached(&run));
     ck_assert_double_eq(render_run_error_fraction(&run), 0.0);
+    ck_assert(isinf(error_watch_target(&run)));
     run.done = 400;
     ck_assert(error_watch_due(&run));
     run.error = (ErrorWatch){.estimate = 0.19, .deviation = 0.01, .work = 400};
     ck_assert(!error_watch_due(&run) && !error_watch_reached(&run));
     ck_assert_double_eq_tol(render_run_error_fraction(&run), 0.25, 1e-9);
+    ck_assert_double_eq_tol(error_watch_target(&run), 1600.0, 1e-9);
     run.done = 800;
     ck_assert(error_watch_due(&run));
     ck_assert_double_eq_tol(render_run_error_fraction(&run), 0.5, 1e-9);
     run.error = (ErrorWatch){.estimate = 0.099, .deviation = 0.002, .work = 800};
     ck_assert(!error_watch_reached(&run));
+    ck_assert_double_eq_tol(error_watch_target(&run), 800.0 * ERROR_LOOK_GROWTH, 1e-9);
     run.error.deviation = 0.001;
     ck_assert(error_watch_reached(&run));
 }
@@ -297,7 +327,7 @@ static double relative_error(const RenderedImage *image, PictureView reference)
     Metrics metrics;
     Error error = {0};
     ck_assert(metrics_compute(image->rgb, reference.rgb, reference.width, reference.height, 1, &metrics, &error));
-    return sqrt(metrics.rel_mse);
+    return sqrt(metrics.rel_mse_trimmed);
 }
 
 /* The same over 20 seeds on scenes with references: most renderings end within 0.8 to 1.25 of what was promised. */
@@ -410,6 +440,7 @@ int main(void)
     Suite *suite = suite_create("error");
     TCase *estimate = tcase_create("estimate"), *looks = tcase_create("looks"), *promise = tcase_create("promise");
     tcase_add_loop_test(estimate, test_estimate, 0, sizeof CASES / sizeof CASES[0]);
+    tcase_add_test(estimate, test_worst);
     suite_add_tcase(suite, estimate);
     tcase_add_test(looks, test_looks);
     tcase_add_test(looks, test_reached);
