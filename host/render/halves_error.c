@@ -91,19 +91,12 @@ static void tile_values(const Estimate *estimate, size_t x, size_t rows, size_t 
         }
 }
 
-static double mean_of(const double *values, size_t count)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count; ++i)
-        sum += values[i];
-    return sum / (double)count;
-}
-
 /* Adds a third of the relative squares of one channel: of the pixels, or of the tile. */
 static void channel_add(const TileValues *values, bool blocks, double *squares)
 {
     if (blocks) {
-        double mean = mean_of(values->picture, values->count), difference = mean_of(values->difference, values->count);
+        double mean = tile_mean(values->picture, values->count),
+               difference = tile_mean(values->difference, values->count);
         squares[0] += metrics_relative_square(difference * difference, mean) / 3.0;
         return;
     }

@@ -12,14 +12,14 @@
 /* The noise that most pixels of the tile do not exceed, with a margin. */
 static double usual_noise(const TileValues *values)
 {
-    double heap[TILE_PIXELS];
+    double heap[TILE_PIXELS] = {0.0};
     LargestValues largest = {.heap = heap, .wanted = values->count / UNUSUAL_SHARE + 1};
     for (size_t i = 0; i < values->count; ++i)
         largest_values_add(&largest, fabs(values->difference[i]));
     return USUAL_FACTOR * largest_values_least(&largest);
 }
 
-static double mean_of(const double *values, size_t count)
+double tile_mean(const double *values, size_t count)
 {
     double sum = 0.0;
     for (size_t i = 0; i < count; ++i)
@@ -30,7 +30,7 @@ static double mean_of(const double *values, size_t count)
 /* Takes from the values what differs by more than the tile's usual noise, and keeps the rest as noise. */
 static void excess_remove(const TileValues *values, double light[TILE_PIXELS], double noise[TILE_PIXELS])
 {
-    double usual = usual_noise(values), mean = mean_of(values->picture, values->count);
+    double usual = usual_noise(values), mean = tile_mean(values->picture, values->count);
     for (size_t i = 0; i < values->count; ++i) {
         double difference = fabs(values->difference[i]), value = values->picture[i];
         noise[i] = fmin(difference, usual);
@@ -42,7 +42,7 @@ void tile_light(const TileValues *values, double light[TILE_PIXELS])
 {
     double noise[TILE_PIXELS], variety = 0.0, tile_noise = 0.0, count = (double)values->count;
     excess_remove(values, light, noise);
-    double mean = mean_of(light, values->count);
+    double mean = tile_mean(light, values->count);
     for (size_t i = 0; i < values->count; ++i) {
         variety += (light[i] - mean) * (light[i] - mean) / count;
         tile_noise += noise[i] * noise[i] / count;

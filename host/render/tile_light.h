@@ -16,6 +16,9 @@ typedef struct TileValues {
     double difference[TILE_PIXELS]; /* of the halves, with the picture's variance as its mean square */
 } TileValues;
 
+/* The mean of a tile's values of one kind. count >= 1. */
+double tile_mean(const double *values, size_t count);
+
 /* Estimates the light of each pixel. What one half alone has of a pixel beyond the noise that is usual in the tile does not
  * count; the rest is taken from the pixel and from the tile's mean, in proportion to what they differ by and to the pixel's
  * own noise (empirical Bayes; Efron and Morris, "Stein's Estimation Rule and Its Competitors", 1973). */
