@@ -265,6 +265,7 @@ tests_test_import_SOURCES = tests/pbrt/test_import.c \
 	tests/pbrt/test_import_media.c \
 	tests/pbrt/test_import_nanovdb.c \
 	tests/pbrt/test_import_params.c \
+	tests/pbrt/test_import_places.c \
 	tests/pbrt/test_import_ply.c \
 	tests/pbrt/test_import_settings.c \
 	tests/pbrt/test_import_shapes.c \

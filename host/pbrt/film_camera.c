@@ -3,6 +3,7 @@
 #include "film/film.h"
 #include "image/color.h"
 #include "pbrt/errors.h"
+#include "pbrt/media_places.h"
 #include "pbrt/readers.h"
 #include "pbrt/state.h"
 #include "scene/filter_setup.h"
@@ -356,6 +357,8 @@ bool import_camera(PbrtImport *im, const char *kind)
     if (!camera_transform_set(im, camera) || (!known && !camera_other(im, kind, &substitute)))
         return false;
     camera->medium = im->state.outside;
+    if (!media_places_camera(im))
+        return false;
     if (substitute)
         return true;
     snprintf(owner, sizeof owner, "the %s camera", kind);

@@ -5,6 +5,7 @@
 #include "pbrt/directives.h"
 #include "pbrt/errors.h"
 #include "pbrt/late.h"
+#include "pbrt/media_places.h"
 #include "pbrt/parser.h"
 #include "pbrt/readers.h"
 #include "pbrt/state.h"
@@ -128,7 +129,9 @@ static bool source_read(const ImportSource *source, const ImportOptions *options
     PbrtImport im;
     import_init(&im, options, scene, error);
     im.offset = scene->origin = *offset;
-    bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im) && media_check(&im);
+    media_places_reset(&im);
+    bool good = source_open(&im, source) && directives_read(&im) && late_materials_finish(&im) && media_check(&im) &&
+                media_places_names(&im);
     good = errors_end(&im) && good;
     balance_apply(&im);
     camera_move(&scene->camera_settings, im.offset);
@@ -199,12 +202,17 @@ bool pbrt_needs(const char *path, SceneNeeds *needs, Error *error)
 
 bool pbrt_load(const char *path, bool lenient, Scene *scene, Error *error)
 {
-    const ImportOptions options = {.lenient = lenient, .all_errors = true};
+    MediaPlaces places;
+    const ImportOptions options = {.lenient = lenient, .all_errors = true, .places = &places};
     FileData text = {0};
     bool piped = strcmp(path, "-") == 0;
+    media_places_init(&places);
     bool good = piped ? file_read_stream(STDIN_FILENO, "standard input", IMPORT_FILE_BYTES_MAX, &text, error) &&
                             pbrt_import_text(text.data, text.size, "stdin", "", &options, scene, error)
                       : pbrt_import(path, &options, scene, error);
     free(text.data);
-    return good && (scene_finish(scene, error) || error_in(error, piped ? "stdin" : path));
+    good = good && (scene_finish(scene, error) || error_in(error, piped ? "stdin" : path)) &&
+           media_places_check(&places, scene, error);
+    media_places_destroy(&places);
+    return good;
 }

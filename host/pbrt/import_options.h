@@ -14,10 +14,13 @@ typedef struct ImportMemory {
     void *owner;
 } ImportMemory;
 
+struct MediaPlaces;
+
 typedef struct ImportOptions {
     bool lenient; /* replace unsupported features, with a warning that names the substitute, instead of failing */
     bool all_errors; /* continue after errors, up to IMPORT_ERRORS_MAX, and print all but the last */
     const ImportMemory *memory; /* in place of the files of plymesh and of textures; NULL: none */
+    struct MediaPlaces *places; /* records lights for media_places_check; NULL: nothing */
     SceneNeeds *needs; /* records what the scene needs, instead of failing; NULL: an ordinary reading */
 } ImportOptions;
 

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "pbrt/errors.h"
 #include "pbrt/light_reader.h"
+#include "pbrt/media_places.h"
 #include "pbrt/readers.h"
 #include "pbrt/state.h"
 #include "pbrt/values.h"
@@ -146,7 +147,8 @@ static bool light_add(LightReader *r)
         log_message_at(LOG_INFO, r->list->place, "%s emits nothing and is left out", r->list->owner);
         return true;
     }
-    return scene_add_light(r->im->scene, &r->light, r->im->error);
+    size_t first = r->im->scene->lights.count;
+    return scene_add_light(r->im->scene, &r->light, r->im->error) && media_places_lights(r->im, first);
 }
 
 bool import_light(PbrtImport *im, const char *kind)

@@ -1,5 +1,6 @@
 #include "pbrt/shape_add.h"
 
+#include "pbrt/media_places.h"
 #include "pbrt/state.h"
 #include "pbrt/values.h"
 
@@ -105,7 +106,7 @@ static bool mesh_emit(PbrtImport *im, uint kind, const MeshData *mesh, Shape sha
                                            : scene_add_patches(im->scene, mesh, shape, radiance, flags, im->error);
     if (good && emission)
         power_apply(im->scene, first_light, emission);
-    return good;
+    return good && media_places_lights(im, first_light);
 }
 
 bool shape_add_mesh(PbrtImport *im, const ShapeContext *context, uint kind, float *positions, float *normals,
@@ -172,7 +173,7 @@ static bool quadric_emit(PbrtImport *im, uint kind, const Quadric *quadric, cons
     box_join(space_box(im), &box);
     if (emission)
         power_apply(im->scene, first_light, emission);
-    return true;
+    return media_places_lights(im, first_light);
 }
 
 bool shape_add_quadric(PbrtImport *im, const ShapeContext *context, uint kind, const Quadric *quadric)

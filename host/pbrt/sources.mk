@@ -12,6 +12,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/light_images.c host/pbrt/light_reader.h \
 	host/pbrt/lights.c \
 	host/pbrt/materials.c \
+	host/pbrt/media_places.c host/pbrt/media_places.h \
 	host/pbrt/media.c host/pbrt/media.h host/pbrt/media_presets.h \
 	host/pbrt/media_cloud.c host/pbrt/media_grid.c host/pbrt/media_nanovdb.c \
 	host/pbrt/mesh.c host/pbrt/mesh.h \

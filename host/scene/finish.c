@@ -449,8 +449,7 @@ bool scene_finish(Scene *scene, Error *error)
     if (!scene_coat_tables(scene, error) ||
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error))
         return false;
-    media_lights_setup(scene);
-    if (!light_setup(scene, error))
+    if (!media_lights_setup(scene, error) || !light_setup(scene, error))
         return false;
     for (size_t i = 0; i < scene->lights.count; ++i)
         scene->ray_reach = fmaxf(scene->ray_reach, light_reach(scene, &ARRAY_AT(&scene->lights, Light, i)));

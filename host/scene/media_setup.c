@@ -1,8 +1,9 @@
 #include "scene/media_setup.h"
 
-#include "geometry/media_walk.h"
+#include "geometry/medium.h"
 #include "light/delta.h"
 #include "scene/grid_build.h"
+#include "scene/separations.h"
 
 #include <math.h>
 #include <string.h>
@@ -60,39 +61,11 @@ void media_box_join(const Scene *scene, Box *world)
 
 /* ---- the medium around the scene --------------------------------------------------------------------------------- */
 
-/* Any direction: surfaces that separate media should be closed, so that all lead to the same medium. */
-static const Vec3 OUTWARDS = {0.36f, 0.48f, 0.8f};
-
-/* The first surface that separates media among the primitives of an object. */
-static void separation_find(const SceneView *view, const Object *object, uint instance, const RayQuery *query, Hit *hit)
-{
-    for (uint i = object->first_primitive; i < object->first_primitive + object->primitive_count; ++i) {
-        uint shape = view->primitives[i].shape_and_kind & PRIMITIVE_SHAPE_MASK;
-        if (media_differ(view->shapes[shape].flags))
-            primitive_intersect(view, i, instance, query, hit);
-    }
-}
-
-static Hit separation_next(const Scene *scene, const SceneView *view, const Ray *ray)
-{
-    Hit hit = hit_none(ray->t_max);
-    RayQuery query = ray_query(*ray);
-    separation_find(view, view->objects, NONE, &query, &hit);
-    for (size_t i = 0; i < scene->instances.count; ++i) {
-        const Instance *instance = &view->instances[i];
-        RayQuery inner = ray_query_transform(instance->object_from_world, &query);
-        separation_find(view, view->objects + instance->object, (uint)i, &inner, &hit);
-    }
-    return hit;
-}
-
-/* The medium that a ray from the camera is in when it has left the scene. */
-static uint medium_around(const Scene *scene)
+/* Sets scene->medium_around: the medium that a ray from the camera is in when it has left the scene. */
+static bool around_find(Scene *scene, Error *error)
 {
     const double *camera = scene->camera_settings.world_from_camera;
-    uint medium = scene->camera_settings.medium;
-    ulong features = scene->features & ~(FEATURE_ALPHA | FEATURE_TEXTURE | FEATURE_TANGENTS);
-    SceneView view = {.features = features,
+    SceneView view = {.features = scene->features,
                       .positions = scene->positions.data,
                       .normals = scene->normals.data,
                       .uvs = scene->uvs.data,
@@ -103,41 +76,40 @@ static uint medium_around(const Scene *scene)
                       .curves = scene->curves.data,
                       .objects = scene->objects.data,
                       .instances = scene->instances.data};
-    Ray ray = {vec3((float)camera[3], (float)camera[7], (float)camera[11]), OUTWARDS, FLOAT_MAX};
-    for (uint crossings = 0; crossings < CROSSINGS_MAX; ++crossings) {
-        Hit hit = separation_next(scene, &view, &ray);
-        if (hit.primitive == NONE)
-            break;
-        Surface surface = surface_from_hit(&view, &ray, hit);
-        medium = medium_towards(view.shapes[surface.shape].flags, surface.ng, ray.d);
-        ray = ray_spawn(surface.p, surface.ng, ray.d);
-    }
-    return medium;
+    Separations separations;
+    bool good = separations_init(&separations, &view, scene->objects.count, scene->instances.count, error);
+    if (good)
+        scene->medium_around = separations_medium_behind(
+            &separations, vec3((float)camera[3], (float)camera[7], (float)camera[11]), scene->camera_settings.medium);
+    separations_destroy(&separations);
+    return good;
 }
 
-void media_lights_setup(Scene *scene)
+bool media_lights_setup(Scene *scene, Error *error)
 {
     if (!(scene->features & FEATURE_MEDIUM))
-        return;
-    uint around = medium_around(scene);
-    const Medium *medium = medium_of(scene, around);
+        return true;
+    if (!around_find(scene, error))
+        return false;
+    const Medium *medium = medium_of(scene, scene->medium_around);
     Vec3 extinction = medium->grid == 0u ? medium->extinction : vec3_splat(0.0f); /* grids end */
     for (size_t i = 0; i < scene->lights.count; ++i) {
         Light *light = &ARRAY_AT(&scene->lights, Light, i);
         if (!light_is_far(light_kind(light)))
             continue;
-        scene_light_detail(scene, light)->medium = around;
+        scene_light_detail(scene, light)->medium = scene->medium_around;
         light->emission.x = extinction.x > 0.0f ? 0.0f : light->emission.x;
         light->emission.y = extinction.y > 0.0f ? 0.0f : light->emission.y;
         light->emission.z = extinction.z > 0.0f ? 0.0f : light->emission.z;
     }
+    return true;
 }
 
 float media_reach(const Scene *scene)
 {
     if (!(scene->features & FEATURE_SCATTERING))
         return 0.0f;
-    const Medium *medium = medium_of(scene, medium_around(scene));
+    const Medium *medium = medium_of(scene, scene->medium_around);
     const float extinction[3] = {medium->extinction.x, medium->extinction.y, medium->extinction.z};
     float reach = 0.0f;
     bool endless = medium_scatters(medium) && medium->grid == 0u;

@@ -94,6 +94,7 @@ typedef struct Scene {
     float bounds_min[3], bounds_max[3]; /* bounds of everything in the file's world space, see scene/center.h */
     float ray_reach; /* largest coordinate of ray origins on surfaces and lights; SceneParams: also on the camera */
     ulong features;
+    uint medium_around; /* that fills the space around the scene: index into `media` */
     size_t primitive_count; /* the array itself is freed by packing */
     FrameParams frame; /* layout, camera, filter, lights, bounds; seed, pass and depth are set by the integrator */
     Guide guide; /* light guides; importance and visits are set by the integrator */

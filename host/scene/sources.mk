@@ -20,6 +20,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/portal_setup.c host/scene/portal_setup.h \
 	host/scene/aim_setup.c host/scene/aim_setup.h \
 	host/scene/scene.c host/scene/scene.h \
+	host/scene/separations.c host/scene/separations.h \
 	host/scene/smooth_boxes.c host/scene/smooth_boxes.h \
 	host/scene/summary.c host/scene/summary.h \
 	host/scene/texture_image.c host/scene/texture_image.h

@@ -87,6 +87,7 @@ int main(void)
     suite_add_tcase(suite, import_materials_case());
     suite_add_tcase(suite, import_media_case());
     suite_add_tcase(suite, import_nanovdb_case());
+    suite_add_tcase(suite, import_places_case());
     suite_add_tcase(suite, import_textures_case());
     suite_add_tcase(suite, import_lights_case());
     suite_add_tcase(suite, import_ply_case());

@@ -14,6 +14,7 @@ TCase *import_subdivide_case(void);
 TCase *import_objects_case(void);
 TCase *import_materials_case(void);
 TCase *import_media_case(void); /* participating media */
+TCase *import_places_case(void); /* lights and cameras in other media than declared */
 TCase *import_nanovdb_case(void);
 TCase *import_textures_case(void);
 TCase *import_lights_case(void);
