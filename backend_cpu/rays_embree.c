@@ -10,8 +10,8 @@
 #include "layout/state.h"
 #include "triangle_cluster.h"
 
-#ifndef TWINLIGHT_DOUBLE
-#include "geometry/bvh_traverse.h"
+#ifndef TWINLIGHT_DOUBLE /* boxes of pieces have only floats; in double, Embree sees each piece */
+#include "curve_cluster.h"
 #endif
 
 #include <pthread.h>
@@ -27,6 +27,10 @@ typedef struct ObjectRays {
     RTCScene scene;
     TriangleCluster *clusters; /* triangles */
     uint cluster_count;
+#ifndef TWINLIGHT_DOUBLE
+    CurveCluster *curves;
+    uint curve_count;
+#endif
     uint *others; /* primitives of other kinds */
     uint other_count;
     float reach; /* largest coordinate of ray origins, in the space of the object */
@@ -52,6 +56,10 @@ typedef struct RayWalk {
     const RaysEmbree *rays;
     const Ray *ray; /* NULL once `query` is made from it: many rays hit no box and never need one */
     RayQuery query;
+#ifndef TWINLIGHT_DOUBLE
+    BvhRay boxes; /* the ray for boxes of curves' pieces, if has_boxes */
+    bool has_boxes;
+#endif
     float t_scale; /* Embree's t over ours: embree_ray */
     uint instance;
     Hit best;
@@ -106,6 +114,46 @@ static void cluster_occluded_callback(const struct RTCOccludedFunctionNArguments
     if (triangle_cluster_occludes(&object->rays->view, &object->clusters[args->primID], walk_query(walk)))
         ((struct RTCRay *)args->ray)->tfar = -INFINITY;
 }
+
+#ifndef TWINLIGHT_DOUBLE
+
+static const BvhRay *walk_boxes(RayWalk *walk)
+{
+    const RayQuery *query = walk_query(walk);
+    if (!walk->has_boxes) {
+        walk->boxes = bvh_ray(query->o, query->d, BOX_ULPS);
+        walk->has_boxes = true;
+    }
+    return &walk->boxes;
+}
+
+static void curve_bounds_callback(const struct RTCBoundsFunctionArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    Box box = curve_cluster_box(&object->curves[args->primID]);
+    *args->bounds_o = embree_bounds(box_inflate(box, box_margin(&box, object->reach)));
+}
+
+static void curve_intersect_callback(const struct RTCIntersectFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    RayWalk *walk = (RayWalk *)args->context;
+    const BvhRay *boxes = walk_boxes(walk);
+    if (curve_cluster_intersect(&object->rays->view, &object->curves[args->primID], walk->instance, &walk->query, boxes,
+                                &walk->best))
+        ((struct RTCRayHit *)args->rayhit)->ray.tfar = walk->best.t * walk->t_scale;
+}
+
+static void curve_occluded_callback(const struct RTCOccludedFunctionNArguments *args)
+{
+    const ObjectRays *object = args->geometryUserPtr;
+    RayWalk *walk = (RayWalk *)args->context;
+    const BvhRay *boxes = walk_boxes(walk);
+    if (curve_cluster_occludes(&object->rays->view, &object->curves[args->primID], &walk->query, boxes))
+        ((struct RTCRay *)args->ray)->tfar = -INFINITY;
+}
+
+#endif
 
 static void other_bounds_callback(const struct RTCBoundsFunctionArguments *args)
 {
@@ -168,6 +216,9 @@ static RayWalk walk_enter(RayWalk *outer, uint instance)
     rtcInitIntersectContext(&inner.context);
     inner.rays = outer->rays;
     inner.ray = NULL;
+#ifndef TWINLIGHT_DOUBLE
+    inner.has_boxes = false;
+#endif
     inner.query = ray_query_transform(outer->rays->view.instances[instance].object_from_world, walk_query(outer));
     inner.instance = instance;
     inner.best = outer->best;
@@ -281,31 +332,109 @@ static void reaches_set(RaysEmbree *rays)
     }
 }
 
-/* Splits the object's primitives into triangles, which are clustered, and others. */
-static bool object_sort(ObjectRays *object, Object record, Error *error)
+#ifdef TWINLIGHT_DOUBLE
+
+static uint curve_pieces(const SceneView *view, uint first, uint left)
+{
+    (void)view;
+    (void)first;
+    (void)left;
+    return 0;
+}
+
+static bool curves_build(ObjectRays *object, Object record, Error *error)
+{
+    (void)object;
+    (void)record;
+    (void)error;
+    return true;
+}
+
+static void curves_attach(ObjectRays *object)
+{
+    (void)object;
+}
+
+static void curves_free(ObjectRays *object)
+{
+    (void)object;
+}
+
+#else
+
+/* The number of primitives in the cluster that begins with `first`, of `left` in its object; 0: it is in none. */
+static uint curve_pieces(const SceneView *view, uint first, uint left)
+{
+    uint count = SCENE_HAS(view, FEATURE_CURVE) ? curve_cluster_count(view, first, left) : 0u;
+    return count > 1u ? count : 0u;
+}
+
+static bool curves_build(ObjectRays *object, Object record, Error *error)
 {
     const SceneView *view = &object->rays->view;
-    uint *sorted = malloc(((size_t)record.primitive_count + 1) * sizeof *sorted), triangles = 0;
-    if (!sorted)
-        return error_memory(error, record.primitive_count * sizeof *sorted, "ray queries");
-    object->box = box_empty();
-    for (uint i = 0; i < record.primitive_count; ++i) {
+    uint end = record.first_primitive + record.primitive_count, clusters = 0, pieces;
+    for (uint id = record.first_primitive; SCENE_HAS(view, FEATURE_CURVE) && id<end; id += pieces> 0u ? pieces : 1u)
+        clusters += (pieces = curve_pieces(view, id, end - id)) > 0u;
+    if (clusters == 0)
+        return true;
+    size_t bytes = clusters * sizeof *object->curves;
+    object->curves = aligned_alloc(_Alignof(CurveCluster), bytes);
+    if (!object->curves)
+        return error_memory(error, bytes, "groups of curves");
+    for (uint id = record.first_primitive; id<end; id += pieces> 0u ? pieces : 1u)
+        if ((pieces = curve_pieces(view, id, end - id)) > 0u)
+            curve_cluster_set(&object->curves[object->curve_count++], view, id, pieces, &object->box);
+    return true;
+}
+
+static void curves_attach(ObjectRays *object)
+{
+    if (object->curve_count > 0)
+        geometry_attach(object->rays->device, object->scene, object->curve_count, object, curve_bounds_callback,
+                        curve_intersect_callback, curve_occluded_callback);
+}
+
+static void curves_free(ObjectRays *object)
+{
+    free(object->curves);
+}
+
+#endif
+
+/* Splits the primitives that are not in curves' clusters into triangles, which are clustered, and others. `sorted` has room for
+ * all. */
+static bool others_sort(ObjectRays *object, Object record, uint *sorted, Error *error)
+{
+    const SceneView *view = &object->rays->view;
+    uint triangles = 0, pieces;
+    for (uint i = 0; i<record.primitive_count; i += pieces> 0u ? pieces : 1u) {
         uint id = record.first_primitive + i;
+        pieces = curve_pieces(view, id, record.primitive_count - i);
+        if (pieces > 0u)
+            continue;
         bool triangle = view->primitives[id].shape_and_kind >> PRIMITIVE_KIND_SHIFT == PRIMITIVE_TRIANGLE;
         sorted[triangle ? triangles++ : record.primitive_count - ++object->other_count] = id;
         Box box = primitive_box(view, id);
         box_join(&object->box, &box);
     }
     object->others = malloc(((size_t)object->other_count + 1) * sizeof *object->others);
-    if (!object->others) {
-        free(sorted);
+    if (!object->others)
         return error_memory(error, object->other_count * sizeof *object->others, "ray queries");
-    }
-    memcpy(object->others, sorted + triangles, object->other_count * sizeof *object->others);
-    bool built = triangles == 0 || triangle_clusters_build(object->rays->device, view, sorted, triangles,
-                                                           &object->clusters, &object->cluster_count, error);
+    memcpy(object->others, sorted + record.primitive_count - object->other_count,
+           object->other_count * sizeof *object->others);
+    return triangles == 0 || triangle_clusters_build(object->rays->device, view, sorted, triangles, &object->clusters,
+                                                     &object->cluster_count, error);
+}
+
+static bool object_sort(ObjectRays *object, Object record, Error *error)
+{
+    uint *sorted = malloc(((size_t)record.primitive_count + 1) * sizeof *sorted);
+    if (!sorted)
+        return error_memory(error, record.primitive_count * sizeof *sorted, "ray queries");
+    object->box = box_empty();
+    bool sorted_all = curves_build(object, record, error) && others_sort(object, record, sorted, error);
     free(sorted);
-    return built;
+    return sorted_all;
 }
 
 static bool object_build(RaysEmbree *rays, size_t index, Error *error)
@@ -315,13 +444,14 @@ static bool object_build(RaysEmbree *rays, size_t index, Error *error)
     object->rays = rays;
     if (!object_sort(object, rays->view.objects[index], error))
         return false;
-    if (object->cluster_count == 0 && object->other_count == 0 && instances == 0)
+    if (box_is_empty(&object->box) && instances == 0)
         return true;
     object->scene = rtcNewScene(rays->device);
     rtcSetSceneBuildQuality(object->scene, RTC_BUILD_QUALITY_MEDIUM);
     if (object->cluster_count > 0)
         geometry_attach(rays->device, object->scene, object->cluster_count, object, cluster_bounds_callback,
                         cluster_intersect_callback, cluster_occluded_callback);
+    curves_attach(object);
     if (object->other_count > 0)
         geometry_attach(rays->device, object->scene, object->other_count, object, other_bounds_callback,
                         other_intersect_callback, other_occluded_callback);
@@ -421,6 +551,7 @@ void rays_embree_destroy(RaysEmbree *rays)
         if (rays->objects[i].scene)
             rtcReleaseScene(rays->objects[i].scene);
         free(rays->objects[i].clusters);
+        curves_free(&rays->objects[i]);
         free(rays->objects[i].others);
     }
     if (rays->device)
@@ -437,6 +568,9 @@ static inline void walk_begin(RayWalk *walk, const RaysEmbree *rays, const Ray *
     rtcInitIntersectContext(&walk->context);
     walk->rays = rays;
     walk->ray = ray;
+#ifndef TWINLIGHT_DOUBLE
+    walk->has_boxes = false;
+#endif
     walk->instance = NONE;
     walk->best = hit_none(ray->t_max);
 }

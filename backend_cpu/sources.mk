@@ -16,6 +16,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernels_others.c \
 	backend_cpu/kernels_pt.c \
 	backend_cpu/plain_kernels.h \
+	backend_cpu/curve_cluster.h \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
 libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)
@@ -23,7 +24,7 @@ libtwinlight_kernels_la_CFLAGS = $(AM_CFLAGS) $(KERNEL_CFLAGS) $(INLINE_CFLAGS)
 if ENABLE_DOUBLE
 libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene_double.c
 else
-libtwinlight_kernels_la_SOURCES += backend_cpu/kernel_scene.c
+libtwinlight_kernels_la_SOURCES += backend_cpu/curve_cluster.c backend_cpu/kernel_scene.c
 endif
 if PLAIN_KERNELS
 libtwinlight_kernels_la_SOURCES += \
