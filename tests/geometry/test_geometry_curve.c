@@ -225,6 +225,33 @@ START_TEST(test_curve_watertight)
 }
 END_TEST
 
+/* A thick strand covers its length times its width: a segment of length 4 in one piece and in eight. */
+START_TEST(test_curve_coverage)
+{
+    enum { SIDE = 500 };
+    TestRandom random = {.seed = 811};
+    const Curve arc = {.p = {{-1.0f, -1.0f, 0.0f}, {-1.0f, 1.0f, 0.0f}, {1.0f, 1.0f, 0.0f}, {1.0f, -1.0f, 0.0f}},
+                       .width = {0.3f, 0.3f}};
+    for (uint levels = 0; levels <= 3; levels += 3) {
+        TestScene test;
+        uint hits = 0;
+        test_scene_init(&test);
+        test_scene_curves(&test, &arc, 1, levels, CURVE_ROUND);
+        test_scene_finish(&test);
+        for (uint i = 0; i < SIDE * SIDE; ++i) {
+            Vec3 o = vec3(-1.5f + 3.0f * ((float)(i % SIDE) + random_unit(&random)) / SIDE,
+                          -1.5f + 3.0f * ((float)(i / SIDE) + random_unit(&random)) / SIDE, 4.0f);
+            Ray ray = {o, vec3(0.0f, 0.0f, -1.0f), FLOAT_MAX};
+            hits += brute_force(&test, &ray).primitive != NONE;
+        }
+        test_scene_destroy(&test);
+        double area = 9.0 * hits / (SIDE * SIDE);
+        printf("# coverage: %.5f of 1.2 with %u levels\n", area, levels);
+        ck_assert_double_eq_tol(area, 4.0 * 0.3, 0.0012);
+    }
+}
+END_TEST
+
 /* Rays from a strand do not hit it, nor do segments that end on one; they do hit another strand. */
 static void self_check(float scale, Vec3 shift, uint seed)
 {
@@ -336,6 +363,7 @@ TCase *geometry_curve_tcase(void)
     tcase_set_timeout(tcase, 120.0);
     tcase_add_test(tcase, test_curve_accuracy);
     tcase_add_test(tcase, test_curve_watertight);
+    tcase_add_test(tcase, test_curve_coverage);
     tcase_add_test(tcase, test_curve_self_intersection);
     tcase_add_test(tcase, test_curve_degenerate);
     tcase_add_test(tcase, test_curve_boxes);
