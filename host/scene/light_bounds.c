@@ -139,7 +139,7 @@ static LightBounds portal_bounds(const Portal *portal, double power)
     return bounds;
 }
 
-LightBounds light_bounds(const SceneView *view, uint light, double power, double disk)
+LightBounds light_bounds(const SceneView *view, uint light, double power)
 {
     const Light *source = &view->lights[light];
     uint kind = light_kind(source);
@@ -149,9 +149,7 @@ LightBounds light_bounds(const SceneView *view, uint light, double power, double
         return position_bounds(view, source);
     if (kind == LIGHT_PORTAL)
         return portal_bounds(&view->portals[light_detail(view, source)->portal], power);
-    double directions = kind >= LIGHT_INFINITE ? 0.25 : 1.0; /* 4 pi sr, of which pi counts at a surface */
-    return (LightBounds){
-        .box = box_empty(), .normals = NO_CONE, .intensity = power * directions / disk, .infinite = true};
+    return (LightBounds){.box = box_empty(), .normals = NO_CONE, .intensity = power, .infinite = true};
 }
 
 /* ---- comparison -------------------------------------------------------------------------------------------------- */

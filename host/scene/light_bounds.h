@@ -27,9 +27,9 @@ typedef struct LightBounds {
 LightBounds light_bounds_empty(void);
 void light_bounds_join(LightBounds *a, const LightBounds *b);
 
-/* Bounds of one light. power: luminance of its flux, through the disk of the bounding sphere if it is at infinity;
- * disk: its area. */
-LightBounds light_bounds(const SceneView *view, uint light, double power, double disk);
+/* Bounds of one light. power: luminance of its flux; of a light at infinity without a portal, of the irradiance of a surface
+ * that faces it. */
+LightBounds light_bounds(const SceneView *view, uint light, double power);
 
 /* Distance from a point to the farthest corner of a box. */
 double box_reach(const Box *box, Vec3 from);

@@ -4,6 +4,7 @@
 #include "geometry/texture.h"
 #include "light/delta.h"
 #include "scene/distribution_build.h"
+#include "scene/far_lights.h"
 #include "scene/light_tree.h"
 #include "scene/portal_setup.h"
 
@@ -102,24 +103,31 @@ static bool environment_load(Environment *e, Error *error)
     return true;
 }
 
-/* Fills `weights` with each cell's share of the light; *mean: mean of the luminance over the sphere. */
-static void environment_weights(const Environment *e, float *weights, double *mean)
+/* Means of an image of a light over the sphere. */
+typedef struct EnvironmentMeans {
+    double light, square; /* of the luminance, and of its square */
+} EnvironmentMeans;
+
+/* Fills `weights` with each cell's share of the light. */
+static void environment_weights(const Environment *e, float *weights, EnvironmentMeans *means)
 {
     int width = (int)e->image.width, height = (int)e->image.height;
-    double sum = 0.0;
+    EnvironmentMeans sums = {0.0, 0.0};
     for (int y = 0; y < height; ++y) {
         double weight = row_weight(e, y);
         for (int x = 0; x < width; ++x) {
-            double value = weight * projection_weight(e, x, y) * (double)cell_mean(e, x, y);
+            double mean = (double)cell_mean(e, x, y), value = weight * projection_weight(e, x, y) * mean;
             weights[(size_t)y * e->image.width + (size_t)x] = (float)value;
-            sum += value;
+            sums.light += value;
+            sums.square += value * mean;
         }
     }
-    *mean = sum / ((double)width * (double)height);
+    double cells = (double)width * (double)height;
+    *means = (EnvironmentMeans){sums.light / cells, sums.square / cells};
 }
 
-/* Builds the distribution of a light's image; *mean as above, of its radiance or intensity. */
-static bool environment_setup(Scene *scene, const Light *light, double *mean, Error *error)
+/* Builds the distribution of a light's image, of its radiance or intensity. */
+static bool environment_setup(Scene *scene, const Light *light, EnvironmentMeans *means, Error *error)
 {
     LightDetail *detail = scene_light_detail(scene, light);
     Environment e = {.light = light, .detail = detail, .image = ARRAY_AT(&scene->images, TextureImage, detail->image)};
@@ -136,7 +144,7 @@ static bool environment_setup(Scene *scene, const Light *light, double *mean, Er
     e.texels = weights + cells;
     bool ok = environment_load(&e, error);
     if (ok) {
-        environment_weights(&e, weights, mean);
+        environment_weights(&e, weights, means);
         detail->distribution = (uint)scene->distributions2d.count;
         Distribution2D *out = array_grow(&scene->distributions2d, 1, error);
         ok = out && distribution2d_build(weights, e.image.width, e.image.height, &scene->lookup, out, error);
@@ -191,16 +199,20 @@ static double world_disk(const Scene *scene)
     return M_PI * radius * radius;
 }
 
-/* Luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
- * bounding sphere, or through their portal. */
-static bool light_power(Scene *scene, uint index, double *power, Error *error)
+/* *power: luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
+ * bounding sphere, or through their portal. *solid_angle: from which most of the light of those at infinity (light_is_far)
+ * comes. */
+static bool light_power(Scene *scene, uint index, double *power, double *solid_angle, Error *error)
 {
     const Light *light = &ARRAY_AT(&scene->lights, Light, index);
     uint kind = light_kind(light);
     double disk = world_disk(scene), mean = luminance(light->emission);
+    EnvironmentMeans means = {mean, mean * mean};
     bool image = kind == LIGHT_INFINITE_IMAGE || light_has_intensity_image(kind);
-    if (image && !environment_setup(scene, light, &mean, error))
+    if (image && !environment_setup(scene, light, &means, error))
         return false;
+    mean = means.light;
+    *solid_angle = kind == LIGHT_DISTANT ? 0.0 : 4.0 * M_PI * (means.square > 0.0 ? mean * mean / means.square : 1.0);
     switch (kind) {
     case LIGHT_AREA:
         *power = mean * (double)light->area * M_PI * ((light->flags & LIGHT_TWO_SIDED) != 0 ? 2.0 : 1.0);
@@ -224,6 +236,24 @@ static bool light_power(Scene *scene, uint index, double *power, Error *error)
     return error_fix(error, "check its radiance, intensity, scale and size");
 }
 
+/* The irradiance, over the power per area, of a surface that faces a light at infinity, if that is a cone of this solid
+ * angle. */
+static double facing_part(double solid_angle)
+{
+    return solid_angle < 2.0 * M_PI ? 1.0 - solid_angle / (4.0 * M_PI) : M_PI / solid_angle;
+}
+
+/* Fills `at_vertices` with what light_tree_build takes for the powers of lights. */
+static void powers_at_vertices(const Scene *scene, const double *powers, const double *solid_angles,
+                               double *at_vertices)
+{
+    double disk = world_disk(scene);
+    for (size_t i = 0; i < scene->lights.count; ++i) {
+        uint kind = light_kind(&ARRAY_AT(&scene->lights, Light, i));
+        at_vertices[i] = light_is_far(kind) ? powers[i] * facing_part(solid_angles[i]) / disk : powers[i];
+    }
+}
+
 static bool no_light(size_t count, Error *error)
 {
     if (count == 0)
@@ -233,27 +263,14 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Scales the powers of far lights, which grow with the square of the scene's radius, so that together they have no more
- * than all others, if there are others. Most of what they send into a wide scene arrives where no lamp does, and of its
- * lamps' light hardly any sample would be left. */
-static void far_lights_bound(const Scene *scene, double *powers)
-{
-    double far = 0.0, near = 0.0;
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        *(light_is_far(light_kind(&ARRAY_AT(&scene->lights, Light, i))) ? &far : &near) += powers[i];
-    for (size_t i = 0; near > 0.0 && far > near && i < scene->lights.count; ++i)
-        if (light_is_far(light_kind(&ARRAY_AT(&scene->lights, Light, i))))
-            powers[i] *= near / far;
-}
-
-/* Fills `powers` with those by which lights are chosen, sets select_pdf of every light, and lists the infinite
+/* Fills `powers` with those by which light subpaths choose lights, and solid_angles (light_power); sets select_pdf of every light, and lists the infinite
  * lights. */
-static bool lights_weigh(Scene *scene, double *powers, Error *error)
+static bool lights_weigh(Scene *scene, double *powers, double *solid_angles, double *at_vertices, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;
     double sum = 0.0;
     for (size_t i = 0; i < count; ++i) {
-        if (!light_power(scene, (uint)i, &powers[i], error))
+        if (!light_power(scene, (uint)i, &powers[i], &solid_angles[i], error))
             return false;
         sum += powers[i];
         dark += powers[i] > 0.0 ? 0 : 1;
@@ -261,8 +278,10 @@ static bool lights_weigh(Scene *scene, double *powers, Error *error)
     if (!(sum > 0.0))
         return no_light(count, error);
     scene->light_power = sum;
-    if (!light_tree_build(scene, powers, world_disk(scene), error))
+    powers_at_vertices(scene, powers, solid_angles, at_vertices);
+    if (!light_tree_build(scene, at_vertices, error))
         return false;
+    far_lights_divide(scene, powers, solid_angles);
     far_lights_bound(scene, powers);
     sum = 0.0;
     for (size_t i = 0; i < count; ++i)
@@ -288,10 +307,10 @@ bool light_setup(Scene *scene, Error *error)
     scene->infinite_lights.count = scene->light_alias.count = 0;
     if (count == 0)
         return no_light(0, error);
-    double *powers = calloc(count, sizeof *powers);
+    double *powers = calloc(3 * count, sizeof *powers);
     if (!powers)
-        return error_memory(error, count * sizeof *powers, "lights");
-    bool ok = lights_weigh(scene, powers, error);
+        return error_memory(error, 3 * count * sizeof *powers, "lights");
+    bool ok = lights_weigh(scene, powers, powers + count, powers + 2 * count, error);
     AliasBucket *buckets = ok ? array_grow(&scene->light_alias, count, error) : NULL;
     ok = buckets && alias_build(powers, count, buckets, error);
     free(powers);

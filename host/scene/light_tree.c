@@ -207,8 +207,7 @@ static void nodes_pack(Builder *builder, size_t node, size_t first, size_t count
 /* ---- entry point ------------------------------------------------------------------------------------------------- */
 
 /* Fills `leaves` with the lights that have power, those at infinity last; how many are not. */
-static size_t leaves_fill(const SceneView *view, const double *powers, double disk, size_t light_count, Leaf *leaves,
-                          size_t *count)
+static size_t leaves_fill(const SceneView *view, const double *powers, size_t light_count, Leaf *leaves, size_t *count)
 {
     size_t lamps = 0;
     *count = 0;
@@ -218,7 +217,7 @@ static size_t leaves_fill(const SceneView *view, const double *powers, double di
             if (!(powers[i] > 0.0) || infinite != (far == 1))
                 continue;
             Leaf *leaf = &leaves[(*count)++];
-            leaf->bounds = light_bounds(view, (uint)i, powers[i], disk);
+            leaf->bounds = light_bounds(view, (uint)i, powers[i]);
             leaf->center = infinite ? vec3_splat(0.0f) : box_center(&leaf->bounds.box);
             leaf->light = (uint)i;
         }
@@ -246,10 +245,10 @@ static void leaf_set(Scene *scene, uint light, uint leaf)
 }
 
 /* Makes the scene's tree. leaves, branches: space for all lights. */
-static bool scene_tree_make(Scene *scene, const SceneView *view, const double *powers, double disk, Leaf *leaves,
-                            Branch *branches, Error *error)
+static bool scene_tree_make(Scene *scene, const SceneView *view, const double *powers, Leaf *leaves, Branch *branches,
+                            Error *error)
 {
-    size_t count, lamps = leaves_fill(view, powers, disk, scene->lights.count, leaves, &count);
+    size_t count, lamps = leaves_fill(view, powers, scene->lights.count, leaves, &count);
     scene->light_tree.count = scene->light_nodes.count = scene->light_leaves.count = 0;
     uint *lights = array_grow(&scene->light_leaves, count, error);
     LightTree *tree = array_grow(&scene->light_tree, 1, error);
@@ -267,7 +266,7 @@ static bool scene_tree_make(Scene *scene, const SceneView *view, const double *p
     return true;
 }
 
-bool light_tree_build(Scene *scene, const double *powers, double disk, Error *error)
+bool light_tree_build(Scene *scene, const double *powers, Error *error)
 {
     size_t light_count = scene->lights.count;
     SceneView view = {.features = ~(FEATURE_ALPHA | FEATURE_TEXTURE),
@@ -288,7 +287,7 @@ bool light_tree_build(Scene *scene, const double *powers, double disk, Error *er
     bool ok = leaves && branches;
     if (!ok)
         error_memory(error, light_count * (sizeof *leaves + sizeof *branches), "lights");
-    ok = ok && scene_tree_make(scene, &view, powers, disk, leaves, branches, error);
+    ok = ok && scene_tree_make(scene, &view, powers, leaves, branches, error);
     free(leaves);
     free(branches);
     return ok;

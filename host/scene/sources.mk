@@ -9,6 +9,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/coat_medium.c host/scene/coat_medium.h \
 	host/scene/coat_table.c host/scene/coat_table.h \
 	host/scene/distribution_build.c host/scene/distribution_build.h \
+	host/scene/far_lights.c host/scene/far_lights.h \
 	host/scene/filter_setup.c host/scene/filter_setup.h \
 	host/scene/finish.c \
 	host/scene/format.c host/scene/format.h \

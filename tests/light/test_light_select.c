@@ -3,7 +3,20 @@
 #include "light/test_light.h"
 #include "support/light_fixture.h"
 
-/* Lights are chosen by power; with the far ones bright, those together as often as all others. */
+/* The powers of three lights at infinity, divided anew: a quarter by power, the rest by power over the root of the solid angle. */
+static void divide_expected(double *powers, const double *solid_angles)
+{
+    double all = 0.0, concentrated = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        all += powers[i];
+        concentrated += powers[i] / sqrt(solid_angles[i]);
+    }
+    for (int i = 0; i < 3; ++i)
+        powers[i] = 0.25 * powers[i] + 0.75 * all * (powers[i] / sqrt(solid_angles[i])) / concentrated;
+}
+
+/* Lights are chosen by power, those at infinity among themselves also by solid angle; with the far ones bright, those together
+ * as often as all others. */
 START_TEST(test_powers)
 {
     const float bright = _i == 0 ? 1.0f : 0.1f;
@@ -45,6 +58,9 @@ START_TEST(test_powers)
         near += i < FIRST_FAR ? expected[i] : 0.0;
     }
     ck_assert((near < total - near) == (_i == 0));
+    /* Of the image, whose interpolated cells are 2 - 9/16 and 2 + 9/16. */
+    static const double spread = 2.0 * 2.0 / (2.0 * 2.0 + 9.0 / 16.0 * 9.0 / 16.0);
+    divide_expected(&expected[FIRST_FAR], (const double[3]){6.8e-5, 4.0 * M_PI, 4.0 * M_PI * spread});
     for (int i = FIRST_FAR; _i == 0 && i < 8; ++i)
         expected[i] *= near / (total - near);
     total = _i == 0 ? 2.0 * near : total;
@@ -60,6 +76,53 @@ START_TEST(test_powers)
     ck_assert_double_eq(observed[3], 0.0);
     ck_assert_double_gt(test_chi_square(observed, counts, 8), 1e-3);
     fixture_destroy(&f);
+}
+END_TEST
+
+/* A sky alone, and beside a light of a fifth of its power: a distant one, the image of a sun, and an equirectangular image
+ * whose light comes from 45 degrees around one pole. */
+START_TEST(test_sun_and_sky)
+{
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    enum { SIDE = 256, BLOCK = 4 };
+    float *texels = calloc((size_t)3 * SIDE * SIDE, sizeof *texels);
+    const double sky_power = 4.0 * M_PI * M_PI, cap = 2.0 * M_PI * (1.0 - sqrt(0.5)),
+                 texel = 4.0 * M_PI / (SIDE * SIDE);
+    /* Interpolation makes a block of 4 texels as wide as 4.49, by the means of the light and of its square. */
+    const double wide = 4.0 * 4.0 / (2.0 * (0.875 * 0.875 + 0.125 * 0.125 + 1.0));
+    const double angles[4] = {4.0 * M_PI, 6.8e-5, texel * wide * wide, cap}, tolerance = _i == 3 ? 3e-3 : 1e-5;
+    LightFixture f;
+    fixture_init(&f);
+    f.scene.frame.scene.world_radius = 1.0f;
+    fixture_add_light(&f, (LightData){.kind = LIGHT_INFINITE, .emission = {1, 1, 1}});
+    if (_i == 1)
+        fixture_add_light(&f, (LightData){.kind = LIGHT_DISTANT,
+                                          .emission = vec3_splat(0.8f * (float)M_PI),
+                                          .detail.direction = {0, 0, 1}});
+    for (int y = 0; y < SIDE; ++y)
+        for (int x = 0; x < SIDE; ++x) {
+            bool block = abs(2 * x + 1 - SIDE) < BLOCK && abs(2 * y + 1 - SIDE) < BLOCK;
+            double value = _i == 2 ? block * 0.2 * SIDE * SIDE / (BLOCK * BLOCK) : (y < SIDE / 4) * 0.8 * M_PI / cap;
+            for (int c = 0; c < 3; ++c)
+                texels[3 * (y * SIDE + x) + c] = (float)value;
+        }
+    if (_i >= 2)
+        fixture_add_environment(&f, texels, SIDE, SIDE, _i == 3 ? LIGHT_EQUIRECTANGULAR : 0, identity);
+    fixture_finish(&f);
+    ck_assert_double_lt(fabs(f.scene.light_power / sky_power - (_i == 0 ? 1.0 : 1.2)), tolerance);
+    double sky = (double)ARRAY_AT(&f.scene.lights, Light, 0).select_pdf, expected = 1.0;
+    if (_i != 0) {
+        double other = 0.2 / sqrt(angles[_i]), own = 1.0 / sqrt(4.0 * M_PI);
+        expected = 0.25 / 1.2 + 0.75 * own / (other + own);
+    }
+    ck_assert_msg(fabs(sky - expected) < tolerance, "sky: %g, not %g", sky, expected);
+    /* What arrives from a cone counts at a vertex, as if that faced it; of the sky, a quarter of its 4 pi. */
+    const double facing[4] = {0.0, 1.0, 1.0 - angles[2] / (4.0 * M_PI), 1.0 - cap / (4.0 * M_PI)};
+    double choice = (double)light_choice_pdf(&f.view, 0, vec3(0, 0, 0), vec3(0, 0, 1));
+    expected = 0.25 / (0.25 + 0.2 * facing[_i]);
+    ck_assert_msg(fabs(choice - expected) < 1e-3, "sky at a vertex: %g, not %g", choice, expected);
+    fixture_destroy(&f);
+    free(texels);
 }
 END_TEST
 
@@ -119,6 +182,7 @@ TCase *light_select_case(void)
 {
     TCase *tcase = tcase_create("choice of lights");
     tcase_add_loop_test(tcase, test_powers, 0, 2);
+    tcase_add_loop_test(tcase, test_sun_and_sky, 0, 4);
     tcase_add_test(tcase, test_no_light);
     tcase_add_test(tcase, test_not_finite);
     return tcase;
