@@ -373,7 +373,7 @@ static bool curves_build(ObjectRays *object, Object record, Error *error)
 {
     const SceneView *view = &object->rays->view;
     uint end = record.first_primitive + record.primitive_count, clusters = 0, pieces;
-    for (uint id = record.first_primitive; SCENE_HAS(view, FEATURE_CURVE) && id<end; id += pieces> 0u ? pieces : 1u)
+    for (uint id = record.first_primitive; SCENE_HAS(view, FEATURE_CURVE) && id != end; id += pieces > 0u ? pieces : 1u)
         clusters += (pieces = curve_pieces(view, id, end - id)) > 0u;
     if (clusters == 0)
         return true;
@@ -381,7 +381,7 @@ static bool curves_build(ObjectRays *object, Object record, Error *error)
     object->curves = aligned_alloc(_Alignof(CurveCluster), bytes);
     if (!object->curves)
         return error_memory(error, bytes, "groups of curves");
-    for (uint id = record.first_primitive; id<end; id += pieces> 0u ? pieces : 1u)
+    for (uint id = record.first_primitive; id != end; id += pieces > 0u ? pieces : 1u)
         if ((pieces = curve_pieces(view, id, end - id)) > 0u)
             curve_cluster_set(&object->curves[object->curve_count++], view, id, pieces, &object->box);
     return true;
@@ -407,7 +407,7 @@ static bool others_sort(ObjectRays *object, Object record, uint *sorted, Error *
 {
     const SceneView *view = &object->rays->view;
     uint triangles = 0, pieces;
-    for (uint i = 0; i<record.primitive_count; i += pieces> 0u ? pieces : 1u) {
+    for (uint i = 0; i != record.primitive_count; i += pieces > 0u ? pieces : 1u) {
         uint id = record.first_primitive + i;
         pieces = curve_pieces(view, id, record.primitive_count - i);
         if (pieces > 0u)

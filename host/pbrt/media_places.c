@@ -64,11 +64,17 @@ bool media_places_camera(PbrtImport *im)
     return !im->options.places || place_keep(im, &im->options.places->camera);
 }
 
+/* Whether lights of this kind are at a place: not at infinity, nor there and seen through a portal. */
+static bool light_has_place(uint kind)
+{
+    return kind == LIGHT_AREA || light_has_position(kind);
+}
+
 bool media_places_lights(PbrtImport *im, size_t first_light)
 {
     MediaPlaces *places = im->options.places;
     if (!places || places->lights.count >= MEDIA_PLACES_MAX || first_light >= im->scene->lights.count ||
-        light_is_far(light_kind(&ARRAY_AT(&im->scene->lights, Light, first_light))))
+        !light_has_place(light_kind(&ARRAY_AT(&im->scene->lights, Light, first_light))))
         return true;
     LightPlace entry = {.light = first_light};
     if (!place_keep(im, &entry.place))

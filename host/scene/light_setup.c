@@ -263,8 +263,8 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Fills `powers` with those by which light subpaths choose lights, and solid_angles (light_power); sets select_pdf of every light, and lists the infinite
- * lights. */
+/* Fills `powers` with those by which light subpaths choose lights, solid_angles as light_power does, and at_vertices; builds the
+ * tree, sets select_pdf of every light, and lists the infinite lights. */
 static bool lights_weigh(Scene *scene, double *powers, double *solid_angles, double *at_vertices, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;
