@@ -184,10 +184,11 @@ void plan_shorten(Plan *plan, double work)
 {
     double each = fmax(0.5 * (work - (double)plan->done), 0.0);
     double sample = estimator_cost(ESTIMATOR_PATHS) * (double)plan->pixels;
+    double least = fmax(ceil(each / chain_work(plan)), fmax((double)chains_of_sample(plan), 1.0));
     if (plan->alone > 0.0)
         plan->alone = fmax(fmin(plan->alone, ceil(each / sample)), 1.0);
     else if (plan->scheme->grows)
-        plan->chains = (uint)fmax(fmin((double)plan->chains, ceil(each / chain_work(plan))), 1.0);
+        plan->chains = (uint)fmin((double)plan->chains, least);
 }
 
 double plan_seconds(const Plan *plan, double seconds)

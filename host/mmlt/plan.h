@@ -46,8 +46,8 @@ void plan_count(Plan *plan, uint64_t work, double owed);
  * that the image does not depend on the clock. seconds: of the latest generation; elapsed: in all. */
 void plan_next(Plan *plan, uint index, double seconds, double elapsed);
 
-/* Shortens the next two generations, a pair, so that they end with about this much work in all (estimators_work). Before
- * the first of them. */
+/* Shortens the next two generations, a pair, so that they end with about this much work in all (estimators_work), but
+ * to no less than a path tracing sample of every pixel where that is little work. Before the first of them. */
 void plan_shorten(Plan *plan, double work);
 
 /* The seconds that the next generation takes, if the latest one took `seconds`; 0: there was none. */

@@ -11,7 +11,7 @@
 #define TILE METRICS_TILE
 
 /* What is resolved of a row of tiles. */
-typedef enum Plane { PICTURE, DIFFERENCE, PLANES } Plane;
+typedef enum Plane { HALF_0, HALF_1, PICTURE, DIFFERENCE, PLANES } Plane;
 
 typedef struct Estimate {
     const Film *halves; /* NULL: they are images */
@@ -19,7 +19,7 @@ typedef struct Estimate {
     const ErrorGoal *goal;
     FilmScale scales[2];
     size_t width, height;
-    float *planes[PLANES]; /* 3 x width x TILE: the picture; difference of the halves, of the picture's variance */
+    float *planes[PLANES]; /* 3 x width x TILE; the difference has the picture's variance as its mean square */
     float *rgb[2]; /* one part of each half */
     double *squares; /* relative square of the error of each pixel, or of each tile */
     size_t count; /* of squares so far */
@@ -48,6 +48,8 @@ static void part_add(const Estimate *estimate, FilmPart part, size_t first, size
         size_t pixel = first + value / 3;
         double a = (double)estimate->rgb[0][value], b = (double)estimate->rgb[1][value];
         double p = by_samples ? share_of(film_count(&halves[0], pixel), film_count(&halves[1], pixel)) : share;
+        estimate->planes[HALF_0][value] += (float)a;
+        estimate->planes[HALF_1][value] += (float)b;
         estimate->planes[PICTURE][value] += (float)(p * a + (1.0 - p) * b);
         estimate->planes[DIFFERENCE][value] += (float)(sqrt(p * (1.0 - p)) * (a - b));
     }
@@ -58,6 +60,8 @@ static void rows_take(const Estimate *estimate, size_t y, size_t rows)
     size_t first = 3 * y * estimate->width, count = 3 * rows * estimate->width;
     const float *a = estimate->images[0] + first, *b = estimate->images[1] + first;
     for (size_t value = 0; value < count; ++value) {
+        estimate->planes[HALF_0][value] = a[value];
+        estimate->planes[HALF_1][value] = b[value];
         estimate->planes[PICTURE][value] = (float)(0.5 * ((double)a[value] + (double)b[value]));
         estimate->planes[DIFFERENCE][value] = (float)(0.5 * ((double)a[value] - (double)b[value]));
     }
@@ -76,18 +80,21 @@ static void rows_resolve(const Estimate *estimate, size_t y, size_t rows)
 
 /* ---- a tile ------------------------------------------------------------------------------------------------------ */
 
+/* A channel of a tile; pixels with a value that is not finite are black. */
 static void tile_values(const Estimate *estimate, size_t x, size_t rows, size_t channel, TileValues *values)
 {
+    double *kinds[PLANES] = {values->halves[0], values->halves[1], values->picture, values->difference};
     size_t end = x + TILE < estimate->width ? x + TILE : estimate->width;
     values->count = 0;
     for (size_t row = 0; row < rows; ++row)
         for (size_t column = x; column < end; ++column) {
             size_t value = 3 * (row * estimate->width + column) + channel;
-            double picture = (double)estimate->planes[PICTURE][value];
-            double difference = (double)estimate->planes[DIFFERENCE][value];
-            bool finite = isfinite(picture) && isfinite(difference);
-            values->picture[values->count] = finite ? picture : 0.0;
-            values->difference[values->count++] = finite ? difference : 0.0;
+            bool finite = true;
+            for (int plane = 0; plane < PLANES; ++plane)
+                finite = finite && isfinite(estimate->planes[plane][value]);
+            for (int plane = 0; plane < PLANES; ++plane)
+                kinds[plane][values->count] = finite ? (double)estimate->planes[plane][value] : 0.0;
+            ++values->count;
         }
 }
 
@@ -124,12 +131,30 @@ static void tile_add(Estimate *estimate, size_t x, size_t rows)
 
 /* ---- the film ---------------------------------------------------------------------------------------------------- */
 
-/* The sum of the squares in a tile, without the film's worst: those of at least `limit`. */
-static double tile_sum(const Estimate *estimate, size_t tile, double limit)
+/* The film's worst pixels, which the error leaves out: those above a limit, and as many of those at it as are needed. */
+typedef struct Trimmed {
+    double limit;
+    size_t at_limit;
+} Trimmed;
+
+static Trimmed trimmed_of(const LargestValues *worst)
+{
+    Trimmed trimmed = {worst->count > 0 ? largest_values_least(worst) : (double)INFINITY, 0};
+    for (size_t i = 0; i < worst->count; ++i)
+        trimmed.at_limit += !(worst->heap[i] > trimmed.limit);
+    return trimmed;
+}
+
+/* The sum of the squares in a tile that are not left out; those that are, in order of their pixels. */
+static double tile_sum(const Estimate *estimate, size_t tile, Trimmed *trimmed)
 {
     double sum = 0.0;
-    for (size_t i = tile > 0 ? estimate->tile_ends[tile - 1] : 0; i < estimate->tile_ends[tile]; ++i)
-        sum += estimate->squares[i] < limit ? estimate->squares[i] : 0.0;
+    for (size_t i = tile > 0 ? estimate->tile_ends[tile - 1] : 0; i < estimate->tile_ends[tile]; ++i) {
+        double square = estimate->squares[i];
+        bool out = square > trimmed->limit || (!(square < trimmed->limit) && trimmed->at_limit > 0);
+        trimmed->at_limit -= out && !(square > trimmed->limit);
+        sum += out ? 0.0 : square;
+    }
     return sum;
 }
 
@@ -138,10 +163,10 @@ static double tile_sum(const Estimate *estimate, size_t tile, double limit)
 static HalvesError mean_error(const Estimate *estimate)
 {
     double sum = 0.0, spread = 0.0, tiles = (double)estimate->tile_count, before = 0.0;
-    double limit = estimate->worst.count > 0 ? largest_values_least(&estimate->worst) : (double)INFINITY;
+    Trimmed trimmed = trimmed_of(&estimate->worst);
     size_t pairs = estimate->tile_count / 2;
     for (size_t i = 0; i < estimate->tile_count; ++i) {
-        double tile = tile_sum(estimate, i, limit);
+        double tile = tile_sum(estimate, i, &trimmed);
         sum += tile;
         if (i % 2 != 0)
             spread += (before - tile) * (before - tile);
@@ -173,7 +198,7 @@ static HalvesError percentile_error(const Estimate *estimate)
 }
 
 /* Whether the worst pixels are left out. */
-static bool trimmed_of(const ErrorGoal *goal)
+static bool is_trimmed(const ErrorGoal *goal)
 {
     return !goal->blocks && !(goal->percentile > 0.0);
 }
@@ -183,26 +208,25 @@ static bool estimate_allocate(Estimate *estimate, Error *error)
     size_t values = 3 * estimate->width * TILE, pixels = estimate->width * estimate->height;
     size_t tiles = ((estimate->width + TILE - 1) / TILE) * ((estimate->height + TILE - 1) / TILE);
     bool complete = true;
-    for (int i = 0; i < 2; ++i) {
-        estimate->planes[i] = calloc(values, sizeof(float));
-        estimate->rgb[i] = calloc(values, sizeof(float));
-        complete = complete && estimate->planes[i] && estimate->rgb[i];
-    }
+    for (int plane = 0; plane < PLANES; ++plane)
+        complete = (estimate->planes[plane] = calloc(values, sizeof(float))) && complete;
+    for (int half = 0; half < 2; ++half)
+        complete = (estimate->rgb[half] = calloc(values, sizeof(float))) && complete;
     estimate->squares = calloc(estimate->goal->blocks ? tiles : pixels, sizeof *estimate->squares);
     estimate->tile_ends = malloc(tiles * sizeof *estimate->tile_ends);
-    estimate->worst.wanted = trimmed_of(estimate->goal) ? pixels / METRICS_TRIMMED_SHARE : 0;
+    estimate->worst.wanted = is_trimmed(estimate->goal) ? pixels / METRICS_TRIMMED_SHARE : 0;
     estimate->worst.heap = malloc((estimate->worst.wanted + 1) * sizeof *estimate->worst.heap);
     complete = complete && estimate->squares && estimate->tile_ends && estimate->worst.heap;
     return complete ||
-           error_memory(error, 4 * values * sizeof(float) + pixels * sizeof(double), "the error's estimate");
+           error_memory(error, (PLANES + 2) * values * sizeof(float) + pixels * sizeof(double), "the error's estimate");
 }
 
 static void estimate_free(Estimate *estimate)
 {
-    for (int i = 0; i < 2; ++i) {
-        free(estimate->planes[i]);
-        free(estimate->rgb[i]);
-    }
+    for (int plane = 0; plane < PLANES; ++plane)
+        free(estimate->planes[plane]);
+    for (int half = 0; half < 2; ++half)
+        free(estimate->rgb[half]);
     free(estimate->squares);
     free(estimate->tile_ends);
     free(estimate->worst.heap);

@@ -14,9 +14,9 @@ typedef struct HalvesError {
         deviation; /* standard error of `value`, from the differences between neighbouring tiles, or of the percentile */
 } HalvesError;
 
-/* Estimates the error of the films' sum, as `goal` measures it, relative to tile_light (render/tile_light.h). The worst pixels
- * are left out because what they are relative to is not known: one that a single bright path has met may have that light, or be
- * a firefly on a dark place. Fails out of memory. */
+/* Estimates the error of the films' sum, as `goal` measures it, of pixels relative to tile_light (render/tile_light.h), of tiles
+ * to their mean. The worst pixels are left out because what they are relative to is not known: one that a single bright path
+ * has met may have that light, or be a firefly on a dark place. Fails out of memory. */
 bool halves_error(const Film halves[2], const ErrorGoal *goal, HalvesError *error_found, Error *error);
 
 /* The same of the mean of two images of width x height x 3 values. */

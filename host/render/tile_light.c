@@ -3,6 +3,7 @@
 #include "base/largest_values.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* One in this many pixels may have more noise than is usual in the tile, because the pixel filter spreads a bright path over
  * several; and how many times the usual noise counts as noise. docs/NUMERICS.md. */
@@ -27,15 +28,27 @@ double tile_mean(const double *values, size_t count)
     return sum / (double)count;
 }
 
-/* Takes from the values what differs by more than the tile's usual noise, and keeps the rest as noise. */
+/* A pixel's value without the part of its difference that is more than its noise: toward the darker half or the brighter one. */
+static double without_excess(const TileValues *values, size_t pixel, double noise, bool lower)
+{
+    double difference = fabs(values->difference[pixel]), value = values->picture[pixel];
+    double a = values->halves[0][pixel], b = values->halves[1][pixel];
+    double excess = difference > noise ? (difference - noise) / difference : 0.0;
+    return value + excess * ((lower ? fmin(a, b) : fmax(a, b)) - value);
+}
+
+/* Takes from the values what differs by more than the tile's usual noise, and keeps the rest as noise. Values are moved toward
+ * the tile's mean, as it is without any bright path that one half alone has met. */
 static void excess_remove(const TileValues *values, double light[TILE_PIXELS], double noise[TILE_PIXELS])
 {
-    double usual = usual_noise(values), mean = tile_mean(values->picture, values->count);
+    double usual = usual_noise(values);
     for (size_t i = 0; i < values->count; ++i) {
-        double difference = fabs(values->difference[i]), value = values->picture[i];
-        noise[i] = fmin(difference, usual);
-        light[i] = value > mean ? value - (difference - noise[i]) : value + (difference - noise[i]);
+        noise[i] = fmin(fabs(values->difference[i]), usual);
+        light[i] = without_excess(values, i, noise[i], true);
     }
+    double mean = tile_mean(light, values->count);
+    for (size_t i = 0; i < values->count; ++i)
+        light[i] = without_excess(values, i, noise[i], values->picture[i] > mean);
 }
 
 void tile_light(const TileValues *values, double light[TILE_PIXELS])

@@ -12,7 +12,8 @@
 /* One channel of a tile; all values are finite. */
 typedef struct TileValues {
     size_t count; /* 1 ... TILE_PIXELS */
-    double picture[TILE_PIXELS];
+    double halves[2][TILE_PIXELS];
+    double picture[TILE_PIXELS]; /* between the halves, nearer to the one with more samples */
     double difference[TILE_PIXELS]; /* of the halves, with the picture's variance as its mean square */
 } TileValues;
 

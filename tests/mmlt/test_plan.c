@@ -176,6 +176,20 @@ START_TEST(test_shorten)
 }
 END_TEST
 
+/* A shortened generation still has a path tracing sample of every pixel, where that is little work. */
+START_TEST(test_shorten_whole)
+{
+    const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT};
+    Plan plan;
+    plan_init(&plan, &options, mmlt_scheme(false), PIXELS, 0);
+    plan_count(&plan, 100 * PIXELS, 0.0);
+    plan.chains = CHAINS_DEFAULT;
+    plan_shorten(&plan, 0.0);
+    double samples = (double)plan.chains * options.steps * plan.rates.paths / PIXELS;
+    ck_assert_double_eq_tol(samples, 1.0, 0.05);
+}
+END_TEST
+
 /* If rates change so that a chain has ten times the work, a generation has as much as before, or a part of the work so
  * far. */
 START_TEST(test_rates)
@@ -329,6 +343,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_sizes, 0, sizeof PLANS / sizeof PLANS[0]);
     tcase_add_test(tcase, test_rates);
     tcase_add_test(tcase, test_shorten);
+    tcase_add_test(tcase, test_shorten_whole);
     tcase_add_loop_test(tcase, test_end, 0, 12);
     tcase_add_loop_test(tcase, test_alone, 0, 2);
     tcase_add_test(tcase, test_alone_fit);

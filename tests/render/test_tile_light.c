@@ -26,18 +26,25 @@ START_TEST(test_largest)
 END_TEST
 
 /* A tile with stripes, `dark` and 1, and a noise of this standard deviation. */
-static double tile_make(double dark, double noise, TileValues *values, double truth[TILE_PIXELS])
+static void tile_make(double dark, double noise, TileValues *values, double truth[TILE_PIXELS])
 {
     unsigned short state[3] = {11, 12, 13};
-    double sum = 0.0;
     values->count = TILE_PIXELS;
     for (size_t i = 0; i < TILE_PIXELS; ++i) {
         truth[i] = i % 2 == 0 ? dark : 1.0;
         values->difference[i] = noise * sqrt(12.0) * (erand48(state) - 0.5);
         values->picture[i] = truth[i] + noise * sqrt(12.0) * (erand48(state) - 0.5);
-        sum += values->picture[i] / TILE_PIXELS;
+        values->halves[0][i] = values->picture[i] + values->difference[i];
+        values->halves[1][i] = values->picture[i] - values->difference[i];
     }
-    return sum;
+}
+
+/* Adds light to a pixel of the second half, which has this share of the picture's samples. */
+static void path_add(TileValues *values, size_t pixel, double light, double share)
+{
+    values->halves[1][pixel] += light;
+    values->picture[pixel] += share * light;
+    values->difference[pixel] -= sqrt(share * (1.0 - share)) * light;
 }
 
 /* Without noise each pixel has its own light; with noise that hides the stripes, the tile's mean. */
@@ -64,19 +71,37 @@ START_TEST(test_noise)
 }
 END_TEST
 
-/* A bright path that one half has met on dark pixels makes neither these nor their neighbours brighter. */
+/* A bright path that one half has met on dark pixels makes neither these nor their neighbours brighter, whatever share of the
+ * samples the half has. */
 START_TEST(test_bright_path)
+{
+    const struct {
+        double share, noise; /* the usual noise, in units of the half without paths, and its own */
+    } halves[] = {{0.5, 0.02}, {0.1, 0.02}, {0.9, 0.05}};
+    TileValues values;
+    double truth[TILE_PIXELS], light[TILE_PIXELS];
+    for (size_t which = 0; which < 3; ++which) {
+        tile_make(0.02, 0.002, &values, truth);
+        for (size_t i = 20; i < 20 + 2 * (size_t)_i; i += 2)
+            path_add(&values, i, 100.0, halves[which].share);
+        tile_light(&values, light);
+        for (size_t i = 0; i < TILE_PIXELS; ++i)
+            ck_assert_double_eq_tol(light[i], truth[i], halves[which].noise);
+    }
+}
+END_TEST
+
+/* So does a path beside one that is much brighter. */
+START_TEST(test_two_paths)
 {
     TileValues values;
     double truth[TILE_PIXELS], light[TILE_PIXELS];
     tile_make(0.02, 0.002, &values, truth);
-    for (size_t i = 20; i < 20 + 2 * (size_t)_i; i += 2) {
-        values.difference[i] = -50.0;
-        values.picture[i] += 50.0;
-    }
+    path_add(&values, 20, 1e4, 0.5);
+    path_add(&values, 44, 10.0, 0.5);
     tile_light(&values, light);
     for (size_t i = 0; i < TILE_PIXELS; ++i)
-        ck_assert_double_eq_tol(light[i], truth[i], 0.015); /* the noise that is usual */
+        ck_assert_double_eq_tol(light[i], truth[i], 0.015);
 }
 END_TEST
 
@@ -87,6 +112,7 @@ int main(void)
     tcase_add_loop_test(tcase, test_largest, 0, 11);
     tcase_add_test(tcase, test_noise);
     tcase_add_loop_test(tcase, test_bright_path, 1, 5);
+    tcase_add_test(tcase, test_two_paths);
     suite_add_tcase(suite, tcase);
     return test_run(suite);
 }
