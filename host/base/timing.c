@@ -3,11 +3,21 @@
 #include <sys/resource.h>
 #include <time.h>
 
-double timing_now(void)
+static double clock_seconds(clockid_t clock)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double timing_now(void)
+{
+    return clock_seconds(CLOCK_MONOTONIC);
+}
+
+double timing_thread(void)
+{
+    return clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 uint64_t timing_peak_memory(void)

@@ -7,6 +7,9 @@
 /* Monotonic time in seconds from an arbitrary origin. */
 double timing_now(void);
 
+/* Processor time that the calling thread has used, in seconds. */
+double timing_thread(void);
+
 /* Peak resident memory of this process, bytes. */
 uint64_t timing_peak_memory(void);
 

@@ -141,7 +141,7 @@ static Trimmed trimmed_of(const LargestValues *worst)
 {
     Trimmed trimmed = {worst->count > 0 ? largest_values_least(worst) : (double)INFINITY, 0};
     for (size_t i = 0; i < worst->count; ++i)
-        trimmed.at_limit += !(worst->heap[i] > trimmed.limit);
+        trimmed.at_limit += worst->heap[i] > trimmed.limit ? 0 : 1;
     return trimmed;
 }
 
@@ -152,7 +152,7 @@ static double tile_sum(const Estimate *estimate, size_t tile, Trimmed *trimmed)
     for (size_t i = tile > 0 ? estimate->tile_ends[tile - 1] : 0; i < estimate->tile_ends[tile]; ++i) {
         double square = estimate->squares[i];
         bool out = square > trimmed->limit || (!(square < trimmed->limit) && trimmed->at_limit > 0);
-        trimmed->at_limit -= out && !(square > trimmed->limit);
+        trimmed->at_limit -= out && !(square > trimmed->limit) ? 1 : 0;
         sum += out ? 0.0 : square;
     }
     return sum;

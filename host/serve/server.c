@@ -36,6 +36,7 @@ struct Server {
     struct MHD_Daemon *daemon;
     Connections connections; /* of its thread */
     ErrorCurve curve; /* with the snapshot's lock */
+    double counted; /* of its thread: snapshot_reader_count */
     _Atomic double last_request; /* with the token, in timing_now */
     atomic_bool last_sent; /* the picture of the end has been sent to somebody */
 };
@@ -112,6 +113,7 @@ static enum MHD_Result status_answer(Server *server, struct MHD_Connection *conn
     if (!stream)
         return MHD_NO;
     pthread_mutex_lock(&server->snapshot->lock);
+    snapshot_reader_count(server->snapshot, &server->counted);
     snapshot_watch(server->snapshot);
     curve_renew(server);
     status_json_write(stream, server->snapshot, server->facts, &server->curve);
@@ -189,6 +191,7 @@ static enum MHD_Result picture_answer(Server *server, struct MHD_Connection *con
     Wanted wanted;
     Pixels pixels = {0};
     pthread_mutex_lock(&snapshot->lock);
+    snapshot_reader_count(snapshot, &server->counted);
     bool known = wanted_read(server, connection, &wanted), newer = false, ended = snapshot->status.ended;
     uint64_t version = known ? wanted.layer->version : 0;
     if (known) {

@@ -68,6 +68,13 @@ void snapshot_watch(Snapshot *snapshot)
     snapshot->watched = timing_now() + SNAPSHOT_WANTED_SECONDS;
 }
 
+void snapshot_reader_count(Snapshot *snapshot, double *counted)
+{
+    double now = timing_thread();
+    snapshot->cost += now - *counted;
+    *counted = now;
+}
+
 /* ---- publishing -------------------------------------------------------------------------------------------------- */
 
 /* A publication: bands of the wanted layers, by several threads. */
@@ -120,6 +127,13 @@ static void layers_choose(Snapshot *snapshot, const Picture *picture, Publicatio
     }
 }
 
+/* The time between the latest publication and the next one. */
+static double seconds_between(const Snapshot *snapshot)
+{
+    double cheap = snapshot->cost / (SNAPSHOT_TIME_PART * (double)snapshot->threads);
+    return fmin(fmax(SNAPSHOT_SECONDS, cheap), SNAPSHOT_SECONDS_MOST);
+}
+
 bool snapshot_due(Snapshot *snapshot)
 {
     double now = timing_now();
@@ -128,7 +142,7 @@ bool snapshot_due(Snapshot *snapshot)
     bool wanted = snapshot->watched >= now;
     for (size_t i = 0; i < snapshot->layer_count && !wanted; ++i)
         wanted = snapshot->layers[i].wanted >= now;
-    if (wanted && now >= snapshot->next)
+    if (wanted && (snapshot->version == 0 || now >= snapshot->published + seconds_between(snapshot)))
         return true;
     pthread_mutex_unlock(&snapshot->lock);
     return false;
@@ -144,8 +158,9 @@ void snapshot_publish(Snapshot *snapshot, const SnapshotSource *source)
     parallel_run((size_t)source->memory->lane_count, source->memory->lane_count, lane_publish, &publication);
     snapshot->status = *source->status;
     ++snapshot->version;
-    double end = timing_now();
-    snapshot->next = end + fmax(SNAPSHOT_SECONDS, (end - begin) / SNAPSHOT_TIME_PART);
+    snapshot->published = timing_now();
+    snapshot->threads = source->memory->lane_count;
+    snapshot->cost = (snapshot->published - begin) * (double)snapshot->threads;
 }
 
 bool snapshot_copy(Snapshot *snapshot, const char *name, uint64_t *version, float *rgb)

@@ -12,8 +12,10 @@
 /* Fewest seconds between two publications. */
 #define SNAPSHOT_SECONDS 1.0
 
-/* Publications take at most this part of the time: the next one waits until the latest took no more. */
-#define SNAPSHOT_TIME_PART 0.005
+/* Publications, and what readers do with them, take at most this part of the threads' time: the next one waits until the
+ * latest has taken no more, but not for more than SNAPSHOT_SECONDS_MOST. */
+#define SNAPSHOT_TIME_PART 0.0075
+#define SNAPSHOT_SECONDS_MOST 20.0
 
 /* A layer that nobody has asked for this many seconds is no longer published. */
 #define SNAPSHOT_WANTED_SECONDS 5.0
@@ -38,7 +40,9 @@ typedef struct Snapshot {
     uint64_t version; /* number of publications */
     RenderStatus status; /* at the latest publication */
     double watched; /* in timing_now: until then somebody wants the status */
-    double next; /* in timing_now: when the next publication is due */
+    double published; /* in timing_now: when the latest publication ended */
+    double cost; /* of that one and of reading since, in processor seconds */
+    int threads; /* of publications, as many as render */
 } Snapshot;
 
 /* What is published. */
@@ -61,6 +65,9 @@ void snapshot_ask(SnapshotLayer *layer);
 
 /* Asks for the status, and with it for publications, for as long. The caller holds the lock. */
 void snapshot_watch(Snapshot *snapshot);
+
+/* Counts what the calling thread, a reader, has used since *counted, which becomes timing_thread. The caller holds the lock. */
+void snapshot_reader_count(Snapshot *snapshot, double *counted);
 
 /* Takes the lock if a publication is due, somebody wants a layer or the status, and no reader holds the lock. Then publish and call
  * pthread_mutex_unlock. */

@@ -133,6 +133,7 @@ static void viewer_update(Tev *tev, bool last)
 {
     Snapshot *snapshot = tev->snapshot;
     pthread_mutex_lock(&snapshot->lock);
+    snapshot_reader_count(snapshot, &tev->counted);
     snapshot_ask(snapshot_find(snapshot, SNAPSHOT_PICTURE));
     pthread_mutex_unlock(&snapshot->lock);
     if ((!last && timing_now() < tev->last_send + SEND_SECONDS) ||

@@ -24,6 +24,7 @@ typedef struct Tev {
     int socket; /* -1: not connected */
     uint64_t version; /* of the latest snapshot sent over this connection */
     double next_try, last_send; /* in timing_now */
+    double counted; /* snapshot_reader_count */
     bool told; /* that there is no viewer */
     float *rgb;
     unsigned char *packet;

@@ -192,7 +192,39 @@ START_TEST(nobody_is_waited_for)
     pthread_mutex_unlock(&snapshot->lock);
     publish(&scenery);
     ck_assert(!due(snapshot)); /* too soon */
-    ck_assert(snapshot->next - timing_now() > SNAPSHOT_SECONDS - 0.1);
+    scenery_destroy(&scenery);
+}
+END_TEST
+
+/* What readers use counts as what a publication takes: the next one waits until both are a small part of the threads' time. */
+START_TEST(readers_are_counted)
+{
+    Scenery scenery;
+    Snapshot *snapshot = &scenery.snapshot;
+    double counted = timing_thread();
+    scenery_init(&scenery);
+    snapshot_ask(snapshot_find(snapshot, SNAPSHOT_PICTURE));
+    publish(&scenery);
+    ck_assert_int_eq(snapshot->threads, 2);
+    double cost = 3.0 * SNAPSHOT_TIME_PART * snapshot->threads; /* of three seconds */
+    snapshot->cost = 0.5 * cost;
+    while (timing_thread() < counted + 0.5 * cost)
+        continue;
+    snapshot_reader_count(snapshot, &counted);
+    ck_assert_double_eq_tol(snapshot->cost, cost, 0.1 * cost);
+    ck_assert_double_eq_tol(counted, timing_thread(), 0.1 * cost);
+    const double ages[] = {0.0, SNAPSHOT_SECONDS, 2.5, 4.0, SNAPSHOT_SECONDS_MOST};
+    for (int i = 0; i < 5; ++i) {
+        snapshot->published = timing_now() - ages[i];
+        ck_assert(due(snapshot) == (ages[i] > 3.0));
+    }
+    snapshot->cost = 1e6; /* of clients that ask without end */
+    ck_assert(due(snapshot));
+    snapshot->cost = 0.0; /* of cheap ones */
+    snapshot->published = timing_now() - 0.5 * SNAPSHOT_SECONDS;
+    ck_assert(!due(snapshot));
+    snapshot->published = timing_now() - SNAPSHOT_SECONDS;
+    ck_assert(due(snapshot));
     scenery_destroy(&scenery);
 }
 END_TEST
@@ -206,6 +238,7 @@ int main(void)
     tcase_add_test(snapshots, snapshots_are_whole);
     tcase_add_test(snapshots, publication_is_waited_for);
     tcase_add_test(snapshots, nobody_is_waited_for);
+    tcase_add_test(snapshots, readers_are_counted);
     suite_add_tcase(suite, snapshots);
     suite_add_tcase(suite, tev_case());
     suite_add_tcase(suite, page_case());
