@@ -355,6 +355,12 @@ static void curves_attach(ObjectRays *object)
     (void)object;
 }
 
+static size_t curves_bytes(const ObjectRays *object)
+{
+    (void)object;
+    return 0;
+}
+
 static void curves_free(ObjectRays *object)
 {
     (void)object;
@@ -392,6 +398,11 @@ static void curves_attach(ObjectRays *object)
     if (object->curve_count > 0)
         geometry_attach(object->rays->device, object->scene, object->curve_count, object, curve_bounds_callback,
                         curve_intersect_callback, curve_occluded_callback);
+}
+
+static size_t curves_bytes(const ObjectRays *object)
+{
+    return object->curve_count * sizeof *object->curves;
 }
 
 static void curves_free(ObjectRays *object)
@@ -673,8 +684,18 @@ uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint *
     return traced;
 }
 
+/* What an object's callbacks read, of which Embree's memory monitor does not know. */
+static size_t object_bytes(const ObjectRays *object)
+{
+    return sizeof *object + object->cluster_count * sizeof *object->clusters + curves_bytes(object) +
+           object->other_count * sizeof *object->others;
+}
+
 size_t rays_embree_bytes(const RaysEmbree *rays)
 {
-    long long bytes = atomic_load(&((RaysEmbree *)(uintptr_t)rays)->bytes);
-    return (bytes > 0 ? (size_t)bytes : 0) + rays->outer.word_count * sizeof *rays->outer.words;
+    long long monitored = atomic_load(&((RaysEmbree *)(uintptr_t)rays)->bytes);
+    size_t bytes = (monitored > 0 ? (size_t)monitored : 0) + rays->outer.word_count * sizeof *rays->outer.words;
+    for (size_t i = 0; i < rays->object_count; ++i)
+        bytes += object_bytes(&rays->objects[i]);
+    return bytes;
 }

@@ -28,7 +28,7 @@ uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, ui
                                const uint *items, uint count, uint stride);
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics, uint count, uint stride);
 
-/* Size of the hierarchies. */
+/* Size of the hierarchies and of the clusters and lists of primitives below them. */
 size_t rays_embree_bytes(const RaysEmbree *rays);
 
 #endif

@@ -1,7 +1,9 @@
 /* The CPU backend's ray queries against brute force: the same bits, whatever the hierarchy. */
+#include "curve_cluster.h"
 #include "geometry/geometry_suites.h"
 #include "rays_embree.h"
 #include "support/geometry_fixture.h"
+#include "triangle_cluster.h"
 
 #include <string.h>
 
@@ -358,6 +360,43 @@ START_TEST(test_untraceable_rays)
 }
 END_TEST
 
+static size_t bytes_of(TestScene *test)
+{
+    test_scene_finish(test);
+    RaysEmbree *rays = rays_open(test);
+    size_t bytes = rays_embree_bytes(rays);
+    rays_embree_destroy(rays);
+    test_scene_destroy(test);
+    return bytes;
+}
+
+/* The size that is stated includes the clusters, which are larger than Embree's hierarchy over them. */
+START_TEST(test_bytes_of_clusters)
+{
+    enum { CURVES = 4000 };
+    TestScene test;
+    TestMesh mesh = mesh_star(60, 80, 0.3f, 12);
+    size_t clusters = mesh.triangle_count / CLUSTER_LANES * sizeof(TriangleCluster);
+    test_scene_init(&test);
+    test_scene_mesh(&test, &mesh, 0);
+    size_t bytes = bytes_of(&test);
+    ck_assert_msg(bytes > clusters, "%zu bytes, %zu of them in clusters of triangles", bytes, clusters);
+    mesh_destroy(&mesh);
+
+    TestRandom random = {.seed = 120};
+    test_scene_init(&test);
+    for (uint i = 0; i < CURVES; ++i) {
+        Curve curve = {.width = {0.01f, 0.01f}};
+        for (uint k = 0; k < 4; ++k)
+            curve.p[k] = random_direction(&random);
+        test_scene_curves(&test, &curve, 1, 3, CURVE_FLAT);
+    }
+    bytes = bytes_of(&test);
+    ck_assert_msg(bytes > CURVES * sizeof(CurveCluster), "%zu bytes, %zu of them in clusters of curves", bytes,
+                  CURVES * sizeof(CurveCluster));
+}
+END_TEST
+
 TCase *geometry_rays_tcase(void)
 {
     TCase *tcase = tcase_create("ray queries");
@@ -374,5 +413,6 @@ TCase *geometry_rays_tcase(void)
     tcase_add_test(tcase, test_instance_self_intersection);
     tcase_add_test(tcase, test_nothing_to_hit);
     tcase_add_test(tcase, test_untraceable_rays);
+    tcase_add_test(tcase, test_bytes_of_clusters);
     return tcase;
 }
