@@ -11,8 +11,10 @@ typedef struct Separations {
     SceneView view; /* geometry alone: alpha is not looked up */
     Array runs; /* SeparationRun, grouped by object */
     Array first_runs; /* uint: of each object, then the number of runs */
+    Array tests; /* size_t: what testing a ray against all primitives of each object costs */
     size_t instance_count;
-    size_t cost, cost_all; /* primitives and instances against which a ray is tested: those that separate media; all */
+    size_t cost; /* of a ray against the surfaces that separate media, in tests of a triangle */
+    size_t cost_all; /* and against all surfaces */
     size_t left; /* such tests until separations_medium_at gives up */
 } Separations;
 

@@ -1,5 +1,6 @@
 /* Warnings about lights and cameras that are declared in other media than the surfaces around them leave there. */
 #include "pbrt/test_import.h"
+#include "scene/separations.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,23 +16,28 @@
     "AttributeEnd\n"
 #define POINT "LightSource \"point\"\n"
 
-/* The messages of a scene file, in a static buffer. */
-static const char *load_log(const char *text)
+static void scene_load(const char *text, Scene *scene)
 {
     char name[64];
-    Scene scene;
     Error error = {"", ""};
     snprintf(name, sizeof name, "places.%ld.tmp.pbrt", (long)getpid());
     FILE *file = fopen(name, "w");
     ck_assert_ptr_nonnull(file);
     fputs(text, file);
     ck_assert_int_eq(fclose(file), 0);
-    import_log();
-    scene_init(&scene);
-    bool good = pbrt_load(name, false, &scene, &error);
+    scene_init(scene);
+    bool good = pbrt_load(name, false, scene, &error);
     ck_assert_msg(good, "%s", error.message);
-    scene_destroy(&scene);
     remove(name);
+}
+
+/* The messages of a scene file, in a static buffer. */
+static const char *load_log(const char *text)
+{
+    Scene scene;
+    import_log();
+    scene_load(text, &scene);
+    scene_destroy(&scene);
     return import_log();
 }
 
@@ -167,6 +173,65 @@ START_TEST(many_lights)
 }
 END_TEST
 
+static void separations_open(const char *text, Scene *scene, Separations *separations)
+{
+    Error error = {"", ""};
+    scene_load(text, scene);
+    const BackendScene packed = scene_backend_view(scene);
+    const SceneView view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels);
+    ck_assert(separations_init(separations, &view, packed.object_count, packed.instance_count, &error));
+}
+
+/* The tests against primitives that a place at the origin costs, on a surface with this normal. */
+static size_t tests_spent(Separations *separations, Vec3 ng)
+{
+    SurroundedPoint point = {vec3_splat(0.0f), ng, 1u, 0u};
+    size_t before = separations->left;
+    uint medium;
+    ck_assert(separations_medium_at(separations, &point, &medium));
+    ck_assert_uint_eq(medium, 1u);
+    return before - separations->left;
+}
+
+/* No ray is sent twice: to one side of a surface go half as many as to both. */
+START_TEST(rays_of_a_place)
+{
+    Scene scene;
+    Separations separations;
+    separations_open(MEDIA CAMERA "WorldBegin\n" BALL "MediumInterface \"fog\"\n" POINT, &scene, &separations);
+    size_t all = tests_spent(&separations, vec3_splat(0.0f));
+    ck_assert_uint_gt(all, 0);
+    ck_assert_uint_eq(tests_spent(&separations, vec3(0.0f, 1.0f, 0.0f)), all / 2);
+    separations_destroy(&separations);
+    scene_destroy(&scene);
+}
+END_TEST
+
+/* Pieces of curves, which take longer than other primitives, count for more where they may hide what a place sees. */
+START_TEST(rays_among_curves)
+{
+    static const char CURVE[] =
+        "Shape \"curve\" \"point3 P\" [ 5 5 5  6 5 5  6 6 5  6 6 6 ] \"integer splitdepth\" 0\n";
+    size_t left[2];
+    for (int curves = 0; curves < 2; ++curves) {
+        Scene scene;
+        Separations separations;
+        uint medium;
+        char text[1024];
+        snprintf(text, sizeof text, MEDIA CAMERA "WorldBegin\n%s" BALL POINT, curves ? CURVE : "");
+        separations_open(text, &scene, &separations);
+        SurroundedPoint point = {vec3_splat(0.0f), vec3_splat(0.0f), 0u, 0u};
+        ck_assert(separations_medium_at(&separations, &point, &medium));
+        ck_assert_uint_eq(medium, 1u);
+        left[curves] = separations.left;
+        separations_destroy(&separations);
+        scene_destroy(&scene);
+    }
+    /* eight rays, for each of which the curve counts as eight triangles */
+    ck_assert_uint_eq(left[0] - left[1], 64);
+}
+END_TEST
+
 TCase *import_places_case(void)
 {
     TCase *tcase = tcase_create("places");
@@ -177,5 +242,7 @@ TCase *import_places_case(void)
     tcase_add_test(tcase, open_surfaces);
     tcase_add_test(tcase, walls);
     tcase_add_test(tcase, many_lights);
+    tcase_add_test(tcase, rays_of_a_place);
+    tcase_add_test(tcase, rays_among_curves);
     return tcase;
 }
