@@ -5,11 +5,12 @@
 #include "math/warp.h"
 #include "scene/portal_setup.h"
 
-/* A light guide. The primitives of an emissive shape form one: the mean of their boxes' centres, weighted by power. */
+/* A light guide. The primitives of an emissive shape form one: the mean of their boxes' centres, weighted by their
+ * probabilities as starts of light subpaths. */
 typedef struct LightGuide {
     double place[3];
     double near; /* 1 for a position, 0 for a direction */
-    double power; /* as in Guide.lights_power */
+    double power; /* Guide.lights_power; by select_pdf, which for lights at infinity is not in proportion to power */
 } LightGuide;
 
 /* Inserts the guide into the list of the strongest ones, in descending order. */
@@ -57,8 +58,8 @@ static size_t shape_guide(const Scene *scene, const SceneView *view, size_t firs
     return i;
 }
 
-/* Makes a light guide of the brightest texel of an environment. radius: of the bounding sphere, through whose disk the
- * light's power was computed. */
+/* Makes a light guide of the brightest texel of an environment. radius: of the bounding sphere, by whose
+ * disk the power is that at infinity, of which select_pdf is the light's part (scene/far_lights.h). */
 static LightGuide environment_guide(const SceneView *view, const Light *light, double radius)
 {
     const LightDetail *detail = light_detail(view, light);
