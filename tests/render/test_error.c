@@ -147,29 +147,39 @@ static const struct {
     const char *scene;
     const Integrator *(*integrator)(void);
     double goal;
+    double noise; /* the reference's own: relMSE trimmed, docs/SCENES.md */
+    unsigned within; /* so many of LONG_SEEDS, at least */
 } LONG_RENDERINGS[] = {
-    {"cornell", integrator_pt, 0.05}, {"cornell", integrator_mmlt, 0.05}, {"cornell", integrator_bdpt, 0.05},
-    {"door", integrator_mmlt, 0.4},   {"glossy", integrator_mmlt, 0.3},   {"lamp", integrator_mmlt, 0.4},
-    {"pool", integrator_mmlt, 0.2},   {"relief", integrator_mmlt, 0.3},
+    {"cornell", integrator_pt, 0.05, 0.00013, 19},
+    {"cornell", integrator_mmlt, 0.05, 0.00013, 19},
+    {"cornell", integrator_bdpt, 0.05, 0.00013, 19},
+    {"door", integrator_mmlt, 0.4, 0.0042, 19},
+    {"glossy", integrator_mmlt, 0.3, 0.0022, 19},
+    {"lamp", integrator_mmlt, 0.4, 0.0045, 19},
+    {"relief", integrator_mmlt, 0.3, 0.012, 19},
+    /* One in five has a much smaller error than promised: it falls at once when bright pixels come to be among the worst. */
+    {"pool", integrator_mmlt, 0.2, 0.0092, 15},
 };
 
 #define LONG_SEEDS 20
 
-static double relative_error(const RenderedImage *image, PictureView reference)
+/* The error by a reference with this much relMSE of its own. */
+static double relative_error(const RenderedImage *image, PictureView reference, double noise)
 {
     Metrics metrics;
     Error error = {0};
     ck_assert(metrics_compute(image->rgb, reference.rgb, reference.width, reference.height, 1, &metrics, &error));
-    return sqrt(metrics.rel_mse_trimmed);
+    return sqrt(fmax(metrics.rel_mse_trimmed - noise, 0.0));
 }
 
-/* The same over 20 seeds on scenes with references: most renderings end within 0.8 to 1.25 of what was promised. */
+/* The same over 20 seeds on scenes with references: all but one end with at most 1.25 times what was promised, and most with at
+ * least 0.8. */
 START_TEST(test_promise_of_scenes)
 {
     char path[2][512];
     PictureView reference;
     RenderedImage image;
-    unsigned within = 0;
+    unsigned within = 0, above = 0;
     double sum = 0.0;
     if (test_effort() < 2)
         return;
@@ -189,16 +199,18 @@ START_TEST(test_promise_of_scenes)
                                    .layers = &layers};
         fixture_render(&setup, &image);
         ck_assert(image.result.error_reached);
-        double found = relative_error(&image, reference) / setup.error.goal;
+        double found = relative_error(&image, reference, LONG_RENDERINGS[_i].noise) / setup.error.goal;
         within += found >= 0.8 && found <= 1.25;
+        above += found > 1.25;
         sum += found;
         render_layers_destroy(&layers);
         fixture_destroy(&image);
     }
     free(rgb);
-    printf("%s, %s: error / goal %.3f on average, %u of %u within 0.8 to 1.25\n", LONG_RENDERINGS[_i].scene,
-           LONG_RENDERINGS[_i].integrator()->name, sum / LONG_SEEDS, within, LONG_SEEDS);
-    ck_assert_uint_ge(within, 19);
+    printf("%s, %s: error / goal %.3f on average, %u of %u within 0.8 to 1.25, %u above\n", LONG_RENDERINGS[_i].scene,
+           LONG_RENDERINGS[_i].integrator()->name, sum / LONG_SEEDS, within, LONG_SEEDS, above);
+    ck_assert_uint_ge(within, LONG_RENDERINGS[_i].within);
+    ck_assert_uint_le(above, 1);
 }
 END_TEST
 
